@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import hmac
 import re
-from collections.abc import Iterable
+from collections.abc import Collection, Iterable
 from functools import partial
 from typing import Any
 
@@ -19,9 +19,12 @@ DRAWN = 2
 _WHY = re.compile(r'^# %% \[markdown\].*\bwhy="(\w+)"', re.MULTILINE)
 
 
-def drawn(seed: int, student: str, whys: Iterable[str]) -> frozenset[str]:
-    """Which of these whys a person marks."""
-    return frozenset(sorted(whys, key=partial(rank, seed, student))[:DRAWN])
+def drawn(
+    seed: int, student: str, whys: Iterable[str], marked: Collection[str] = ()
+) -> frozenset[str]:
+    """Which of these whys a person marks: those that are marked already, and then by lot."""
+    by_lot = sorted(whys, key=partial(rank, seed, student))
+    return frozenset(sorted(by_lot, key=lambda name: name not in marked)[:DRAWN])
 
 
 def rank(seed: int, student: str, what: str) -> bytes:
@@ -34,7 +37,8 @@ def settle_whys(course: Course, book: Any, assignment: str) -> None:
 
     They are drawn among those of the notebooks that were released since the term began; among all
     of the course's if no term was begun.  A mark that somebody gave by hand stays, and so does the
-    0 of a why that is blank.
+    0 of a why that is blank.  A why with such a mark is one of the two, also where the lot, which
+    is by the name of the folder, says otherwise since a list was imported.
 
     Raises:
         LabkitError: There is such a why, and the assignment was not released here.
@@ -53,10 +57,17 @@ def settle_whys(course: Course, book: Any, assignment: str) -> None:
     waiting = [(student, grade) for student, grade in waiting if grade.name in whys]
     if not waiting:
         return
+    by_hand = book.db.query(type(waiting[0][1])).filter_by(needs_manual_grade=False)
+    marked = {
+        (grade.notebook.assignment.student.id, grade.name)
+        for grade in by_hand
+        if grade.manual_score is not None
+    }
     released = {path.stem for path in course.bundle.glob("*.json")}
     asked = [name for name, x in whys.items() if x in released or not course.term.exists()]
     seed = int(Bundle.of(course, assignment).data["seed"])
     for student, grade in waiting:
-        if grade.name not in drawn(seed, student, asked):
+        mine = [name for name in asked if (student, name) in marked]
+        if grade.name not in drawn(seed, student, asked, mine):
             grade.auto_score, grade.needs_manual_grade = grade.max_score, False
     book.db.commit()

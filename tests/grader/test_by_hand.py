@@ -149,15 +149,19 @@ def test_page_export_and_report_have_formgraders_mark(written, capsys):
 
 
 def test_another_answer_is_looked_at_again(written, capsys):
-    """A mark stays when the student hands in again, and somebody has to look at the new words."""
+    """Neither page nor table has a mark until somebody has looked at the new words."""
     for name in (WHY, REPORT):
         give(written, "ada", name, 1.0)
     (said,) = graded(written, "ada", b'{"cells": [], "again": 1}', **{WHY: "No.", REPORT: ""})
     assert said == (
         f"ada: {WHY} was marked 1 by hand, and the answer is another one now; look at it again"
     )
-    assert row(written, capsys, "ada")["score"] == "13.0"
     assert f"ada ({WHY})" in verb(written, capsys, "feedback")[2]
+    assert row(written, capsys, "ada")["score"] == "", "it waits, as the page does"
+    code, _, err = verb(written, capsys, "export")
+    assert code == 1 and f"no mark: ada: changed after the mark by hand: {WHY}; look at it" in err
+    give(written, "ada", WHY, 1.0)
+    assert row(written, capsys, "ada")["score"] == "13.0"
 
 
 def test_a_cell_by_hand_can_be_added_and_goes_only_unmarked(course, monkeypatch):

@@ -116,7 +116,7 @@ def test_the_front_says_what_the_law_is_given():
 
 
 def test_what_cannot_be_asked_or_marked_is_a_sentence(course, solved, capsys):
-    """An unknown student, too few accepted answers, no result; a mark that is none or too early."""
+    """An unknown student, no result; a mark that is none or too early."""
     hand_in(course, NAME, "eve", solved)
     hand_in(course, NAME, "bob", solved)
     Results(course, NAME).keep(result_of(course, "bob", share=0.5, data=raw(solved)))
@@ -126,7 +126,6 @@ def test_what_cannot_be_asked_or_marked_is_a_sentence(course, solved, capsys):
         (["bbo"], "name of the student's folder; did you mean bob?"),
         (["ada-lovelce"], "name of the student's folder; did you mean Ada-Lovelace?"),
         (["eve"], "eve has 0; 01_paths: handed in and not graded"),
-        (["bob"], "3 accepted answers that a mistake can be put into are needed, and bob has 0"),
         (["bob", "--mark", "2,3"], "2,3 is not a mark; give 3 whole numbers from 0 to 3"),
         (["bob", "--mark", "2,3,4"], "2,3,4 is not a mark"),
         (["bob", "--mark", "2,3,x"], "2,3,x is not a mark"),
@@ -134,6 +133,22 @@ def test_what_cannot_be_asked_or_marked_is_a_sentence(course, solved, capsys):
     ]:
         assert says(course, "defence", *words) == 2
         assert sentence in capsys.readouterr().err
+
+
+def test_who_has_too_few_accepted_answers_gets_a_page_and_a_mark(course, solved, capsys):
+    """The page and the command say for how many questions the examiner chooses the work."""
+    hand_in(course, NAME, "bob", solved)
+    Results(course, NAME).keep(result_of(course, "bob", share=0.5, data=raw(solved)))
+    assert says(course, "defence", "bob") == 0
+    out = " ".join(capsys.readouterr().out.split())
+    assert "bob has 0 accepted answers that a mistake can be put into, and 3 are needed" in out
+    students, _, examiners = (
+        (course.build / "defence/bob.html").read_text().partition("For the examiner alone")
+    )
+    assert students.count("work of yours that the examiner chooses") == ASKED
+    assert examiners.count("no other accepted function") == ASKED and "Three functions" not in out
+    assert says(course, "defence", "bob", "--mark", "2,0,1") == 0
+    assert [mark.score for mark in marks_of(course, DEFENCE)] == [3.0]
 
 
 def test_the_guide_s_commands_give_the_mark(course, capsys):
@@ -149,3 +164,6 @@ def test_the_guide_s_commands_give_the_mark(course, capsys):
     assert [mark.score for mark in marks_of(course, DEFENCE)] == [6.0]
     give_mark(course, student, (3, 3, 3))
     assert [mark.score for mark in marks_of(course, DEFENCE)] == [9.0]
+    save_roster(course, Roster((Student("bob"),)))
+    (bob,) = marks_of(course, DEFENCE, "bob")
+    assert bob.remark == "no defence yet", "there is nothing to hand in"

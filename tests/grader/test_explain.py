@@ -65,6 +65,23 @@ def test_where_a_visible_case_decided_it_is_said(course, solved, capsys):
     assert f" of {points:g} points.</strong>" in page
 
 
+@pytest.mark.slow
+def test_an_answer_that_python_cannot_read_is_shown_with_the_error_at_its_line(
+    course, solved, capsys
+):
+    """The student's text stands in the terminal, on the page and in formgrader, once."""
+    broken = "def bang_bang(t, duration):\n    return (t / duration\n    print(t)\n"
+    hand_in(course, NAME, "ada", put(solved, "bang_bang", broken))
+    assert main(["grade", NAME, "--course", str(course.root)]) == 0
+    capsys.readouterr()
+    assert main(["explain", "ada", "bang_bang", "--course", str(course.root)]) == 0
+    said = capsys.readouterr().out
+    assert "    return (t / duration  <-- line 2: '(' was never closed\n    print(t)" in said
+    written = course.root / "autograded/ada" / NAME / f"{NAME}.ipynb"
+    texts = ["".join(cell["source"]) for cell in json.loads(written.read_text())["cells"]]
+    assert sum("return (t / duration" in text for text in texts) == 1
+
+
 def test_what_cannot_be_explained_is_a_sentence(course):
     """A question that is none, a student who handed in nothing."""
     with pytest.raises(UnknownName, match="band_bang"):

@@ -24,7 +24,8 @@ from labkit.course.own_arm import HANDLES, Arms
 from labkit.grader.gradescope import run as gradescope
 from labkit.grader.gradescope import setup_zip as gradescope_zip
 from labkit.grader.gradescope.run import gradescope_results
-from labkit.grader.grading.grade import OTHER_NOTEBOOK, grade
+from labkit.grader.grading.grade import grade
+from labkit.grader.grading.results import OTHER_NOTEBOOK
 from labkit.grader.sandbox.apart import alive
 from labkit.grader.sandbox.launch import Sandbox
 from labkit.grader.sandbox.limits import Limits

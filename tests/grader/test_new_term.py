@@ -296,6 +296,15 @@ def test_a_term_with_students_does_not_end_by_mistake(course, capsys):
     assert len(read_roster(course).students) == 2
 
 
+def test_a_release_that_nobody_used_is_said_to_be_one(course, capsys):
+    """The first term after `make release` archives hidden cases, and says that nobody is there."""
+    words = ["00_warmup", "--course", str(course.root)]
+    assert main(["release", *words]) == 0
+    assert main(["term", "new", *words]) == 0
+    said = capsys.readouterr().out
+    assert "archived: the last release, in which there were no students and no marks\n" in said
+
+
 def test_who_handed_in_is_not_called_a_student_of_the_roster(course, capsys):
     """Work that was kept apart is archived too, and makes no other number of students."""
     save_roster(course, Roster((Student("ada", "Ada"), Student("bob", "Bob"))))

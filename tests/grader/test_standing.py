@@ -5,13 +5,16 @@ from __future__ import annotations
 import csv
 import io
 import json
+import re
 import shutil
+from dataclasses import replace
 
 import pytest
 from made import NAME, graded, handed_in, notebook_of, result_of
 
 from labkit.__main__ import main
-from labkit.grader.grading.results import Results
+from labkit.grader.grading.batch import common_failures
+from labkit.grader.grading.results import OTHER_NOTEBOOK, Results
 from labkit.grader.marks.export import LAYOUTS
 from labkit.grader.nbgrader.gradebook import open_gradebook
 from labkit.grader.students.identity import remember
@@ -218,6 +221,19 @@ def test_a_rejected_submission_is_the_same_everywhere(marked, capsys):
     assert "the file is empty" in written
 
 
+def test_another_notebook_is_no_attempt_at_a_question(marked, capsys):
+    """The class report lists it as rejected, and nothing in it counts among the answers."""
+    note = f"{OTHER_NOTEBOOK}: only 2 of the 22 named cells are of {NAME}"
+    graded(marked, result_of(marked, "dan", share=0.0, notes=(note,), data=notebook_of("dan")))
+    report = verb(marked, capsys, "class-report", "--names")[1]
+    assert "4 handed in, 2 graded, 2 rejected" in report and f"- dan: {note}" in report
+    (row,) = re.findall(r"^\| circle \|(.*)", report, re.MULTILINE)
+    assert row.replace(" ", "").startswith("1|1|0|0|0|")
+    wrong = result_of(marked, "eve", share=0.0)
+    assert list(common_failures([wrong] * 5))
+    assert not list(common_failures([replace(wrong, notes=(note,))] * 5))
+
+
 def test_a_submission_that_vanished_keeps_its_mark(marked, capsys):
     """Page, report, gradebook and table have it still, and the table says that it vanished."""
     shutil.rmtree(marked.submitted / "ada")
@@ -255,7 +271,8 @@ def test_a_mark_by_hand_counts_and_a_question_without_one_is_missing(marked, cap
     with open_gradebook(marked) as book:
         grade = book.find_grade("essay", NAME, NAME, "ada")
         assert (grade.auto_score, grade.needs_manual_grade) == (None, True)
-        book.find_grade("essay", NAME, NAME, "bob").manual_score = 2.0
+        bob = book.find_grade("essay", NAME, NAME, "bob")
+        bob.manual_score, bob.needs_manual_grade = 2.0, False
         book.db.commit()
     code, out, err = verb(marked, capsys, "export")
     assert (code, table(out)["ada"]["score"], table(out)["bob"]["score"]) == (1, "", "15.0")

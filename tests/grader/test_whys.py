@@ -11,6 +11,7 @@ from made import NAME, WHY, notebook_of, result_of
 from labkit.__main__ import main
 from labkit.grader.grading.results import Results
 from labkit.grader.nbgrader.gradebook import open_gradebook, record
+from labkit.grader.nbgrader.unreleased import enter
 from labkit.grader.whys import DRAWN, drawn
 
 WHYS = [f"why_{k}" for k in range(8)]
@@ -44,6 +45,23 @@ def test_only_a_why_that_is_drawn_waits_for_a_person(course, capsys):
     assert main(["feedback", NAME, "--course", str(course.root)]) == 2
     said = capsys.readouterr().err
     assert f"dan ({WHY})" in said and "ada" not in said
+
+
+def test_a_why_that_is_marked_is_one_of_the_two(course):
+    """A list that is imported later gives a folder another name, and so other whys by lot."""
+    data = notebook_of("dan")  # by lot one of Dan's two is WHY
+    hand_in(course, NAME, "dan", data)
+    result = result_of(course, "dan", data=data)
+    Results(course, NAME).keep(result)
+    with open_gradebook(course) as book:
+        for name, why in [("00_warmup", "why_base_joint"), ("02_model", "why_farthest_off")]:
+            (grade,) = enter(course, book, name, "dan", {why: ""}, 2.0)
+            grade.manual_score, grade.needs_manual_grade = 1.5, False
+        book.db.commit()
+    record(course, NAME, [result])
+    with open_gradebook(course) as book:
+        grade = book.find_grade(WHY, NAME, NAME, "dan")
+        assert (grade.auto_score, grade.needs_manual_grade) == (2.0, False)
 
 
 def test_whys_of_notebooks_that_were_not_handed_out_are_not_drawn(course):

@@ -14,6 +14,7 @@ import click
 from ...course.authoring.layout import Course
 from ...course.cli import verb
 from ...errors import LabkitError
+from ..clean import how_many
 from ..each import Failure, Failures
 from .course import of_assignment, of_course
 from .pages import one_student, tell
@@ -110,11 +111,9 @@ def grade(course: Course, assignment: str, student: str | None, as_json: bool, *
 
 def _other_notebooks(results: Iterable[Result]) -> Iterator[Failure]:
     """Who handed in a notebook that does not belong here."""
-    from ..grading.grade import OTHER_NOTEBOOK
-
     for result in results:
-        for note in (x for x in result.notes if x.startswith(OTHER_NOTEBOOK)):
-            yield Failure(result.student, f"{note}; ask for the right one")
+        if result.unanswered and not result.rejected:
+            yield Failure(result.student, f"{result.unanswered}; ask for the right one")
 
 
 def _on_top(course: Course, assignment: str) -> Iterator[str]:
@@ -176,10 +175,11 @@ def _points(ctx: click.Context, option: click.Parameter, text: str | None) -> li
 def defence(course: Course, student: str, mark: list[int] | None) -> int:
     """Print the page of a student's oral examination.
 
-    It asks about three functions of theirs that were accepted, each with a mistake put into it.
+    It asks about three functions of theirs that were accepted, each with a mistake put into it, or
+    as many as there are; for the rest you choose work of theirs to ask about.
     The second side has the answers. Which functions and mistakes follows from the term's seed.
     """
-    from ..defence.draw import draw
+    from ..defence.draw import ASKED, draw
     from ..defence.mark import await_mark, give_mark
     from ..defence.page import write_page
     from ..seeds import public_warning, seed_of
@@ -191,7 +191,13 @@ def defence(course: Course, student: str, mark: list[int] | None) -> int:
     asked = draw(course, student)
     path = write_page(course, student, asked)
     await_mark(course, student, asked)
-    print(f"{', '.join(one.of.question.name for one in asked)}: {path}")
+    print(f"{', '.join(one.of.question.name for one in asked) or 'no function'}: {path}")
+    if len(asked) < ASKED:
+        print(
+            f"{student} has {how_many(len(asked), 'accepted answer')} that a mistake can be put "
+            f"into, and {ASKED} are needed; for the rest ask about work of theirs that you choose, "
+            f"and give {ASKED} numbers all the same: labkit defence {student} --mark A,B,C"
+        )
     if public_warning(seed_of(course)):
         print("drawn with the public seed, so anyone can know it; begin a term: labkit term new")
     return 0

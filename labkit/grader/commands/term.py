@@ -83,7 +83,8 @@ def term(
         there = running(course)
         record = new_term(course, seed, names)
         if record["archived"]:
-            print(f"archived: {there or 'files without students'}")
+            empty = "the last release, in which there were no students and no marks"
+            print(f"archived: {there or empty}")
             print(f"to return to it, type: labkit term return {record['archived']}")
         print(f"a new term begins, released: {', '.join(record['bundles'])}")
         print("its secret seed is in course_private/term.json; keep a copy")

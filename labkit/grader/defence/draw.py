@@ -100,10 +100,10 @@ class Asked:
 
 
 def draw(course: Course, student: str) -> tuple[Asked, ...]:
-    """The questions of a student's defence.
+    """The questions of a student's defence; fewer where fewer answers can be asked about.
 
     Raises:
-        LabkitError: Nobody has this name, or too few of the student's answers can be asked about.
+        LabkitError: Nobody has this name, or there are fewer because work has no result.
         NoIsolation: No sandbox can be made here.
     """
     answers, missing = accepted(course, student)
@@ -114,7 +114,7 @@ def draw(course: Course, student: str) -> tuple[Asked, ...]:
         return not one.drives, long, secret(f"defence/{one.assignment}/{one.question.name}")
 
     asked: tuple[Asked, ...] = ()
-    if len(answers) >= ASKED:
+    if answers:
         modules = {name: None for one in answers for name in imports(one.bundle.data["cells"])}
         limits = Limits().scaled(slowness())
 
@@ -123,11 +123,10 @@ def draw(course: Course, student: str) -> tuple[Asked, ...]:
             return tuple(islice(filter(None, found), ASKED))
 
         asked = in_sandbox(drawn, course, tuple(modules))
-    if len(asked) < ASKED:
-        why = "".join(f"; {sentence}" for sentence in missing)
+    if len(asked) < ASKED and missing:
         raise LabkitError(
             f"{ASKED} accepted answers that a mistake can be put into are needed, and {student} "
-            f"has {len(asked) if asked else len(answers)}{why}"
+            f"has {len(asked)}; {'; '.join(missing)}"
         )
     return asked
 

@@ -16,11 +16,15 @@ from .draw import ASKED, FULL, Asked
 
 LINES = tuple(f"question_{k + 1}" for k in range(ASKED))
 """What the gradebook calls the questions."""
+OWN_WORK = "Work of the student's own that you choose, as fewer functions were accepted."
+"""A question for which there is no accepted function."""
 
 
 def await_mark(course: Course, student: str, asked: Sequence[Asked]) -> None:
     """Let a defence wait for its mark, in formgrader too; a mark that was given stays."""
-    texts = dict.fromkeys(LINES, "") | {LINES[k]: _text(k, one) for k, one in enumerate(asked)}
+    texts = dict.fromkeys(LINES, OWN_WORK) | {
+        LINES[k]: _text(k, one) for k, one in enumerate(asked)
+    }
     with open_gradebook(course) as book:
         for grade in enter(course, book, DEFENCE, student, texts, FULL):
             grade.needs_manual_grade = grade.manual_score is None

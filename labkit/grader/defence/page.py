@@ -34,6 +34,7 @@ def write_page(course: Course, student: str, asked: Sequence[Asked]) -> Path:
         asked=asked,
         rubric=RUBRIC,
         full=FULL,
+        count=ASKED,
         command=f"labkit defence {shlex.quote(student)} --mark {','.join(['?'] * ASKED)}",
         error_over_time=error_over_time,
         rows=rows,
@@ -45,9 +46,9 @@ def write_page(course: Course, student: str, asked: Sequence[Asked]) -> Path:
 
 
 def _print_size(asked: Sequence[Asked]) -> str:
-    """The size of code in print with which all three functions fit one side of A4."""
+    """The size of code in print with which all functions fit one side of A4."""
     lines = sum(1 + len(line) // WIDTH for one in asked for line in one.edit.lines)
-    return f"@media print {{ .code {{ font-size: {min(8.0, ROOM / lines):.2f}pt }} }}"
+    return f"@media print {{ .code {{ font-size: {min(8.0, ROOM / max(1, lines)):.2f}pt }} }}"
 
 
 def rows(one: Asked) -> Iterator[tuple[str, str, str, str]]:

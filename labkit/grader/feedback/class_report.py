@@ -59,8 +59,8 @@ def report(
     counted = [mark for mark in marks if mark.result and (mark.lines or not mark.missing)]
     results = [mark.result for mark in counted if mark.result]
     who = {r.student: _as_text(called(r.student)) for r in results}
-    graded = [r for r in results if not r.rejected]
-    rejected = [r for r in results if r.rejected]
+    graded = [r for r in results if not r.unanswered]
+    rejected = [r for r in results if r.unanswered]
     times = sorted(((r.seconds.get("all", 0.0), who[r.student]) for r in graded), reverse=True)
     text = render(
         "class_report.md.j2",
@@ -68,7 +68,7 @@ def report(
         handed_in=len(marks),
         left_out=len(marks) - len(counted),
         open=sum(bool(mark.open) for mark in counted),
-        rejected=[f"{who[r.student]}: {_as_text(r.rejected)}" for r in rejected],
+        rejected=[f"{who[r.student]}: {_as_text(r.unanswered)}" for r in rejected],
         graded=len(graded),
         scores=sorted(
             float(m.score) for m in counted if m.raw is not None and m.result not in rejected

@@ -18,6 +18,7 @@ from ...course.messages import line as of_test
 from ...course.messages import summary, wrapped
 from ...course.own_arm import DEMO
 from ...course.serialize import question_data
+from ...course.source import parsed
 from ...course.verdict import Outcome
 from ...errors import LabkitError, UnknownName
 from ..atomic import write
@@ -120,11 +121,25 @@ def _by_the_grader(
         yield from map(wrapped, summary(now))
     if line.comment:
         yield f"\nComment: {line.comment}"
-    yield f"\nThe answer:\n{before.source or '(none)'}"
+    yield f"\nThe answer:\n{_where_it_breaks(before.source) or '(none)'}"
     file = course.build / "explain" / student / f"{question}.html"
     head = replace(mark, lines=lines, penalty=0.0, late="", raw=line.score, points=line.points)
     write(file, page(replace(again, notes=(*again.notes, _ALONE)), head))
     yield f"\nNumbers and runs, for you alone: {file}"
+
+
+def _where_it_breaks(source: str) -> str:
+    """An answer; if Python cannot read it, the error is beside its line."""
+    try:
+        parsed(source)
+    except SyntaxError as error:
+        lines, number = source.split("\n"), error.lineno or 1
+        if number <= len(lines):
+            lines[number - 1] += f"  <-- line {number}: {error.msg}"
+        return "\n".join(lines)
+    except (ValueError, RecursionError, MemoryError):
+        pass
+    return source
 
 
 def _head(mark: Mark, line: MarkLine) -> str:

@@ -219,7 +219,7 @@ def common_failures(results: Sequence[Result]) -> Iterator[str]:
     Yields:
         One sentence for each such question, on the test that most students fail.
     """
-    graded = [r for r in results if not r.rejected]
+    graded = [r for r in results if not r.unanswered]
     failed: Counter[tuple[str, str]] = Counter()
     tried: Counter[str] = Counter()
     for result in graded:

@@ -29,7 +29,16 @@ from ..sandbox.session import RemoteFunction, Session
 from ..submission import digest
 from . import public_evidence
 from .plan import Plan, plan
-from .results import Answer, FailedCell, Hashes, OwnCell, Result, engine, versions
+from .results import (
+    OTHER_NOTEBOOK,
+    Answer,
+    FailedCell,
+    Hashes,
+    OwnCell,
+    Result,
+    engine,
+    versions,
+)
 
 ADDED = (
     "this question came after the notebook was handed in, which does not have it; it counts 0 "
@@ -40,8 +49,6 @@ PUBLIC_ARM = (
     'HANDLE is "demo": what was measured on this public arm is not true of the arm that the course '
     "gave this student"
 )
-
-OTHER_NOTEBOOK = "this looks like the notebook of another assignment"
 
 _THEIRS = {
     "tricks": ("tricks",),

@@ -25,6 +25,7 @@ class Plan:
     Attributes:
         steps: The cells.
         places: For each question, the number of the cell that answers it.
+        unread: For each question without one, the texts of its own cells.
         notes: What was unusual, by question; under "" what concerns the whole notebook.
         own: The student's own cells: the released cell ``after`` which each stands, its ``type``
             and ``source``.
@@ -35,6 +36,7 @@ class Plan:
 
     steps: tuple[Step, ...]
     places: Mapping[str, int]
+    unread: Mapping[str, str] = field(default_factory=dict)
     notes: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
     own: tuple[Mapping[str, str], ...] = ()
     written: Mapping[str, str] = field(default_factory=dict)
@@ -42,9 +44,9 @@ class Plan:
     tricks: tuple[str, ...] = ()
 
     def source(self, question: str) -> str:
-        """The text of the cell that answers a question; empty if there is none."""
-        place = self.places.get(question)
-        return next((step.source for step in self.steps if step.number == place), "")
+        """The text of the cell that answers a question, or is to; empty if there is none."""
+        place, unread = self.places.get(question), self.unread.get(question, "")
+        return next((step.source for step in self.steps if step.number == place), unread)
 
 
 def plan(cells: Sequence[Cell], manifest: Sequence[Cell]) -> Plan:
@@ -60,6 +62,7 @@ def plan(cells: Sequence[Cell], manifest: Sequence[Cell]) -> Plan:
     notes: dict[str, list[str]] = {}
     places: dict[str, int] = {}
     spare: set[int] = set()
+    unread: dict[str, set[int]] = {}
     code = {k: cell for k, cell in enumerate(cells) if cell["type"] == "code"}
     own = {k: cell for k, cell in code.items() if _same(cell["source"]) not in released}
     for m in manifest:
@@ -69,11 +72,14 @@ def plan(cells: Sequence[Cell], manifest: Sequence[Cell]) -> Plan:
             spare |= others
             if place is not None:
                 places[m["grade_id"]] = place
+            else:
+                unread[m["grade_id"]] = _at_home(own, m)
     in_order = [places[m["grade_id"]] for m in manifest if m.get("grade_id") in places]
     if in_order != sorted(in_order):
         notes.setdefault("", []).append("the cells are in another order than in the release")
     needed = _needed(code, places.values())
     by_hand = {m["grade_id"]: _at(cells, m) for m in manifest if "points" in m}
+    known = (*by_hand.values(), *unread.values())
     steps = [Step(k - len(setup), source) for k, source in enumerate(setup)]
     looks: list[Cell] = [look(source) for source in setup]
     for k, cell in code.items():
@@ -85,7 +91,8 @@ def plan(cells: Sequence[Cell], manifest: Sequence[Cell]) -> Plan:
         tuple(steps),
         places,
         notes={name: tuple(said) for name, said in notes.items() if said},
-        own=tuple(_own(cells, manifest, {*places.values(), *chain(*by_hand.values())})),
+        unread={name: _together(cells, sorted(found)) for name, found in unread.items()},
+        own=tuple(_own(cells, manifest, {*places.values(), *chain(*known)})),
         written={name: _together(cells, found) for name, found in by_hand.items() if found},
         looks=tuple(looks),
         tricks=tuple(f"cell {k + 1} {what}" for k, cell in own.items() for what in cell["tricks"]),
@@ -134,8 +141,7 @@ def _answer(
 ) -> tuple[int | None, set[int]]:
     """The cell that answers a question, and empty stubs that must not take its place."""
     name = m["grade_id"]
-    at_home = {k for k, cell in own.items() if cell["grade_id"] == name}
-    at_home |= {k for k, cell in own.items() if not cell["grade_id"] and cell["id"] == m["id"]}
+    at_home = _at_home(own, m)
     defines = {k for k, cell in own.items() if name in cell["functions"]}
     binds = {k for k, cell in own.items() if name in cell["binds"]}
     stubs = {k for k in defines if name in own[k]["stubs"]}
@@ -163,6 +169,12 @@ def _answer(
     ]
     notes.append(f"{name}: {why[0] if why else 'no cell defines it'}")
     return None, set()
+
+
+def _at_home(own: Mapping[int, Cell], m: Mapping[str, Any]) -> set[int]:
+    """Where the cell of a question is, by its name or its id."""
+    named = {k for k, cell in own.items() if cell["grade_id"] == m["grade_id"]}
+    return named | {k for k, cell in own.items() if not cell["grade_id"] and cell["id"] == m["id"]}
 
 
 def _needed(code: Mapping[int, Cell], places: Iterable[int]) -> set[int]:

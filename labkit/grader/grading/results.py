@@ -26,6 +26,7 @@ from ..atomic import write
 from ..clean import clean_data, clean_line
 
 _LABKIT = Path(labkit.__file__).parent
+OTHER_NOTEBOOK = "this looks like the notebook of another assignment"
 _OF_A_WORKER = ("grading", "sandbox", "atomic.py", "clean.py", "each.py", "submission.py")
 """Parts of the grader that a worker loads."""
 
@@ -189,6 +190,12 @@ class Result:
     def __str__(self) -> str:
         came = f"{self.score:g} of {self.points:g}"
         return f"{self.student}: {f'rejected; {self.rejected}' if self.rejected else came}"
+
+    @property
+    def unanswered(self) -> str:
+        """Why nothing in it is an attempt at a question, in a sentence; "" if something may be."""
+        other = (note for note in self.notes if note.startswith(OTHER_NOTEBOOK))
+        return self.rejected or next(other, "")
 
     @property
     def verdict(self) -> dict[str, Any]:

@@ -12,7 +12,7 @@ from dataclasses import replace
 from typing import Any
 
 from ...course.authoring.bundle import Bundle
-from ...course.authoring.layout import Course
+from ...course.authoring.layout import DEFENCE, Course
 from ...course.notebook import question_of
 from ..clean import clean_line, clean_text, how_many
 from ..each import Failure
@@ -76,7 +76,8 @@ def _own_marks(course: Course, assignment: str, only: str | None) -> Iterator[Ma
             submission, one = there.get(student), stand.get(student)
             person = roster.get(student) or Student(student)
             row = Mark(person, student in listed, points=full, user=by_platform.get(student))
-            row = replace(row, remark="nothing was handed in")
+            nothing = "no defence yet" if assignment == DEFENCE else "nothing was handed in"
+            row = replace(row, remark=nothing)
             if submission is not None or one is not None:
                 row = _marked(replace(row, remark=""), submission, one, assignment)
             if isinstance(one, Result) and one.rejected and not row.missing:
@@ -130,11 +131,12 @@ def _marked(row: Mark, submission: Any, one: Result | Failure | None, assignment
     if missing:
         return replace(row, missing=missing)
     row = replace(row, lines=lines, late=_span(submission.total_seconds_late))
-    none = [line.name for line in lines if line.score is None]
-    if none:
-        return replace(
-            row, missing=f"no mark for {', '.join(none)}; give it by hand, in formgrader"
-        )
+    if none := [line.name for line in lines if line.score is None]:
+        why = f"no mark for {', '.join(none)}; give it by hand, in formgrader"
+        return replace(row, missing=why)
+    if row.open:
+        why = f"changed after the mark by hand: {', '.join(row.open)}; look at it in formgrader"
+        return replace(row, missing=why)
     penalty = float(submission.late_submission_penalty or 0.0)
     return replace(row, raw=float(submission.score), penalty=penalty)
 

@@ -24,7 +24,7 @@ from .identity import all_lms_users, alone, places
 from .list_remarks import about_namesakes, about_teams
 from .platforms import LmsUser
 from .roster import FILE, Roster, read_roster, same_name, save_roster, tell_gradebook
-from .settle import settle
+from .settle import settle, strangers
 from .worksheet import keep_numbers, keep_times
 
 _Mark = tuple[str, object]
@@ -100,8 +100,8 @@ def import_list(
         assignment: Where the file is Moodle's grading worksheet of this assignment.
 
     Returns:
-        What was done; and what a person should look at: work of one student that is in two folders,
-        and hand-in times that are not set.  A sentence each.
+        What was done; and what a person should look at: work of one student that was in two
+        folders, and hand-in times that are not set.  A sentence each.
 
     Raises:
         LabkitError: The list does not fit the roster or itself, or it is not a list.
@@ -135,6 +135,12 @@ def import_list(
     if absent:
         still = f"{len(absent)} ({some(absent)})"
         summary.append(f"not in this list, and still in the roster: {still}")
+    if others := strangers(course, done.roster):
+        summary.append(
+            f"work of nobody in the roster: {some(others)}; import a list that has them. If one is "
+            "a student's second folder, copy what should count to "
+            "submitted/STUDENT/ASSIGNMENT/ASSIGNMENT.ipynb, and move the folder away"
+        )
     if len(entries) < len(rows):
         summary.append(
             "not taken: Test Student, whom Canvas makes for a teacher's view as a student"

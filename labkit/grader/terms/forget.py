@@ -23,7 +23,8 @@ from ..rules import rules_in
 from ..students.identity import FILE as LMS
 from ..students.identity import all_lms_users, alone, save_lms_users
 from ..students.roster import FILE as ROSTER
-from ..students.roster import Roster, read_roster, save_roster
+from ..students.roster import Roster, read_roster, same_name, save_roster
+from ..students.settle import strangers
 from ..submission import is_name, meant
 from .older import relocate
 from .term import archives
@@ -94,6 +95,13 @@ def left_by_hand(course: Course, student: str) -> Iterator[str]:
             if granted:
                 name = file.relative_to(course.root)
                 yield f"{name} names an extension of theirs; delete it there"
+    for term in _terms(course):
+        if alike := _perhaps_theirs(term, student):
+            where = term.submitted.relative_to(course.root)
+            yield (
+                f"in {where}, perhaps theirs too: {', '.join(alike)}; look, and for each that is "
+                "theirs type: labkit term forget --student FOLDER"
+            )
     sheets = [str(path.relative_to(course.root)) for path in _read_by_others(course, student)]
     if sheets:
         yield f"the sheets of their readers still hold their report: {', '.join(sheets)}"
@@ -110,6 +118,15 @@ def unknown(course: Course, student: str) -> LabkitError:
     known |= {one.id: str(one) for one in read_roster(course).students}
     near = meant(student, known.values())
     return LabkitError(f"no student {student!r} in this term or an earlier one{near}")
+
+
+def _perhaps_theirs(term: Course, student: str) -> list[str]:
+    """Other folders of a term: of nobody in the roster, or of somebody who is called alike."""
+    roster, users = read_roster(term), all_lms_users(term).values()
+    known = [(folder, same_name(one.name)) for each in users for folder, one in each.items()]
+    names = {name for folder, name in known if folder == student and name}
+    alike = {folder for folder, name in known if name in names and folder not in roster}
+    return sorted((alike | set(strangers(term, roster) if roster.students else ())) - {student})
 
 
 def _read_by_others(course: Course, student: str) -> Iterator[Path]:
