@@ -145,7 +145,7 @@ def test_nothing_becomes_a_formula():
 
 
 def test_grade_says_first_and_never_lowers_unasked(course, monkeypatch):
-    """What --diff graded aside is not graded again; marks fall only with --lower."""
+    """What --diff graded aside is not graded again; only with --lower does a share fall."""
     make_class(course, NAME, seed=4, count=5)
     who = students(course, NAME)
     how = GradeOptions(jobs=2, limits=QUICK)
@@ -167,7 +167,10 @@ def test_grade_says_first_and_never_lowers_unasked(course, monkeypatch):
     )  # no more work
     again = list(grade_class(course, NAME, who, how))
     kept = {one.result.student for one in again if one.says.startswith("kept")}
-    assert kept == {m.after.student for m in moved if m.by < 0} and len(again) == len(moved)
+    shares = {m.after.student: (m.before.score / m.before.points, m.after.score / m.after.points)
+              for m in moved}  # fmt: skip
+    assert kept == {who for who, (was, now) in shares.items() if now < was}
+    assert kept < {m.after.student for m in moved if m.by < 0} and len(again) == len(moved)
     assert len(list(grade_class(course, NAME, who, replace(how, lower=True)))) == len(moved)
     assert {r.score for r in Results(course, NAME)} == {m.after.score for m in moved}
     assert list((Results(course, NAME).folder / "old").iterdir())

@@ -204,11 +204,16 @@ def _kept(
 
 
 def _keep(results: Results, result: Result, lower: bool) -> GradedSubmission:
-    """Store a result, unless it would lower the mark of an unchanged submission unasked."""
+    """Store a result, unless it would lower the mark of an unchanged submission unasked.
+
+    Marks are compared as shares of full marks, which a release can change.
+    """
     before = results.get(result.student)
-    same = before is not None and before.hashes["submission"] == result.hashes["submission"]
-    if before is not None and same and result.score < before.score and not lower:
-        return GradedSubmission(before, f"kept; --lower lets it fall to {result.score:g}")
+    if before is not None and not lower:
+        same = before.hashes["submission"] == result.hashes["submission"]
+        if same and result.score * before.points < before.score * result.points:
+            now = f"{result.score:g} of {result.points:g}"
+            return GradedSubmission(before, f"kept; --lower lets it fall to {now}")
     results.keep(result)
     return GradedSubmission(result, "" if before is None else f"was {before.score:g}")
 
