@@ -69,7 +69,7 @@ def _means(rows: list[dict[str, Any]]) -> dict[tuple[str, ...], float]:
     cells: dict[tuple[str, ...], list[float]] = {}
     for row in rows:
         for name in ("late_rms_mm", "late_max_mm"):
-            cell = (row["plant"], row["task"], row["way"], name)
+            cell = (row["plant"], row["task"], row["controller"], name)
             cells.setdefault(cell, []).append(np.nan if row["failed"] else row[name])
     return {cell: float(np.mean(x)) for cell, x in cells.items()}
 

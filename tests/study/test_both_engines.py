@@ -11,7 +11,13 @@ def found():
     """A campaign of one claim and one run."""
     seeds = {"of": "line", "mean": 1.0, "half_width": 0.2, "units": 5, "outcome": "held"}
     tasks = {"of": "tasks", "mean": 1.0, "half_width": 5.0, "units": 3, "outcome": "undecided"}
-    row = {"plant": "baxter", "task": "line", "way": "joint torque", "seed": 0, "failed": None}
+    row = {
+        "plant": "baxter",
+        "task": "line",
+        "controller": "joint torque",
+        "seed": 0,
+        "failed": None,
+    }
     return {
         "verdicts": [{"claim": "a beats b", "unit": "mm", "overall": tasks, "tasks": [seeds]}],
         "rows": [row | {"late_rms_mm": 4.0, "late_max_mm": 9.0}],
