@@ -7,19 +7,22 @@ said before anything is written: the file, the question, and what to do.
 
 from __future__ import annotations
 
+import ast
 import re
 import shutil
 import traceback
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Any
 
 import nbformat
 
 from ...course.authoring.layout import Course
+from ...course.authoring.outcomes import OUTCOMES
 from ...course.authoring.problem import Problem
 from ...course.authoring.release import Prepared, prepare, write
-from ...course.notebook import BLANK, about, by_hand, grade_id, manifest
+from ...course.notebook import BLANK, about, by_hand, grade_id, kind, manifest
 from ...course.source import look
 from ...errors import LabkitError
 from ..nbgrader.gradebook import migrate
@@ -134,12 +137,14 @@ def prepared(course: Course, name: str, seed: int) -> Prepared:
     path = course.notebook_source(name)
     try:
         _check_types(path, course.problems(name))
+        _check_outcomes(path.with_name("problems.py"), course.problems(name))
+        _check_outcomes(path.with_name("predictions.py"), course.predictions(name))
         made = prepare(course, name, seed)
     except (LabkitError, MemoryError):
         raise
     except Exception as error:
         raise LabkitError(_where(course, error)) from error
-    if reasons := [*_unreadable(made), *_sums(made)]:
+    if reasons := [*_unreadable(made), *_not_importable(made), *_sums(made)]:
         raise LabkitError("\n".join([f"{path.name}:", *reasons]))
     return made
 
@@ -157,6 +162,17 @@ def _check_types(path: Path, problems: object) -> None:
             or not 0 <= points <= 1000
         ):
             raise LabkitError(f"{file}: {problem.name} has points={points!r}; give it 0 or more")
+
+
+def _check_outcomes(file: Path, asked: Iterable[Any]) -> None:
+    """Raise a LabkitError unless a question's outcomes are names of `OUTCOMES`."""
+    for one in asked:
+        for outcome in getattr(one, "outcomes", ()):
+            if outcome not in OUTCOMES:
+                raise LabkitError(
+                    f"{file}: {one.name} has the outcome {outcome!r}; "
+                    f"write a tuple of names out of {', '.join(OUTCOMES)}"
+                )
 
 
 def _where(course: Course, error: Exception) -> str:
@@ -182,6 +198,20 @@ def _unreadable(made: Prepared) -> Iterator[str]:
         if broken:
             what = f"the stub of {grade_id(cell)}" if grade_id(cell) else f"cell {number}"
             yield f"{what} is not Python: {broken}"
+
+
+def _not_importable(made: Prepared) -> Iterator[str]:
+    """Imports in the stubs, solutions included, that find nothing."""
+    for cell in made.source.cells:
+        if kind(cell) != "answer" or look(cell.source)["broken"]:
+            continue
+        for node in ast.walk(ast.parse(cell.source)):
+            if isinstance(node, ast.Import | ast.ImportFrom):
+                try:
+                    exec(ast.unparse(node), {})
+                except ImportError as error:
+                    says = ast.unparse(node)
+                    yield f"the stub of {grade_id(cell)} says `{says}`: {error}; correct it"
 
 
 def _sums(made: Prepared) -> Iterator[str]:
