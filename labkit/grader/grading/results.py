@@ -12,7 +12,7 @@ from dataclasses import dataclass, field, fields
 from functools import cache
 from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
-from typing import Any, TypedDict
+from typing import TypedDict
 
 import labkit
 
@@ -189,15 +189,6 @@ class Result:
     def __str__(self) -> str:
         came = f"{self.score:g} of {self.points:g}"
         return f"{self.student}: {f'rejected; {self.rejected}' if self.rejected else came}"
-
-    @property
-    def verdict(self) -> dict[str, Any]:
-        """Everything that must come out the same wherever it is graded."""
-        data: dict[str, Any] = record_data(self)
-        del data["seconds"], data["isolation"]
-        for cell in data["cells"]:
-            del cell["seconds"]
-        return data
 
 
 class Results:
