@@ -107,7 +107,7 @@ def cup_run(make: Callable[[Model], Controller], seed: int, workspace: bool = Fa
     given = _sampled_and_delayed(wanted, tour.duration)
     with Arm("left", plant, seed, q0=ready, world=World(things=[push])) as arm:
         try:
-            log = run(arm, given, make(model), duration=wanted.duration)
+            log = run(arm, given, make(model), 200.0, wanted.duration)
         except Diverged as error:
             return CupRun(seed, np.inf, cast(Log, error.log))
     tips = np.array([model.pose(q)[:3, 3] for q in log.q])

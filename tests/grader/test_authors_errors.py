@@ -88,9 +88,11 @@ def test_an_outcome_that_there_is_not_is_refused(monkeypatch, outcomes):
 
 def test_the_outcome_of_a_measurement_is_checked_too(monkeypatch):
     """Where the predictions are written."""
-    asked = SimpleNamespace(name="friction", outcomes=("experment",))
+    asked = SimpleNamespace(name="friction", outcomes=("experiments",))
     monkeypatch.setattr(Course, "predictions", lambda self, name: (asked,))
-    with pytest.raises(LabkitError, match=r"predictions\.py: friction has the outcome 'experment'"):
+    with pytest.raises(
+        LabkitError, match=r"predictions\.py: friction has the outcome 'experi"
+    ):
         released(monkeypatch, (problem(),))
 
 

@@ -11,15 +11,14 @@ import ast
 import re
 import shutil
 import traceback
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
 
 import nbformat
 
 from ...course.authoring.layout import Course
-from ...course.authoring.outcomes import OUTCOMES
+from ...course.authoring.outcomes import check_outcomes
 from ...course.authoring.problem import Problem
 from ...course.authoring.release import Prepared, prepare, write
 from ...course.notebook import BLANK, about, by_hand, grade_id, kind, manifest
@@ -137,8 +136,11 @@ def prepared(course: Course, name: str, seed: int) -> Prepared:
     path = course.notebook_source(name)
     try:
         _check_types(path, course.problems(name))
-        _check_outcomes(path.with_name("problems.py"), course.problems(name))
-        _check_outcomes(path.with_name("predictions.py"), course.predictions(name))
+        for problem in course.problems(name):
+            check_outcomes(path.with_name("problems.py"), problem.name, problem.outcomes)
+        for asked in course.predictions(name):
+            outcomes = getattr(asked, "outcomes", ())  # a prediction has none
+            check_outcomes(path.with_name("predictions.py"), asked.name, outcomes)
         made = prepare(course, name, seed)
     except (LabkitError, MemoryError):
         raise
@@ -162,17 +164,6 @@ def _check_types(path: Path, problems: object) -> None:
             or not 0 <= points <= 1000
         ):
             raise LabkitError(f"{file}: {problem.name} has points={points!r}; give it 0 or more")
-
-
-def _check_outcomes(file: Path, asked: Iterable[Any]) -> None:
-    """Raise a LabkitError unless a question's outcomes are names of `OUTCOMES`."""
-    for one in asked:
-        for outcome in getattr(one, "outcomes", ()):
-            if outcome not in OUTCOMES:
-                raise LabkitError(
-                    f"{file}: {one.name} has the outcome {outcome!r}; "
-                    f"write a tuple of names out of {', '.join(OUTCOMES)}"
-                )
 
 
 def _where(course: Course, error: Exception) -> str:
