@@ -90,9 +90,7 @@ def test_the_outcome_of_a_measurement_is_checked_too(monkeypatch):
     """Where the predictions are written."""
     asked = SimpleNamespace(name="friction", outcomes=("experiments",))
     monkeypatch.setattr(Course, "predictions", lambda self, name: (asked,))
-    with pytest.raises(
-        LabkitError, match=r"predictions\.py: friction has the outcome 'experi"
-    ):
+    with pytest.raises(LabkitError, match=r"predictions\.py: friction has the outcome 'experi"):
         released(monkeypatch, (problem(),))
 
 
