@@ -72,6 +72,8 @@ def _differ(rows: list[dict[str, Any]]) -> list[dict[str, Any]]:
     from solutions.study.campaign import numbers
 
     names = ("controller", "task", "plant", "seed")
+    if not all(row.keys() >= set(names) for row in rows):  # an older campaign named them otherwise
+        return rows
     again = work_through(numbers, [{x: row[x] for x in names} for row in rows], jobs=JOBS)
     return [row for row, new in zip(rows, again, strict=True) if not _same(row, new)]
 

@@ -27,7 +27,7 @@ LATE = 1.0
 """When the counting of errors begins, in [s]; until then every method still approaches the path."""
 
 
-def all_ways(task: str) -> HTML:
+def all_methods(task: str) -> HTML:
     """The errors of every method in one drawing."""
     _, ax = plt.subplots(figsize=(6.2, 3.8))
     for k, controller in enumerate(SHOWN):

@@ -11,7 +11,7 @@ from solutions.study.campaign import TASKS
 ROOT = Path(__file__).parents[2]
 
 
-def test_the_scales_of_a_page_hold_every_way():
+def test_the_scales_of_a_page_hold_every_method():
     for controller in gallery.SHOWN:
         for (_, values, _), (low, high) in zip(
             gallery._panels(controller, "line"), gallery._limits("line"), strict=True
@@ -21,7 +21,7 @@ def test_the_scales_of_a_page_hold_every_way():
 
 
 @pytest.mark.slow
-def test_every_run_leads_to_the_same_way_on_the_other_tasks_and_to_all_ways(book):
+def test_every_run_leads_to_the_same_method_on_the_other_tasks_and_to_all(book):
     for task in TASKS:
         page = BeautifulSoup((book / f"gallery/{task}.html").read_text(), "html.parser")
         for controller in gallery.SHOWN:
