@@ -76,7 +76,7 @@ vendor: .venv/.dev ## make the book's browser files again (node 20)
 campaign: .venv/.course ## the compared controllers on every task: build/campaign.json
 	@$(BIN)/python -m solutions.study
 
-campaign-engines: .venv/.course ## the campaign on both engines, and where they differ
+campaign-engines: .venv/.course ## the campaign on every engine, and where they differ
 	@$(BIN)/python -m solutions.study.both_engines
 
 record: .venv/.course ## make all recorded data again, and say which verdicts changed

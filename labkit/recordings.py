@@ -42,7 +42,7 @@ def campaign() -> Any:
     """Every controller on every task over five seeds, one row for each run.
 
     Returns:
-        Dicts with the run's "way", "task", "plant" and "seed", and its errors.
+        Dicts with the run's "controller", "task", "plant" and "seed", and its errors.
     """
     return json.loads((DATA / "campaign.json").read_text())
 

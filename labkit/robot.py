@@ -21,7 +21,7 @@ SIDES = ("left", "right")
 """Names of Baxter's arms, which no other robot may have."""
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, repr=False)
 class Robot:
     """An arm of n joints that turn, one after another, on a base that stands still.
 
@@ -51,6 +51,9 @@ class Robot:
         for name in ("T_hand_tip", "ready", "neutral", "T_hand_camera"):
             if getattr(self, name) is not None:
                 object.__setattr__(self, name, locked(np.array(getattr(self, name))))
+
+    def __repr__(self) -> str:
+        return f"<Robot {self.name!r} with {self.n} joints>"
 
     @classmethod
     def from_urdf(cls, file: Any, *, tip: str, ready: Any, name: str | None = None) -> Robot:

@@ -8,8 +8,8 @@ from typing import Any
 import numpy as np
 
 from .arm import Arm
+from .arm_adapters import Real, RealArm, Simulated
 from .control import COMMANDS, Command, State
-from .driven import Real, RealArm, Simulated
 from .errors import (
     ArmLost,
     Closed,

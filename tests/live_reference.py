@@ -35,7 +35,7 @@ def candidate(plant, controller):
     """A controller of `solutions` with the gains of its plant."""
     if controller == "baxtersOwn":
         return gains.Candidate(PositionServer(), RATE, True)
-    return gains.five(lk.Model("left", plant), plant)[LAWS[controller]]
+    return gains.course_controllers(lk.Model("left", plant), plant)[LAWS[controller]]
 
 
 def python_run(plant, controller, task, duration, things=(), start=None, change=None):

@@ -53,7 +53,7 @@ def target(model, kind):
     return lk.Trajectory(lk.PosePath(path, R_wt), lk.Quintic(1.5))
 
 
-def five(model):
+def laws(model):
     """The five controllers of the course: each with how often it is asked, and for joint angles."""
     m = model.mass_matrix(model.robot.ready).diagonal()
     return {
@@ -65,7 +65,7 @@ def five(model):
     }
 
 
-LAWS = tuple(five(lk.Model()))
+LAWS = tuple(laws(lk.Model()))
 
 
 def test_each_link_is_where_pinocchio_puts_it_and_weighs_what_it_says(robot, model, motions):
@@ -111,7 +111,7 @@ def test_the_jacobian_is_the_slope_of_the_tip(model, motions):
 @pytest.mark.parametrize("kind", ["line", "circle"])
 @pytest.mark.parametrize("law", LAWS)
 def test_all_five_controllers_follow_line_and_circle(robot, model, engine, kind, law):
-    controller, rate, joints = five(model)[law]
+    controller, rate, joints = laws(model)[law]
     way = target(model, kind)
     if joints:
         way = model.joint_trajectory(way, robot.ready)

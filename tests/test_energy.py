@@ -5,7 +5,7 @@ import pytest
 from energy import energy_balance, lyapunov
 
 import labkit as lk
-from solutions.study.gains import known
+from solutions.study.gains import all_controllers
 from solutions.study.joint_torque import AugmentedPD, ComputedTorque
 
 MODEL = lk.Model()
@@ -17,7 +17,7 @@ TIP = MODEL.pose(READY)[:3, 3]
 def test_energy_balances_along_a_tracked_line(name):
     """Work and change of energy agree within 0.1 % of all that passed through the motors."""
     line = lk.Trajectory(lk.Line(TIP, TIP + np.array([0.1, 0.15, 0.1])), lk.Quintic(3.0))
-    tuned = known(MODEL)[name]
+    tuned = all_controllers(MODEL)[name]
     with lk.Arm(q0=READY) as arm:
         log = lk.run(arm, MODEL.joint_trajectory(line, READY), tuned.controller, rate=1000)
     balance = energy_balance(log)

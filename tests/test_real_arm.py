@@ -16,7 +16,7 @@ from arms import arm as other_arm
 from numpy.testing import assert_allclose
 
 import labkit as lk
-from labkit.driven import SILENCE, RealArm, WallClock
+from labkit.arm_adapters import SILENCE, RealArm, WallClock
 from labkit.errors import ArmLost, ControllerError, TypeMismatch
 
 SERVER = """

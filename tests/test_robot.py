@@ -185,3 +185,8 @@ def test_the_data_cannot_be_changed_by_accident(side):
         r.effort[0] = 1e9
     with pytest.raises(dataclasses.FrozenInstanceError):
         r.effort = np.ones(7)
+
+
+def test_a_robot_prints_itself_in_a_line(side):
+    """Its name and how many joints it has; no screenful of bodies."""
+    assert repr(lk.robot(side)) == str(lk.robot(side)) == f"<Robot '{side}' with 7 joints>"

@@ -55,21 +55,25 @@ def _kept_or_made(progress: Callable[[str], None]) -> dict[str, Any]:
 
 
 def _sample(rows: list[dict[str, Any]]) -> Iterator[dict[str, Any]]:
-    """Of each way one run on a path, and one run on the tag, on Baxter's arm."""
-    from solutions.study.campaign import TASKS, WAYS
+    """Of each controller one run on a path, and one run on the tag, on Baxter's arm."""
+    from solutions.study.campaign import CONTROLLERS, TASKS
 
     paths = [task for task in TASKS if task != "tag"]
     seeds = len({row["seed"] for row in rows})
-    for k, way in enumerate(WAYS):
-        yield from pick(rows, way=way, task=paths[k % len(paths)], plant="baxter", seed=k % seeds)
-    yield from pick(rows, way=WAYS[0], task="tag", plant="baxter", seed=0)
+    for k, controller in enumerate(CONTROLLERS):
+        yield from pick(
+            rows, controller=controller, task=paths[k % len(paths)], plant="baxter", seed=k % seeds
+        )
+    yield from pick(rows, controller=CONTROLLERS[0], task="tag", plant="baxter", seed=0)
 
 
 def _differ(rows: list[dict[str, Any]]) -> list[dict[str, Any]]:
     """The rows that this code does not give again."""
     from solutions.study.campaign import numbers
 
-    names = ("way", "task", "plant", "seed")
+    names = ("controller", "task", "plant", "seed")
+    if not all(row.keys() >= set(names) for row in rows):  # an older campaign named them otherwise
+        return rows
     again = work_through(numbers, [{x: row[x] for x in names} for row in rows], jobs=JOBS)
     return [row for row, new in zip(rows, again, strict=True) if not _same(row, new)]
 

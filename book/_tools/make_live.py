@@ -89,7 +89,7 @@ def plant_data(plant: lk.Plant, n: int) -> dict[str, Any]:
 def controllers(plant: lk.Plant) -> dict[str, Any]:
     """The five controllers as they are compared on a plant, and Baxter's own way."""
     found = {}
-    for name, candidate in gains.five(lk.Model("left", plant), plant).items():
+    for name, candidate in gains.course_controllers(lk.Model("left", plant), plant).items():
         law = candidate.controller
         kept = {k: plain(v) for k, v in vars(law).items() if k not in ("model", "watch")}
         if watch := getattr(law, "watch", None):

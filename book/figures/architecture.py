@@ -22,7 +22,7 @@ LAYERS = (
     ("The arm", ("sensors", "springs", "motors", "arm")),
     (
         "The loop, and what it did",
-        ("log", "driven", "run", "metrics", "recordings", "loop"),
+        ("log", "arm_adapters", "run", "metrics", "recordings", "stability"),
     ),
     ("What sees, draws and shows", ("tags", "plotting", "replay")),
     ("What judges", ("course",)),

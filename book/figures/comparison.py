@@ -16,7 +16,7 @@ from myst_nb import glue
 import labkit as lk
 from labkit.shapes import Array
 from solutions.study import both_engines, campaign, tasks
-from solutions.study.campaign import BASELINE, FEED_FORWARD, FIVE, TABLES, WAYS
+from solutions.study.campaign import BASELINE, CONTROLLERS, FEED_FORWARD, FIVE, TABLES
 from solutions.study.claims import IMPEDANCE, THREE, interval
 from solutions.study.grid import pick
 
@@ -38,15 +38,15 @@ def found() -> dict[str, Any]:
     return told
 
 
-def _mean(way: str, task: str, plant: str, name: str) -> float:
-    rows = pick(found()["rows"], way=way, task=task, plant=plant)
+def _mean(controller: str, task: str, plant: str, name: str) -> float:
+    rows = pick(found()["rows"], controller=controller, task=task, plant=plant)
     return float(np.mean([row[name] for row in rows if not row["failed"]]))
 
 
-def _on_paths(way: str, plant: str) -> float:
+def _on_paths(controller: str, plant: str) -> float:
     """The error over all tasks but the tag, where not all methods receive the same target."""
     paths = (task for task in campaign.TASKS if task != "tag")
-    return float(np.mean([_mean(way, task, plant, "late_rms_mm") for task in paths]))
+    return float(np.mean([_mean(controller, task, plant, "late_rms_mm") for task in paths]))
 
 
 def _tip(task: tasks.Task) -> Array:
@@ -68,8 +68,8 @@ def numbers_told() -> None:
         runs=twice["runs"],
         far=twice["farthest_mm"],
     )
-    real = {way: _on_paths(way, "baxter") for way in WAYS}
-    ideal = {way: _on_paths(way, "ideal") for way in WAYS}
+    real = {controller: _on_paths(controller, "baxter") for controller in CONTROLLERS}
+    ideal = {controller: _on_paths(controller, "ideal") for controller in CONTROLLERS}
     soft, stiff = IMPEDANCE, THREE
     claim(
         "it keeps the error that it starts with",
@@ -141,14 +141,17 @@ def _seeds() -> str:
 def one_table(name: str, plant: str) -> HTML:
     """One number of every method on every task: mean over the seeds and its range."""
     body = []
-    for way in WAYS:
+    for controller in CONTROLLERS:
         cells = []
         for task in campaign.TASKS:
-            x = [row[name] for row in pick(found()["rows"], way=way, task=task, plant=plant)]
+            x = [
+                row[name]
+                for row in pick(found()["rows"], controller=controller, task=task, plant=plant)
+            ]
             span = f'<span class="lab-range">[{min(x):.3g}, {max(x):.3g}]</span>'
-            star = "*" * ((way, task) == (BASELINE, "tag"))
+            star = "*" * ((controller, task) == (BASELINE, "tag"))
             cells.append(f"{np.mean(x):.3g}{star} {span}")
-        body.append((way, *cells))
+        body.append((controller, *cells))
     caption = (
         f"{TABLES[name]}, {ARMS[plant]} arm. * From where the tag was last seen, not from the tag"
     )
@@ -165,17 +168,17 @@ def bars() -> HTML:
     _, ax = plt.subplots(figsize=(6.2, 3.8))
     told = []
     for k, plant in enumerate(ARMS):
-        mean = [_on_paths(way, plant) for way in WAYS]
-        y = np.arange(len(WAYS)) + 0.16 - 0.32 * k
+        mean = [_on_paths(controller, plant) for controller in CONTROLLERS]
+        y = np.arange(len(CONTROLLERS)) + 0.16 - 0.32 * k
         ax.plot(mean, y, "os"[k], color=f"C{1 - k}", label=ARMS[plant])
         for at, x in zip(y, mean, strict=True):
             ax.text(x * 1.12, at, f"{x:.2g}", va="center", fontsize="small")
         told.append(
             f"{ARMS[plant]} arm: "
-            + ", ".join(f"{w} {x:.2g}" for w, x in zip(WAYS, mean, strict=True))
+            + ", ".join(f"{w} {x:.2g}" for w, x in zip(CONTROLLERS, mean, strict=True))
         )
     ax.set(xscale="log", xlabel="RMS error of the tip after the first second [mm]")
-    ax.set_yticks(np.arange(len(WAYS)), WAYS)
+    ax.set_yticks(np.arange(len(CONTROLLERS)), CONTROLLERS)
     ax.invert_yaxis()
     ax.grid(axis="x", color="#999999", alpha=0.3)
     ax.set_xlim(right=ax.get_xlim()[1] * 1.6)
@@ -233,11 +236,13 @@ def verdicts_told() -> None:
         mean=torque["overall"]["mean"],
         half=torque["overall"]["half_width"],
     )
-    errors = {(r["way"], r["task"], r["seed"]): r for r in pick(found()["rows"], plant="baxter")}
+    errors = {
+        (r["controller"], r["task"], r["seed"]): r for r in pick(found()["rows"], plant="baxter")
+    }
     pairs = [
         errors["joint torque", task, seed]["late_rms_mm"] - row["late_rms_mm"]
-        for (way, task, seed), row in errors.items()
-        if way == BASELINE and task != "tag"
+        for (controller, task, seed), row in errors.items()
+        if controller == BASELINE and task != "tag"
     ]
     pooled = interval("pairs", pairs, 8)
     tracking = [v for v in judged.values() if v["unit"] == "mm" and v["overall"]["of"] == "tasks"]
@@ -279,16 +284,16 @@ def verdicts_told() -> None:
 
 
 @cache
-def run_of(way: str, task: str) -> lk.Log:
+def run_of(controller: str, task: str) -> lk.Log:
     """One run of the campaign on the realistic arm, seed 0."""
-    return campaign.perform(way, task, "baxter", 0)
+    return campaign.perform(controller, task, "baxter", 0)
 
 
 def side_by_side(task: str = "square") -> HTML:
-    """Two ways through one task, in 3-D."""
+    """Two controllers through one task, in 3-D."""
     return replay(
         run_of("joint velocity", task),
-        f"The {task}, two ways",
+        f"The {task}, two controllers",
         "Joint velocity PD; see-through: workspace impedance. Both start from the same place "
         "beside the path.",
         label="joint velocity",

@@ -29,16 +29,16 @@ SECOND = (9.9, 8.1, 11.7, 8.7, 10.6)
 """Errors of two made-up controllers in [mm], seed by seed."""
 
 
-def differences(way: str) -> dict[str, list[float]]:
+def differences(controller: str) -> dict[str, list[float]]:
     """A controller's error minus the baseline's in [mm], for each path, seed by seed."""
-    rows = {(r["way"], r["task"], r["seed"]): r["late_rms_mm"]
+    rows = {(r["controller"], r["task"], r["seed"]): r["late_rms_mm"]
             for r in pick(found()["rows"], plant="baxter")}  # fmt: skip
     seeds = sorted({seed for name, task, seed in rows if task in PATHS})
     return {
         task: [
-            rows[way, task, seed] - rows[BASELINE, task, seed]
+            rows[controller, task, seed] - rows[BASELINE, task, seed]
             for seed in seeds
-            if (way, task, seed) in rows and (BASELINE, task, seed) in rows
+            if (controller, task, seed) in rows and (BASELINE, task, seed) in rows
         ]
         for task in PATHS
     }
@@ -121,9 +121,9 @@ def units() -> None:
     claim("Two of the three paths are decided", lambda n: n == 2.0, n=_decided("joint torque"))
 
 
-def _decided(way: str) -> int:
+def _decided(controller: str) -> int:
     """On how many paths the interval over the seeds does not hold zero."""
-    alone = [interval(task, d, CLAIMS) for task, d in differences(way).items()]
+    alone = [interval(task, d, CLAIMS) for task, d in differences(controller).items()]
     return sum(abs(x.mean) > x.half_width for x in alone)
 
 

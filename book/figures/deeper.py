@@ -9,7 +9,7 @@ from IPython.display import HTML
 import labkit as lk
 from labkit.plotting import STYLES
 from solutions.study import identification, image_servoing, passivity, redundancy, tasks
-from solutions.study.gains import TIP_SPRING, five
+from solutions.study.gains import TIP_SPRING, course_controllers
 
 from .claims import claim, shows
 from .page import figure, holds, numbers, shown, table
@@ -40,7 +40,8 @@ def friction() -> HTML:
     share = true * fastest / (true * fastest + true_dry[1])
     shows("because even at 0.3 rad/s, as fast as they swing, it is only about a sixth of the "
           "friction", (0.3, 1.0 / 6.0), (fastest, share), 0.06)  # fmt: skip
-    step, rate = 1.0 / lk.BAXTER.state_rate, five(model, lk.BAXTER)["joint torque"].rate
+    step = 1.0 / lk.BAXTER.state_rate
+    rate = course_controllers(model, lk.BAXTER)["joint torque"].rate
     shows("a cubic fitted to 21 neighbouring angles", 21.0, identification.WINDOW)
     shows("over the same 0.2 s", 0.2, (identification.WINDOW - 1) * step)
     shows("The controller runs at 200 Hz and computes two commands from each report",
@@ -193,12 +194,12 @@ def servoing() -> HTML:
     off, rows = 0.2, []
     _, ax = plt.subplots(figsize=(6.0, 3.2))
     ends = {}
-    for k, way in enumerate(image_servoing.WAYS):
-        right, wrong = (image_servoing.approach(way, e) for e in (0.0, off))
-        ends[way] = 1e3 * wrong.distance[-1]
-        rows.append([way, f"{1e3 * right.distance[-1]:.2f}", f"{ends[way]:.2g}"])
+    for k, method in enumerate(image_servoing.METHODS):
+        right, wrong = (image_servoing.approach(method, e) for e in (0.0, off))
+        ends[method] = 1e3 * wrong.distance[-1]
+        rows.append([method, f"{1e3 * right.distance[-1]:.2f}", f"{ends[method]:.2g}"])
         t = image_servoing.DT * np.arange(len(wrong.distance))
-        name = way.replace("measured", "in metres")
+        name = method.replace("measured", "in metres")
         ax.semilogy(t, 1e3 * wrong.distance, f"C{k}{STYLES[k]}", label=name)
     claim(
         "With a focal length that is believed 20 % too long",
@@ -209,7 +210,7 @@ def servoing() -> HTML:
     ax.set(xlabel="time [s]", ylabel="distance from the goal [mm]", ylim=(1e-3, 300))
     ax.legend(fontsize="small")
     told = "; ".join(
-        f"{way.replace('measured', 'in metres')}: {end:.2g} mm" for way, end in ends.items()
+        f"{method.replace('measured', 'in metres')}: {end:.2g} mm" for method, end in ends.items()
     )
     return figure(
         "Distance of the hand's camera from its goal, the focal length believed 20 % too long.",
@@ -299,7 +300,7 @@ def robust() -> HTML:
     )
 
 
-def ways() -> HTML:
+def methods() -> HTML:
     """What each method of visual servoing needs and what it tolerates."""
     return table(
         ("Method", "wrong focal length", "needs"),

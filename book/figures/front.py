@@ -40,8 +40,8 @@ def picked() -> HTML:
     """The tracking error of each method on each task, on the realistic arm."""
     names = {campaign.BASELINE: "baseline (the built-in method)"}
     rows = [
-        (names.get(way, way), *(_error(way, task) for task in campaign.TASKS))
-        for way in (*campaign.FIVE, campaign.BASELINE)
+        (names.get(controller, controller), *(_error(controller, task) for task in campaign.TASKS))
+        for controller in (*campaign.FIVE, campaign.BASELINE)
     ]
     return table(
         ("Method", *campaign.TASKS),
@@ -51,10 +51,10 @@ def picked() -> HTML:
     )
 
 
-def _error(way: str, task: str) -> str:
-    if (way, task) == (campaign.BASELINE, "tag"):
+def _error(controller: str, task: str) -> str:
+    if (controller, task) == (campaign.BASELINE, "tag"):
         return "\N{EN DASH}"
-    rows = pick(comparison.found()["rows"], way=way, task=task, plant="baxter")
+    rows = pick(comparison.found()["rows"], controller=controller, task=task, plant="baxter")
     return f"{np.mean([row['late_rms_mm'] for row in rows]):.2g}"
 
 

@@ -27,17 +27,17 @@ LATE = 1.0
 """When the counting of errors begins, in [s]; until then every method still approaches the path."""
 
 
-def all_ways(task: str) -> HTML:
+def all_methods(task: str) -> HTML:
     """The errors of every method in one drawing."""
     _, ax = plt.subplots(figsize=(6.2, 3.8))
-    for k, way in enumerate(SHOWN):
-        log = run_of(way, task)
+    for k, controller in enumerate(SHOWN):
+        log = run_of(controller, task)
         thin = slice(None, None, max(1, len(log) // 300))
-        ax.plot(log.t[thin], _off(log)[thin], f"C{k}{STYLES[k % 4]}", label=way)
+        ax.plot(log.t[thin], _off(log)[thin], f"C{k}{STYLES[k % 4]}", label=controller)
     ax.set(xlabel="time [s]", ylabel="error of the tip [mm]", yscale="log")
     ax.set_ylim(bottom=max(ax.get_ylim()[0], 0.02))
     ax.legend(fontsize="small", ncols=2, loc="lower left", bbox_to_anchor=(0.0, 1.0))
-    told = "; ".join(f"{way} {_numbers(way, task)[0]:.2g} mm" for way in SHOWN)
+    told = "; ".join(f"{controller} {_numbers(controller, task)[0]:.2g} mm" for controller in SHOWN)
     return figure(
         f"How far the tip is from its target on the {task}, by method; the scale is logarithmic.",
         f"Curves of the error over time. RMS after the first second: {told}.",
@@ -47,14 +47,21 @@ def all_ways(task: str) -> HTML:
 def all_numbers(task: str) -> HTML:
     """The same runs in numbers; each name leads to its run."""
     rows = [
-        (f'<a href="#{_place(way)}">{way}</a>', *map(_told, _numbers(way, task))) for way in SHOWN
+        (
+            f'<a href="#{_place(controller)}">{controller}</a>',
+            *map(_told, _numbers(controller, task)),
+        )
+        for controller in SHOWN
     ]
     if task == "tag":  # the decisive number first
         rows = [(name, x[-1], *x[:-1]) for name, *x in rows]
     if task == "tag":
-        found = {way: _numbers(way, task) for way in SHOWN}
+        found = {controller: _numbers(controller, task) for controller in SHOWN}
         holds(found[BASELINE][0] < 1.0, "the baseline obeys to a millimetre")
-        holds(found[BASELINE][-1] > 2.0 * max(found[way][-1] for way in FIVE), "and misses the tag")
+        holds(
+            found[BASELINE][-1] > 2.0 * max(found[controller][-1] for controller in FIVE),
+            "and misses the tag",
+        )
     head = [
         "Method",
         "RMS [mm]",
@@ -79,7 +86,7 @@ def beside(task: str) -> HTML:
         f"The {task}, three methods",
         f"Joint velocity PD; see-through: {' and '.join(others)}.",
         label=first,
-        ghosts={way: run_of(way, task) for way in others},
+        ghosts={controller: run_of(controller, task) for controller in others},
     )
 
 
@@ -99,13 +106,13 @@ def film(task: str) -> HTML:
     )
 
 
-def everything(way: str, task: str) -> HTML:
+def everything(controller: str, task: str) -> HTML:
     """One run in six panels, thinned for the page; scales are the same for all methods."""
-    log = run_of(way, task)
+    log = run_of(controller, task)
     thin = slice(None, None, max(1, len(log) // 300))
     _, axes = plt.subplots(6, 1, figsize=(6.2, 10.6), sharex=True)
     for ax, (label, values, target), limits in zip(
-        axes, _panels(way, task), _limits(task), strict=True
+        axes, _panels(controller, task), _limits(task), strict=True
     ):
         names = AXES if values.shape[1] == 3 else lk.robot("left").joint_names
         for k, name in enumerate(names):
@@ -124,12 +131,12 @@ def everything(way: str, task: str) -> HTML:
                   borderaxespad=0.0, handlelength=1.6, columnspacing=0.8)  # fmt: skip
     axes[-1].set_xlabel("time [s]")
     found = metrics.summary(log, _model())
-    e, off, torque = (_panels(way, task)[k][1] for k in (2, 4, 5))
+    e, off, torque = (_panels(controller, task)[k][1] for k in (2, 4, 5))
     drawn = figure(
-        f"{way.capitalize()} on the {task}, realistic arm. RMS error of the tip: "
-        f"{_numbers(way, task)[0]:.3g} mm after the first second, {found.rms_mm:.3g} mm with the "
-        "start.",
-        f"{way.capitalize()} on the {task}: {found}.",
+        f"{controller.capitalize()} on the {task}, realistic arm. RMS error of the tip: "
+        f"{_numbers(controller, task)[0]:.3g} mm after the first second, "
+        f"{found.rms_mm:.3g} mm with the start.",
+        f"{controller.capitalize()} on the {task}: {found}.",
         f"Six panels over {found.duration:.3g} s: position and speed of the tip and of its target, "
         "its position error along x, y and z, its orientation error, the error of each joint and "
         f"the torque of each motor beyond gravity. {found}. The largest joint error is "
@@ -137,22 +144,22 @@ def everything(way: str, task: str) -> HTML:
         f"last error {_told(float(np.linalg.norm(e[-1]))).replace('&lt;', 'below')} mm. All errors "
         "here are those of the whole run, and the RMS torque includes the arm's weight.",
     )
-    links = " · ".join(_elsewhere(way, task))
+    links = " · ".join(_elsewhere(controller, task))
     return HTML(
-        f'<p class="lab-one">{way.capitalize()} on {links}; '
+        f'<p class="lab-one">{controller.capitalize()} on {links}; '
         f'<a href="#all-methods">all methods</a></p>{drawn.data}'
     )
 
 
-def _elsewhere(way: str, task: str) -> Iterator[str]:
+def _elsewhere(controller: str, task: str) -> Iterator[str]:
     """The same method on every task."""
     for other in campaign.TASKS:
-        link = f'<a href="{other}.html#{_place(way)}">the {other}</a>'
+        link = f'<a href="{other}.html#{_place(controller)}">the {other}</a>'
         yield f"<strong>the {other}</strong>" if other == task else link
 
 
-def _place(way: str) -> str:
-    return way.replace(" ", "-")
+def _place(controller: str) -> str:
+    return controller.replace(" ", "-")
 
 
 @cache
@@ -170,27 +177,27 @@ def _beyond_gravity(log: lk.Log) -> np.ndarray:
     return log.tau - np.array([_model().gravity(q) for q in log.q])
 
 
-def _numbers(way: str, task: str) -> tuple[float, ...]:
+def _numbers(controller: str, task: str) -> tuple[float, ...]:
     """One row of the table."""
-    log = run_of(way, task)
-    told = campaign.measured(log, campaign.joints(way, task, 0))
+    log = run_of(controller, task)
+    told = campaign.measured(log, campaign.joints(controller, task, 0))
     late = log.t >= LATE
     names = ("late_rms_mm", "late_max_mm", "end_mm", "late_rms_deg")
     found = (*(told[name] for name in names), metrics.rms(_beyond_gravity(log)[late]))
     if task != "tag":
         return found
     tips = metrics.tip_poses(log, _model())[late, :3, 3]
-    return *found, 1e3 * metrics.rms(campaign.chase(way, 0).miss(log.t[late], tips))
+    return *found, 1e3 * metrics.rms(campaign.chase(controller, 0).miss(log.t[late], tips))
 
 
 @cache
-def _panels(way: str, task: str) -> list[tuple[str, np.ndarray, np.ndarray | None]]:
+def _panels(controller: str, task: str) -> list[tuple[str, np.ndarray, np.ndarray | None]]:
     """The six panels: a label, values of shape (N, k), and their target if it is drawn."""
-    log, model = run_of(way, task), _model()
+    log, model = run_of(controller, task), _model()
     e = metrics.tip_error(log, model)
     p, d = metrics.tip_poses(log, model)[:, :3, 3], metrics.target_poses(log, model)[:, :3, 3]
     v, w = metrics.tip_velocities(log, model), metrics.target_velocities(log, model)
-    wanted = campaign.joints(way, task, 0)
+    wanted = campaign.joints(controller, task, 0)
     off = np.array([wanted(t).position for t in log.t]) - log.q
     return [
         ("tip [m]", p, d),
@@ -206,7 +213,7 @@ def _panels(way: str, task: str) -> list[tuple[str, np.ndarray, np.ndarray | Non
 def _limits(task: str) -> list[tuple[float, float]]:
     """Limits of the panels that show the runs of all methods in full."""
     found = []
-    for panels in zip(*(_panels(way, task) for way in SHOWN), strict=True):
+    for panels in zip(*(_panels(controller, task) for controller in SHOWN), strict=True):
         values = np.concatenate([panel[1].ravel() for panel in panels])
         edge = 0.05 * np.ptp(values)
         found.append((float(values.min() - edge), float(values.max() + edge)))

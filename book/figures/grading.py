@@ -99,7 +99,7 @@ def kernel() -> None:
     glue("kernel_origin", origin, display=False)
 
 
-def ways_to_isolate() -> None:
+def isolation() -> None:
     """What a sandbox takes, in the places where people grade, as `labkit doctor` says it."""
     print(elsewhere())
 

@@ -81,8 +81,8 @@ def hangs() -> HTML:
     gains = assumptions.kept()["gains"]
     error = {r["position_gain"]: r["late_rms_mm"] for r in gains}
     joint, torque = (
-        pick(rows, way=way, assumption="as assumed")[0]["late_rms_mm"]
-        for way in ("joint velocity", "joint torque")
+        pick(rows, controller=controller, assumption="as assumed")[0]["late_rms_mm"]
+        for controller in ("joint velocity", "joint torque")
     )
     where = [_crosses(error, level) for level in (joint, torque)]
     claim(
@@ -113,7 +113,7 @@ def hangs() -> HTML:
         usual=[by[c] for c in velocity],
         d=[assumptions.difference(rows, c, assumption="encoder_offset, most") for c in velocity],
     )
-    springs = pick(rows, way=assumptions.BASELINE, assumption="joint_stiffness, most")
+    springs = pick(rows, controller=assumptions.BASELINE, assumption="joint_stiffness, most")
     claim(
         "with the springs in the joints the built-in method is lost",
         lambda lost: lost == len(springs),
@@ -135,7 +135,7 @@ def hangs() -> HTML:
     shows("at the shoulder 843 N m/rad and 4 N m s/rad", (843.0, 4.0), shoulder)
     shows("from 10 to 100 1/s the error of the built-in method falls", (10.0, 100.0), ends)
     numbers({"hang_low": error[ends[0]], "hang_high": error[ends[1]]}, ".2g")
-    spring = pick(rows, way="joint velocity", assumption="joint_stiffness, most")
+    spring = pick(rows, controller="joint velocity", assumption="joint_stiffness, most")
     number("spring_velocity", spring[0]["late_rms_mm"], ".0f")
     words = "; ".join(f"{c}: {', '.join(t) or 'never'}" for c, t in turned.items())
     return figure(
@@ -165,19 +165,24 @@ def table_1() -> HTML:
     """The report's gains as printed, run."""
     rows = report_gains.kept()["table_1"]
 
-    def shown(way: str, task: str, plant: str) -> str:
-        (row,) = pick(rows, way=way, task=task, plant=plant)
+    def shown(controller: str, task: str, plant: str) -> str:
+        (row,) = pick(rows, controller=controller, task=task, plant=plant)
         return "lost" if row["failed"] else f"{row['late_rms_mm']:.3g}"
 
     grid = [(task, plant) for plant in report_gains.PLANTS for task in ("line", "circle")]
-    body = [(way, *(shown(way, *at) for at in grid)) for way in report_gains.TABLE_1]
+    body = [
+        (controller, *(shown(controller, *at) for at in grid))
+        for controller in report_gains.TABLE_1
+    ]
     torque = [
-        pick(rows, way="joint torque", task=task, plant="realistic")[0]["late_rms_mm"]
+        pick(rows, controller="joint torque", task=task, plant="realistic")[0]["late_rms_mm"]
         for task in ("line", "circle")
     ]
     claim("centimetres, not millimetres", lambda e: all(x > 20.0 for x in e), e=torque)
     soft = [
-        pick(rows, way="joint velocity", task=task, plant="with joint springs")[0]["late_rms_mm"]
+        pick(rows, controller="joint velocity", task=task, plant="with joint springs")[0][
+            "late_rms_mm"
+        ]
         for task in ("line", "circle")
     ]
     numbers({"spring_line": soft[0], "spring_circle": soft[1]}, ".2g")

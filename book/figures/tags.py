@@ -14,7 +14,7 @@ import labkit as lk
 from labkit.replay import motion_of
 from labkit.tags.detection import detect_tags, find_tag
 from labkit.tags.intrinsics import Intrinsics
-from solutions.study.gains import known
+from solutions.study.gains import course_controllers
 from solutions.study.sensing import Setup, consistency
 from solutions.study.tag_scenes import circling_board
 from solutions.study.tag_task import OFFSET, closed_loop, staged
@@ -232,16 +232,17 @@ def predict() -> HTML:
 def following() -> HTML:
     """The arm above a board that goes round, and as a ghost the arm that looks, then moves."""
     logs, misses, unseen = {}, {}, {}
-    start, law = ready_pose(), known(lk.Model("left", lk.BAXTER), lk.BAXTER)["workspace velocity"]
-    for way, follower, dials in (
+    start = ready_pose()
+    law = course_controllers(lk.Model("left", lk.BAXTER))["workspace velocity"]
+    for name, follower, dials in (
         ("predicts", TagFollower(start, OFFSET), {}),
         ("loses readings", TagFollower(start, OFFSET), {"dropout": LOST}),
         ("looks, then moves", SequentialServoing(start, OFFSET), {"rate": 0.2, "delay": 1.0}),
     ):
         made = closed_loop(SEED, law.controller, follower, **dials)
-        logs[way], misses[way], unseen[way] = made
+        logs[name], misses[name], unseen[name] = made
     late = logs["predicts"].t >= 2.0
-    rms = {way: 1e3 * lk.metrics.rms(miss[late]) for way, miss in misses.items()}
+    rms = {name: 1e3 * lk.metrics.rms(miss[late]) for name, miss in misses.items()}
     holds(rms["predicts"] < 0.3 * rms["looks, then moves"], "prediction follows, looking lags")
     holds(rms["predicts"] < 5.0 and rms["loses readings"] < 10.0, "to millimetres")
     holds(unseen["predicts"] == 0, "the arm does not hide the tag from this camera")

@@ -84,16 +84,13 @@ def cup(make: Callable[[Model], Controller], workspace: bool = False) -> tuple[C
     return runs
 
 
-def cup_run(
-    make: Callable[[Model], Controller], seed: int, workspace: bool = False, rate: float = 200.0
-) -> CupRun:
+def cup_run(make: Callable[[Model], Controller], seed: int, workspace: bool = False) -> CupRun:
     """Run a controller on one seed, as `cup` does.
 
     Args:
         make: As for `cup`.
         seed: Of what is drawn.
         workspace: As for `cup`.
-        rate: How often the controller is asked, in [Hz].
     """
     random = np.random.default_rng([seed, 2007])
     known = replace(BAXTER, name="cup")
@@ -110,7 +107,7 @@ def cup_run(
     given = _sampled_and_delayed(wanted, tour.duration)
     with Arm("left", plant, seed, q0=ready, world=World(things=[push])) as arm:
         try:
-            log = run(arm, given, make(model), rate, wanted.duration)
+            log = run(arm, given, make(model), 200.0, wanted.duration)
         except Diverged as error:
             return CupRun(seed, np.inf, cast(Log, error.log))
     tips = np.array([model.pose(q)[:3, 3] for q in log.q])

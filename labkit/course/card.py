@@ -7,7 +7,7 @@ import re
 from collections.abc import Iterable
 from html import escape
 
-from .messages import PRINTED, Message
+from .messages import PRINTED, Message, failures
 from .verdict import Outcome
 
 _BADGES = {
@@ -55,7 +55,7 @@ def card(
     parts = [f'<p><b aria-hidden="true">{sign}</b>{_inline(message.head)}</p>']
     parts += [f"<p>{_inline(line)}</p>" for line in message.helps]
     if message.tests:
-        says = f"{failed} of {len(message.tests)} tests failed. Show them, with the numbers"
+        says = f"{failures(failed, len(message.tests))}. Show them, with the numbers"
         parts.append(f"<details><summary>{says}</summary>{''.join(folded)}</details>")
     if message.printed:
         parts.append(f"<p>{PRINTED}</p>{_block(message.printed)}")

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import builtins
 import textwrap
-from collections.abc import Collection, Iterable, Iterator, Mapping
+from collections.abc import Collection, Iterable, Iterator
 from typing import Any
 
 from .notebook import checks, defines
@@ -15,8 +15,6 @@ _KNOWN = {*vars(builtins), "get_ipython", "display", "In", "Out", "_", "__", "__
 """Names that every notebook has."""
 _OWN_ARM = {"my_arm", "my_bug"}
 """What the grader cannot run."""
-
-Cell = Mapping[str, Any]
 
 
 def undefined(cells: list[dict[str, Any]], asked: Collection[str]) -> Iterator[str]:

@@ -153,7 +153,17 @@ def summary(verdict: Verdict) -> list[str]:
 
 def mistake(known: Misconception) -> str:
     """A known mistake: its name, and what to tell who made it."""
-    return f"A well-known mistake: {known.name}. {known.says}" if known.name else known.says
+    return f"{well_known(known)} {known.says}".lstrip()
+
+
+def well_known(known: Misconception) -> str:
+    """The name of a known mistake, in a sentence; empty if it has none."""
+    return f"A well-known mistake: {known.name}." if known.name else ""
+
+
+def failures(failed: int, of: int) -> str:
+    """How many tests failed."""
+    return f"{failed} of {of} tests failed"
 
 
 def _helps(verdict: Verdict) -> Iterator[str]:
@@ -186,9 +196,6 @@ def wrapped(line: str) -> str:
     return textwrap.fill(line, WIDTH, subsequent_indent=f"{margin}  ", break_long_words=False)
 
 
-GATE = " (needed before anything counts)"
-
-
 def line(test: TestResult) -> str:
     """A test in one line: whether it passed, and if it failed, on which case and why."""
     says = "" if test.outcome in _SHORT else why(test)
@@ -197,8 +204,17 @@ def line(test: TestResult) -> str:
 
 def named(test: TestResult) -> str:
     """A test by its name, and whether it passed."""
-    gate = "" if test.weight else GATE
-    return f"[{_SHORT.get(test.outcome, 'failed')}] {test.name}{gate}"
+    return f"[{passed(test)}] {test.name}{gate(test)}"
+
+
+def passed(test: TestResult) -> str:
+    """Whether a test passed, in a word."""
+    return _SHORT.get(test.outcome, "failed")
+
+
+def gate(test: TestResult) -> str:
+    """That nothing counts before a test passes, if it is so."""
+    return "" if test.weight else " (needed before anything counts)"
 
 
 def why(test: TestResult) -> str:

@@ -57,6 +57,6 @@ def how_many(count: int, what: str) -> str:
     return f"{count} {what}{'s' * (count != 1)}"
 
 
-def some(names: Sequence[str], most: int = 5) -> str:
+def some(names: Sequence[str]) -> str:
     """The first few names, for a sentence."""
-    return ", ".join(names[:most]) + ", ..." * (len(names) > most)
+    return ", ".join(names[:5]) + ", ..." * (len(names) > 5)

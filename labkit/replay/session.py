@@ -14,7 +14,7 @@ from queue import Empty, SimpleQueue
 from typing import Any
 
 from ..arm import Arm
-from ..driven import Simulated
+from ..arm_adapters import Simulated
 from ..log import Log
 from ..run import run_driven
 from .dials import Dial, Dialled

@@ -35,7 +35,7 @@ import matplotlib.pyplot as plt
 import numpy as np
 
 from labkit import metrics
-from labkit import loop, recordings
+from labkit import recordings, stability
 
 # %% [markdown]
 # ## One number for a run
@@ -146,7 +146,7 @@ def integrator_alone(kp, lag, delay):
 
 my_open_loop = use("open_loop", open_loop, integrator_alone)
 
-joint = loop.velocity_joint_of(lk.BAXTER)
+joint = stability.velocity_joint_of(lk.BAXTER)
 lag, delay = lk.BAXTER.velocity_lag, joint.delay
 print(f"Baxter's joint: lag {1e3 * lag:.0f} ms, delay {1e3 * delay:.1f} ms")
 
@@ -196,8 +196,8 @@ def kp_for_margin(lag, delay, margin_deg):
 def given_kp_for_margin(lag, delay, margin_deg):
     """Read off a table of margins, to about a tenth."""
     gains = np.geomspace(2.0, 100.0, 8)
-    joint = loop.VelocityJoint(lag, delay)
-    phases = [loop.margins(joint, kp).phase for kp in gains]
+    joint = stability.VelocityJoint(lag, delay)
+    phases = [stability.margins(joint, kp).phase for kp in gains]
     return float(np.interp(-margin_deg, -np.array(phases), gains))
 
 
@@ -291,7 +291,7 @@ def a_guess(runner):
 my_choose_gains = use("choose_gains", choose_gains, a_guess)
 runner = recordings.Runner(line_trials)
 Kp, Kd = my_choose_gains(runner)
-phase = loop.margins(loop.VelocityJoint(lag, delay), Kp).phase
+phase = stability.margins(stability.VelocityJoint(lag, delay), Kp).phase
 print(f"Kp = {Kp:g} 1/s, Kd = {Kd:g}, chosen with {runner.budget - runner.left} tries")
 print(f"on the line, worst of five seeds: {line_trials.worst(Kp, Kd):.2f} mm")
 print(f"phase margin of Kp alone, on paper: {phase:.0f} degrees")
@@ -334,17 +334,20 @@ def paired_difference(errors_a, errors_b):
 
 # %%
 rows = [row for row in recordings.campaign() if row["plant"] == "baxter"]
-ways = list(dict.fromkeys(row["way"] for row in rows))
-table = {way: [r["late_rms_mm"] for r in rows if r["way"] == way and r["task"] == "circle"] for way in ways}
+controllers = list(dict.fromkeys(row["controller"] for row in rows))
+table = {name: [] for name in controllers}
+for row in rows:
+    if row["task"] == "circle":
+        table[row["controller"]].append(row["late_rms_mm"])
 figure, ax = plt.subplots(figsize=(8, 3), layout="constrained")
-for k, way in enumerate(ways):
-    ax.plot(table[way], [k] * len(table[way]), "o", mfc="none")
-ax.set_yticks(range(len(ways)), ways)
+for k, controller in enumerate(controllers):
+    ax.plot(table[controller], [k] * len(table[controller]), "o", mfc="none")
+ax.set_yticks(range(len(controllers)), controllers)
 ax.set_xscale("log")
 ax.set_xticks([3, 5, 10, 20], ["3", "5", "10", "20"])
 ax.minorticks_off()
 ax.set_xlabel("RMS error on the circle, one ring for each seed [mm]")
-means = ", ".join(f"{way} {np.mean(errors):.1f} mm" for way, errors in table.items())
+means = ", ".join(f"{controller} {np.mean(errors):.1f} mm" for controller, errors in table.items())
 lk.plotting.show(f"The errors of each method on the circle; on average {means}.")
 
 # %% [markdown]
@@ -381,9 +384,9 @@ my_verdicts = use("verdicts", verdicts, given_verdicts)
 my_paired_difference = use("paired_difference", paired_difference, medians_apart)
 
 
-def late(way):
+def late(controller):
     """The errors of one method on the tasks and seeds, in one order."""
-    mine = [row for row in rows if row["way"] == way]
+    mine = [row for row in rows if row["controller"] == controller]
     return [row["late_rms_mm"] for row in sorted(mine, key=lambda row: (row["task"], row["seed"]))]
 
 
@@ -402,15 +405,15 @@ def tasks_of(a, b):
     return paths if "baseline" in (a, b) else [*paths, "tag"]
 
 
-def on(way, task):
+def on(controller, task):
     """The errors of one method on one task, one for each seed."""
-    return [row["late_rms_mm"] for row in rows if row["way"] == way and row["task"] == task]
+    return [row["late_rms_mm"] for row in rows if row["controller"] == controller and row["task"] == task]
 
 
 for claim, (a, b) in claims.items():
     tasks = tasks_of(a, b)
     alone = my_verdicts({task: (on(a, task), on(b, task)) for task in tasks})
-    means = [[np.mean(on(way, task)) for task in tasks] for way in (a, b)]
+    means = [[np.mean(on(controller, task)) for task in tasks] for controller in (a, b)]
     (over_tasks,) = my_verdicts({claim: means}).values()
     mean, half = my_paired_difference(*means)
     print(f"{claim}\n    task by task: " + ", ".join(f"{k} {v}" for k, v in alone.items()))

@@ -252,7 +252,7 @@ OPEN_LOOP = Problem(
             weight=2.0,
         ),
     ),
-    withheld=("labkit.loop",),
+    withheld=("labkit.stability",),
     hints=(
         "Three things stand one after another: a speed that follows its command with a lag, an "
         "integrator from speed to angle, a delay. Transfer functions in a row multiply.",

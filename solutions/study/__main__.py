@@ -25,7 +25,7 @@ from .campaign import (
     tables,
 )
 from .claims import verdicts
-from .gains import known
+from .gains import all_controllers
 from .grid import Job, Meter, Row, work_through
 from .recording import save_campaign
 
@@ -43,9 +43,11 @@ def main() -> None:
     parser.add_argument("--out", type=Path, default=Path("build"), help="folder (build)")
     parser.add_argument("--no-pictures", action="store_true", help="numbers alone")
     parser.add_argument("--keep", action="store_true", help="keep the rows for notebook 07")
-    ways = [*known(Model("left")), FEED_FORWARD, BASELINE]
-    help_on_ways = "only this, and only print it; more than once for more: " + ", ".join(ways)
-    parser.add_argument("--way", action="append", choices=ways, metavar="WAY", help=help_on_ways)
+    controllers = [*all_controllers(Model("left")), FEED_FORWARD, BASELINE]
+    only = "run only this and print it; more than once for more: " + ", ".join(controllers)
+    parser.add_argument(
+        "--controller", action="append", choices=controllers, metavar="NAME", help=only
+    )
     options = parser.parse_args()
     where = {"jobs": options.jobs, "dask": options.dask}
     began = time.monotonic()
@@ -53,8 +55,8 @@ def main() -> None:
     def done(job: Job, grid: list[Row], what: str) -> list[Row]:
         return work_through(job, grid, progress=Meter(what), **where)
 
-    if options.way:
-        print(tables(done(numbers, grid(options.seeds, options.way), "runs")))
+    if options.controller:
+        print(tables(done(numbers, grid(options.seeds, options.controller), "runs")))
         return
     rows = done(numbers, grid(options.seeds), "runs")
     seconds = time.monotonic() - began

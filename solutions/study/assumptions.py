@@ -21,11 +21,11 @@ from labkit.plant import EVIDENCE, SPRINGS
 
 from .campaign import BASELINE, FIVE, joints, task_of
 from .claims import IMPEDANCE, THREE
-from .gains import Candidate, known
+from .gains import Candidate, all_controllers
 from .grid import Meter, Row, cells, pick, work_through
 
 KEPT = Path(__file__).with_name("assumptions.json")
-WAYS = (*FIVE, BASELINE)
+CONTROLLERS = (*FIVE, BASELINE)
 TOGETHER = ("joint_damping",)
 """Belongs to another number, with which it goes."""
 GAINS = (10.0, 14.0, 20.0, 30.0, 45.0, 60.0, 100.0)
@@ -34,9 +34,9 @@ CLAIMS: Mapping[str, tuple[Sequence[str], Sequence[str]]] = {
     "joint velocity over workspace velocity": (("workspace velocity",), ("joint velocity",)),
     "joint impedance over workspace impedance": (("workspace impedance",), ("joint impedance",)),
     "the three over both impedances": (IMPEDANCE, THREE),
-    **{f"built-in method over {way}": ((way,), (BASELINE,)) for way in FIVE},
+    **{f"built-in method over {controller}": ((controller,), (BASELINE,)) for controller in FIVE},
 }
-"""The first way's error minus the second's: positive where the claim, "better than", is true."""
+"""The first's error minus the second's: positive where the claim, "better than", is true."""
 
 
 def plants() -> dict[str, Plant]:
@@ -55,25 +55,25 @@ def plants() -> dict[str, Plant]:
     return made
 
 
-def trial(way: str, assumption: str, seed: int) -> Mapping[str, Any]:
-    """The job: one way along the line; its RMS error after the first second."""
-    return _line(way, plants()[assumption], seed)
+def trial(controller: str, assumption: str, seed: int) -> Mapping[str, Any]:
+    """The job: one controller along the line; its RMS error after the first second."""
+    return _line(controller, plants()[assumption], seed)
 
 
-def gain(way: str, position_gain: float, seed: int) -> Mapping[str, Any]:
+def gain(controller: str, position_gain: float, seed: int) -> Mapping[str, Any]:
     """The same with a gain of the position mode."""
-    return _line(way, replace(BAXTER, position_gain=position_gain), seed)
+    return _line(controller, replace(BAXTER, position_gain=position_gain), seed)
 
 
-def _line(way: str, plant: Plant, seed: int) -> Mapping[str, Any]:
-    goal, model = task_of("line", way, seed), Model("left", Plant(armature=BAXTER.armature))
-    if way == BASELINE:
+def _line(controller: str, plant: Plant, seed: int) -> Mapping[str, Any]:
+    goal, model = task_of("line", controller, seed), Model("left", Plant(armature=BAXTER.armature))
+    if controller == BASELINE:
         from . import baseline
 
         tuned = Candidate(baseline.PositionServer(), baseline.RATE, True)
     else:
-        tuned = known(model, BAXTER)[way]
-    target = joints(way, "line", seed) if tuned.joints else goal.target
+        tuned = all_controllers(model, BAXTER)[controller]
+    target = joints(controller, "line", seed) if tuned.joints else goal.target
     with Arm(goal.side, plant, seed, q0=goal.start(seed)) as arm:
         log = run(arm, target, tuned.controller, rate=tuned.rate)
     e = metrics.tip_error(log, model)[log.t >= 1.0, :3]
@@ -81,15 +81,17 @@ def _line(way: str, plant: Plant, seed: int) -> Mapping[str, Any]:
 
 
 def grid(seeds: int) -> list[Row]:
-    """Every way on every plant."""
-    return cells(way=WAYS, assumption=tuple(plants()), seed=range(seeds))
+    """Every controller on every plant."""
+    return cells(controller=CONTROLLERS, assumption=tuple(plants()), seed=range(seeds))
 
 
 def difference(rows: Sequence[Row], claim: str, **names: Any) -> float | None:
     """What speaks for a claim, mean over the seeds, in [mm]; None if an arm was lost."""
     sides = []
-    for ways in CLAIMS[claim]:
-        here = [row for way in ways for row in pick(rows, way=way, **names)]
+    for controllers in CLAIMS[claim]:
+        here = [
+            row for controller in controllers for row in pick(rows, controller=controller, **names)
+        ]
         if not here or any(row["failed"] for row in here):
             return None
         sides.append(float(np.mean([row["late_rms_mm"] for row in here])))
@@ -109,7 +111,7 @@ def main() -> None:
     parser.add_argument("--jobs", type=int, default=None, help="processes (one for each core)")
     chosen = parser.parse_args()
     rows = work_through(trial, grid(chosen.seeds), jobs=chosen.jobs, progress=Meter("plants"))
-    asked = cells(way=(BASELINE,), position_gain=GAINS, seed=range(chosen.seeds))
+    asked = cells(controller=(BASELINE,), position_gain=GAINS, seed=range(chosen.seeds))
     gains = work_through(gain, asked, jobs=chosen.jobs, progress=Meter("gains"))
     parts = {"assumptions": rows, "gains": gains}
     lines = (f'"{k}": [\n' + ",\n".join(map(json.dumps, part)) + "\n]" for k, part in parts.items())

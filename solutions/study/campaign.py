@@ -35,7 +35,7 @@ from labkit import (
 
 from . import tasks
 from .claims import Finding
-from .gains import Candidate, known
+from .gains import Candidate, all_controllers
 from .grid import Row, cells, pick, table
 from .joint_velocity import JointVelocityPD
 from .tag_task import Chase, followed, sequential
@@ -56,12 +56,12 @@ FIVE = (
     "workspace impedance",
 )
 """The report's order: figures 4 to 7, 8 to 11, and so on."""
-WAYS = (*FIVE, FEED_FORWARD, BASELINE)
+CONTROLLERS = (*FIVE, FEED_FORWARD, BASELINE)
 
 
-def grid(seeds: int, ways: Sequence[str] = WAYS) -> list[dict[str, Any]]:
-    """The campaign's cells: 7 ways, every task, 2 plants, the seeds."""
-    return cells(way=ways, task=TASKS, plant=("ideal", "baxter"), seed=range(seeds))
+def grid(seeds: int, controllers: Sequence[str] = CONTROLLERS) -> list[dict[str, Any]]:
+    """The campaign's cells: 7 controllers, every task, 2 plants, the seeds."""
+    return cells(controller=controllers, task=TASKS, plant=("ideal", "baxter"), seed=range(seeds))
 
 
 @cache
@@ -69,9 +69,9 @@ def _chase(kind: str, seed: int) -> Chase:
     return sequential(seed) if kind == BASELINE else followed(seed)
 
 
-def chase(way: str, seed: int) -> Chase:
+def chase(controller: str, seed: int) -> Chase:
     """The tag task: of the report's kind for the baseline, which cannot follow a moving goal."""
-    return _chase(BASELINE if way == BASELINE else "", seed)
+    return _chase(BASELINE if controller == BASELINE else "", seed)
 
 
 @cache
@@ -81,10 +81,10 @@ def _path(name: str) -> Task:
     return makers[name]()
 
 
-def task_of(name: str, way: str, seed: int) -> Task:
+def task_of(name: str, controller: str, seed: int) -> Task:
     """A task by name; made once, for its inverse kinematics takes a moment."""
     if name == "tag":
-        return chase(way, seed).task
+        return chase(controller, seed).task
     return _path(name)
 
 
@@ -103,40 +103,40 @@ def feed_forward(state: State, target: Sample) -> JointVelocity:
     return JointVelocity(target.velocity)
 
 
-def _tuned(way: str, plant: Plant, side: Any) -> Candidate:
-    if way == FEED_FORWARD:
+def _tuned(controller: str, plant: Plant, side: Any) -> Candidate:
+    if controller == FEED_FORWARD:
         return Candidate(feed_forward, 200.0, True)
-    if way == BASELINE:
+    if controller == BASELINE:
         from . import baseline
 
         return Candidate(baseline.PositionServer(), baseline.RATE, True)
     knows = Plant(name=plant.name, armature=plant.armature)  # the rotors, and no payload
-    return known(Model(side, knows), plant)[way]
+    return all_controllers(Model(side, knows), plant)[controller]
 
 
-def joints(way: str, task: str, seed: int) -> Any:
-    """The joint angles that belong to a way's target, a function of time."""
-    planned = way == BASELINE and task != "tag"
-    return built_in(task) if planned else task_of(task, way, seed).joints
+def joints(controller: str, task: str, seed: int) -> Any:
+    """The joint angles that belong to a controller's target, a function of time."""
+    planned = controller == BASELINE and task != "tag"
+    return built_in(task) if planned else task_of(task, controller, seed).joints
 
 
-def perform(way: str, task: str, plant: str, seed: int) -> Log:
+def perform(controller: str, task: str, plant: str, seed: int) -> Log:
     """One run of the campaign."""
-    goal, arm_is = task_of(task, way, seed), PLANTS[plant]
-    tuned = _tuned(way, arm_is, goal.side)
-    target = joints(way, task, seed) if tuned.joints else goal.target
+    goal, arm_is = task_of(task, controller, seed), PLANTS[plant]
+    tuned = _tuned(controller, arm_is, goal.side)
+    target = joints(controller, task, seed) if tuned.joints else goal.target
     with Arm(goal.side, arm_is, seed, q0=goal.start(seed)) as arm:
-        return replace(run(arm, target, tuned.controller, rate=tuned.rate), controller=way)
+        return replace(run(arm, target, tuned.controller, rate=tuned.rate), controller=controller)
 
 
-def numbers(way: str, task: str, plant: str, seed: int) -> Mapping[str, Any]:
+def numbers(controller: str, task: str, plant: str, seed: int) -> Mapping[str, Any]:
     """The campaign's job: one run, in numbers."""
-    log = perform(way, task, plant, seed)
-    told = measured(log, joints(way, task, seed))
+    log = perform(controller, task, plant, seed)
+    told = measured(log, joints(controller, task, seed))
     if task == "tag":
         late = log.t >= 2.0
         tips = metrics.tip_poses(log)[late, :3, 3]
-        miss = chase(way, seed).miss(log.t[late], tips)
+        miss = chase(controller, seed).miss(log.t[late], tips)
         told["tag_rms_mm"] = 1e3 * metrics.rms(miss)
     return told
 
@@ -236,11 +236,11 @@ def tables(rows: list[Row]) -> str:
     ]
     for number, title in TABLES.items():
         for plant in dict.fromkeys(row["plant"] for row in rows):
-            body = table(pick(rows, plant=plant), "way", "task", number)
+            body = table(pick(rows, plant=plant), "controller", "task", number)
             parts.append(f"## {title}, {plant} arm\n\n{body}")
     if chased := pick(rows, task="tag"):
         title = "Distance from where the tag really put the tip, RMS after two seconds [mm]"
-        parts.append(f"## {title}\n\n{table(chased, 'way', 'plant', 'tag_rms_mm')}")
+        parts.append(f"## {title}\n\n{table(chased, 'controller', 'plant', 'tag_rms_mm')}")
     return "\n\n".join(parts) + "\n"
 
 

@@ -179,8 +179,8 @@ def verdicts(rows: Sequence[Row], gains: Sequence[Row], noise: Sequence[Row]) ->
     worse = "the impedance controllers track worse than the other three"
     asked += [(worse, rows, IMPEDANCE, THREE)]
     asked += [
-        (f"the built-in method tracks better than {way}", planned, (way,), ("baseline",))
-        for way in (*THREE, *IMPEDANCE)
+        (f"the built-in method tracks better than {name}", planned, (name,), ("baseline",))
+        for name in (*THREE, *IMPEDANCE)
     ]
     found = [
         judge(claim, "mm", _mean(on, a), _mean(on, b), claims=len(asked))
@@ -223,12 +223,16 @@ def verdicts(rows: Sequence[Row], gains: Sequence[Row], noise: Sequence[Row]) ->
     return found
 
 
-def _mean(rows: Iterable[Row], ways: Sequence[str]) -> dict[Any, float]:
-    """Error of tracking on Baxter's plant, mean over some ways, for each (seed, task)."""
-    here = [row for row in pick(rows, plant="baxter") if row["way"] in ways and not row["failed"]]
+def _mean(rows: Iterable[Row], controllers: Sequence[str]) -> dict[Any, float]:
+    """Error of tracking on Baxter's plant, mean over some controllers, for each (seed, task)."""
+    here = [
+        row
+        for row in pick(rows, plant="baxter")
+        if row["controller"] in controllers and not row["failed"]
+    ]
     keys = {(row["seed"], row["task"]) for row in here}
     each = {key: [r["late_rms_mm"] for r in here if (r["seed"], r["task"]) == key] for key in keys}
-    return {key: float(np.mean(x)) for key, x in each.items() if len(x) == len(ways)}
+    return {key: float(np.mean(x)) for key, x in each.items() if len(x) == len(controllers)}
 
 
 def _by_seed(rows: Iterable[Row], number: str, **names: Any) -> dict[Any, float]:

@@ -36,7 +36,7 @@ from labkit.scene import TIP_RADIUS, contact_stiffness
 from labkit.shapes import Array, locked
 from labkit.world import Thing
 
-from .gains import TIP_SPRING, Candidate, five
+from .gains import TIP_SPRING, Candidate, course_controllers
 
 CONTENDERS = ("position", "joint torque", "joint impedance", "workspace impedance")
 
@@ -220,7 +220,9 @@ def position(state: State, target: Sample) -> JointPosition:
 
 
 def _contender(name: str, model: Model) -> Candidate:
-    return Candidate(position, 200.0, True) if name == "position" else five(model)[name]
+    if name == "position":
+        return Candidate(position, 200.0, True)
+    return course_controllers(model)[name]
 
 
 def _there(T_wt: Array, way: Array) -> Trajectory:

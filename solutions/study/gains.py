@@ -40,7 +40,7 @@ class Candidate:
         return model.joint_trajectory(trajectory, q0) if self.joints else trajectory
 
 
-def five(model: Model, plant: Plant | None = None) -> dict[str, Candidate]:
+def course_controllers(model: Model, plant: Plant | None = None) -> dict[str, Candidate]:
     """The five controllers of the course.
 
     Args:
@@ -81,9 +81,9 @@ def variants(model: Model, plant: Plant | None = None) -> dict[str, Candidate]:
     }
 
 
-def known(model: Model, plant: Plant | None = None) -> dict[str, Candidate]:
+def all_controllers(model: Model, plant: Plant | None = None) -> dict[str, Candidate]:
     """All controllers that the campaign can run."""
-    return {**five(model, plant), **variants(model, plant)}
+    return {**course_controllers(model, plant), **variants(model, plant)}
 
 
 def _slow(plant: Plant) -> bool:

@@ -19,7 +19,7 @@ from labkit.control import Command
 from labkit.run import Controller
 from labkit.shapes import Array
 
-from .gains import five
+from .gains import course_controllers
 from .tasks import Task
 
 MOVING = 0.05
@@ -83,7 +83,7 @@ class Friction:
 def excite(plant: Plant = BAXTER, seed: int = 0) -> Log:
     """Let the arm swing under computed torque."""
     model = Model("left", plant)
-    law, swing = five(model, plant)["joint torque"], Swing(model.robot.ready)
+    law, swing = course_controllers(model, plant)["joint torque"], Swing(model.robot.ready)
     with Arm("left", plant, seed, q0=model.robot.ready) as arm:
         return run(arm, swing, law.controller, rate=law.rate, duration=swing.duration)
 
@@ -150,7 +150,7 @@ def compared(
     task: Task, friction: Friction, plant: Plant = BAXTER, seed: int = 0
 ) -> dict[str, Log]:
     """Joint impedance along a task without and with the compensation."""
-    law = five(Model("left", plant), plant)["joint impedance"]
+    law = course_controllers(Model("left", plant), plant)["joint impedance"]
     logs = {}
     for name, one in (
         ("plain", law.controller),

@@ -25,13 +25,13 @@ from labkit.tags.tag import tag_corners
 
 SIZE = 0.1
 GAIN, DT, STEPS = 2.0, 0.02, 250
-Way = Literal["image", "pose, goal measured", "pose, goal shown"]
-WAYS: tuple[Way, ...] = ("image", "pose, goal measured", "pose, goal shown")
+Method = Literal["image", "pose, goal measured", "pose, goal shown"]
+METHODS: tuple[Method, ...] = ("image", "pose, goal measured", "pose, goal shown")
 
 
 @dataclass(frozen=True, eq=False)
 class Approach:
-    """How one way went.
+    """How one method went.
 
     Attributes:
         distance: Of the camera from where it should be, at each step, shape (k,) in [m].
@@ -55,12 +55,12 @@ def interaction(points: Any, depth: float) -> Array:
     return rows.reshape(-1, 6)
 
 
-def approach(way: Way, focal_error: float = 0.0, depth: float = 0.25) -> Approach:
+def approach(method: Method, focal_error: float = 0.0, depth: float = 0.25) -> Approach:
     """Bring the hand's camera 25 cm before a tag, from aside and higher up.
 
     Args:
-        way: By the image, or by the pose; the pose's goal measured in metres, or shown once, that
-            is, computed from a picture at the goal with the same wrong lens.
+        method: By the image, or by the pose; the pose's goal measured in metres, or shown once,
+            that is, computed from a picture at the goal with the same wrong lens.
         focal_error: By what share the robot's focal length is too long.
         depth: Of the tag, as the method by the image believes it to be, in [m].
     """
@@ -77,7 +77,7 @@ def approach(way: Way, focal_error: float = 0.0, depth: float = 0.25) -> Approac
     )
     T_wm = T_wg @ se3.inverse(T_mg)
     wanted = _corners(se3.inverse(T_mg), lens)
-    goal = tag_pose(wanted, told, SIZE) if way == "pose, goal shown" else se3.inverse(T_mg)
+    goal = tag_pose(wanted, told, SIZE) if method == "pose, goal shown" else se3.inverse(T_mg)
     away = se3.pose(se3.rotation(np.array([0.0, 0.0, 0.4])), np.array([0.06, -0.08, 0.1]))
     q = model.inverse_kinematics(away_from(model.pose(q), away), q)
     distance, pixels = [], []
@@ -86,7 +86,7 @@ def approach(way: Way, focal_error: float = 0.0, depth: float = 0.25) -> Approac
         seen = _corners(se3.inverse(T_wc) @ T_wm, lens)
         distance.append(float(np.linalg.norm(T_wc[:3, 3] - T_wg[:3, 3])))
         pixels.append(seen)
-        if way == "image":
+        if method == "image":
             s, s_d = (_plane(p, told) for p in (seen, wanted))
             V = GAIN * np.linalg.pinv(interaction(s, depth)) @ (s_d - s).ravel()
         else:

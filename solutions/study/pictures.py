@@ -20,10 +20,10 @@ from .tag_task import staged
 
 def grid(folder: Path) -> list[dict[str, Any]]:
     """Cells of the figures: five controllers on every task."""
-    return cells(way=FIVE, task=TASKS, folder=(str(folder),))
+    return cells(controller=FIVE, task=TASKS, folder=(str(folder),))
 
 
-def draw(way: str, task: str, folder: str) -> Mapping[str, Any]:
+def draw(controller: str, task: str, folder: str) -> Mapping[str, Any]:
     """The job: run once on Baxter's plant, draw everything, say in words what is to be seen.
 
     Returns:
@@ -32,10 +32,12 @@ def draw(way: str, task: str, folder: str) -> Mapping[str, Any]:
     matplotlib.use("Agg")
     from matplotlib import pyplot as plt
 
-    number = 4 + 4 * FIVE.index(way) + TASKS.index(task)
-    log = perform(way, task, "baxter", 0)
-    figure = overview(log, joints=joints(way, task, 0), title=f"{way}, {task}, baxter arm")
-    name = f"figure_{number:02d}_{way.replace(' ', '_')}_{task}.png"
+    number = 4 + 4 * FIVE.index(controller) + TASKS.index(task)
+    log = perform(controller, task, "baxter", 0)
+    figure = overview(
+        log, joints=joints(controller, task, 0), title=f"{controller}, {task}, baxter arm"
+    )
+    name = f"figure_{number:02d}_{controller.replace(' ', '_')}_{task}.png"
     figure.savefig(Path(folder) / name, dpi=90)
     plt.close(figure)
     return {"figure": number, "file": name, "alt": f"{task}: {plotting.describe(log)}"}

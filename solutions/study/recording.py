@@ -9,7 +9,7 @@ from typing import Any
 
 from labkit.recordings import DATA, Trials
 
-_KEPT = ("way", "task", "plant", "seed", "late_rms_mm", "late_max_mm", "settling", "effort")
+_KEPT = ("controller", "task", "plant", "seed", "late_rms_mm", "late_max_mm", "settling", "effort")
 
 
 def save_trials(trials: Trials, path: Path) -> None:

@@ -73,11 +73,11 @@ TABLE_1: Mapping[str, Callable[[Model], Candidate]] = {
 """The report's controllers with the report's gains."""
 
 
-def table_1(way: str, task: str, plant: str) -> Mapping[str, Any]:
+def table_1(controller: str, task: str, plant: str) -> Mapping[str, Any]:
     """The job: one controller with the printed gains; its RMS error after the first second."""
     goal = tasks.line() if task == "line" else tasks.circle()
     model = Model("left", Plant(armature=BAXTER.armature))
-    tuned = TABLE_1[way](model)
+    tuned = TABLE_1[controller](model)
     target = tuned.target(model, goal.target, goal.q0)
     with Arm(goal.side, PLANTS[plant], 0, q0=goal.start(0)) as arm:
         log = run(arm, target, tuned.controller, rate=tuned.rate)
@@ -100,7 +100,7 @@ def kept() -> Mapping[str, list[Row]]:
 
 def main() -> None:
     """Run both and keep the rows."""
-    grid = cells(way=tuple(TABLE_1), task=("line", "circle"), plant=tuple(PLANTS))
+    grid = cells(controller=tuple(TABLE_1), task=("line", "circle"), plant=tuple(PLANTS))
     rows = work_through(table_1, grid, progress=Meter("Table 1"))
     tuned = work_through(
         procedure, cells(plant=tuple(PLANTS), joint=(0,)), progress=Meter("tuning")

@@ -15,7 +15,7 @@ from labkit.errors import Diverged
 from labkit.metrics import summary
 
 from . import tasks
-from .gains import Candidate, five
+from .gains import Candidate, course_controllers
 from .grid import Row, table
 from .tasks import Task
 
@@ -85,10 +85,14 @@ def _task(make: Callable[[], Task]) -> Task:
 
 def main() -> None:
     """The five controllers with the gains of the campaign, on every case."""
-    ways = five(Model("left"), BAXTER)
-    rows = [{"way": way, **row} for way, tuned in ways.items() for row in score(tuned)]
+    controllers = course_controllers(Model("left"), BAXTER)
+    rows = [
+        {"controller": controller, **row}
+        for controller, tuned in controllers.items()
+        for row in score(tuned)
+    ]
     print("RMS position error [mm], the start included\n")
-    print(table(rows, "way", "case", "rms_mm"))
+    print(table(rows, "controller", "case", "rms_mm"))
 
 
 if __name__ == "__main__":

@@ -30,7 +30,7 @@ from .workspace_velocity import WorkspaceVelocityPD
 PAYS = 0.02
 """Share of the error that a step of the gain must take away to be worth its noise."""
 TRIED = (0.0, 0.15, 0.3, 0.45, 0.6, 0.75, 0.9)
-WAYS = ("joint velocity", "workspace velocity")
+CONTROLLERS = ("joint velocity", "workspace velocity")
 
 
 @cache
@@ -38,7 +38,7 @@ def _task(name: str) -> Task:
     return tasks.line() if name == "line" else tasks.circle()
 
 
-def trial(way: str, task: str, Kd: float, seed: int) -> Mapping[str, float]:
+def trial(controller: str, task: str, Kd: float, seed: int) -> Mapping[str, float]:
     """One run on Baxter's plant.
 
     Returns:
@@ -48,7 +48,7 @@ def trial(way: str, task: str, Kd: float, seed: int) -> Mapping[str, float]:
     goal, model = _task(task), Model("left")
     joints = Candidate(JointVelocityPD(KP, Kd), 200.0, True)
     poses = Candidate(WorkspaceVelocityPD(model, KP, Kd), 200.0, False)
-    tuned = joints if way == WAYS[0] else poses
+    tuned = joints if controller == CONTROLLERS[0] else poses
     target = goal.joints if tuned.joints else goal.target
     with Arm(goal.side, BAXTER, seed, q0=goal.start(seed)) as arm:
         log = run(arm, target, tuned.controller, rate=tuned.rate)
@@ -61,13 +61,16 @@ def trial(way: str, task: str, Kd: float, seed: int) -> Mapping[str, float]:
 
 def trials(seeds: int = 2, jobs: int | None = None, progress: Meter | None = None) -> list[Row]:
     """Every gain on two paths, by both velocity controllers."""
-    grid = cells(way=WAYS, task=("line", "circle"), Kd=TRIED, seed=range(seeds))
+    grid = cells(controller=CONTROLLERS, task=("line", "circle"), Kd=TRIED, seed=range(seeds))
     return work_through(trial, grid, jobs=jobs, progress=progress)
 
 
-def best(rows: list[Row], way: str) -> float:
+def best(rows: list[Row], controller: str) -> float:
     """The largest gain to which every step took away at least `PAYS` of the mean error."""
-    errors = [np.mean([r["late_rms_mm"] for r in pick(rows, way=way, Kd=Kd)]) for Kd in TRIED]
+    errors = [
+        np.mean([r["late_rms_mm"] for r in pick(rows, controller=controller, Kd=Kd)])
+        for Kd in TRIED
+    ]
     pays = [after < (1.0 - PAYS) * before for before, after in pairwise(errors)]
     return TRIED[[*pays, False].index(False)]
 
@@ -75,10 +78,11 @@ def best(rows: list[Row], way: str) -> float:
 def main() -> None:
     """Try the gains, print the tables and the choice."""
     rows = trials(progress=Meter("runs"))
-    for way in WAYS:
+    for controller in CONTROLLERS:
         for number in ("late_rms_mm", "shake_mm_s"):
-            print(f"{way}, {number}\n\n{table(pick(rows, way=way), 'Kd', 'task', number)}\n")
-        print(f"{way}: Kd = {best(rows, way):g} at Kp = {KP:g} 1/s\n")
+            its = table(pick(rows, controller=controller), "Kd", "task", number)
+            print(f"{controller}, {number}\n\n{its}\n")
+        print(f"{controller}: Kd = {best(rows, controller):g} at Kp = {KP:g} 1/s\n")
 
 
 if __name__ == "__main__":

@@ -7,9 +7,9 @@ from typing import Any
 import numpy as np
 
 from labkit import BAXTER, Arm, Hold, Plant, robot, run
-from labkit.loop import ultimate_gain, velocity_joint_of
 from labkit.metrics import joint_error
 from labkit.shapes import Array
+from labkit.stability import ultimate_gain, velocity_joint_of
 
 from .joint_velocity import JointVelocityPD
 from .report_procedure import Trial, Tuning, report_procedure

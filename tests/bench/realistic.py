@@ -5,7 +5,7 @@ from time import perf_counter
 import numpy as np
 
 import labkit as lk
-from solutions.study.gains import five
+from solutions.study.gains import course_controllers
 
 SECONDS = 2.0
 
@@ -18,7 +18,7 @@ def measure():
     path = lk.PosePath(lk.Line(T[:3, 3], T[:3, 3] + np.array([0.1, 0.1, 0.1])), T[:3, :3])
     line = lk.Trajectory(path, lk.Quintic(SECONDS))
     speeds = []
-    for tuned in five(model).values():
+    for tuned in course_controllers(model).values():
         target, times = tuned.target(model, line, q0), []
         for _ in range(3):
             with lk.Arm("left", lk.BAXTER, q0=q0) as arm:

@@ -11,26 +11,26 @@ from solutions.study.campaign import TASKS
 ROOT = Path(__file__).parents[2]
 
 
-def test_the_scales_of_a_page_hold_every_way():
-    for way in gallery.SHOWN:
+def test_the_scales_of_a_page_hold_every_method():
+    for controller in gallery.SHOWN:
         for (_, values, _), (low, high) in zip(
-            gallery._panels(way, "line"), gallery._limits("line"), strict=True
+            gallery._panels(controller, "line"), gallery._limits("line"), strict=True
         ):
             assert low < values.min()
             assert values.max() < high
 
 
 @pytest.mark.slow
-def test_every_run_leads_to_the_same_way_on_the_other_tasks_and_to_all_ways(book):
+def test_every_run_leads_to_the_same_method_on_the_other_tasks_and_to_all(book):
     for task in TASKS:
         page = BeautifulSoup((book / f"gallery/{task}.html").read_text(), "html.parser")
-        for way in gallery.SHOWN:
-            place = way.replace(" ", "-")
+        for controller in gallery.SHOWN:
+            place = controller.replace(" ", "-")
             links = {a["href"] for a in page.select_one(f"section#{place}").select("p a")}
             others = {f"{other}.html#{place}" for other in TASKS if other != task}
             assert links == others | {"#all-methods"}
         names = [a["href"] for a in page.select("section#all-methods table a")]
-        assert names == [f"#{way.replace(' ', '-')}" for way in gallery.SHOWN]
+        assert names == [f"#{controller.replace(' ', '-')}" for controller in gallery.SHOWN]
 
 
 @pytest.mark.slow
@@ -41,7 +41,8 @@ def test_the_readme_has_the_books_numbers(book):
     rows = [[cell.text for cell in row.select("th, td")] for row in table.select("tbody tr")]
     assert len(rows) == len(gallery.SHOWN)
     lines = (ROOT / "README.md").read_text().splitlines()
-    for way, *numbers in rows:
+    for controller, *numbers in rows:
         assert any(
-            x.startswith(f"| {way}") and x.endswith(f"| {' | '.join(numbers)} |") for x in lines
-        ), way
+            x.startswith(f"| {controller}") and x.endswith(f"| {' | '.join(numbers)} |")
+            for x in lines
+        ), controller

@@ -41,8 +41,8 @@ def test_bringing_an_arm_takes_a_dozen_lines():
 
 def test_the_page_names_all_that_run_asks_for():
     page = (ROOT / "book/own_robot.md").read_text()
-    asked = [name for name in vars(lk.driven.RealArm) if not name.startswith("_")]
+    asked = [name for name in vars(lk.arm_adapters.RealArm) if not name.startswith("_")]
     assert {"state", "apply", "stop", "wait"} <= set(asked)
     assert all(
-        f"| `{name}(" in page for name in asked if callable(getattr(lk.driven.RealArm, name))
+        f"| `{name}(" in page for name in asked if callable(getattr(lk.arm_adapters.RealArm, name))
     )

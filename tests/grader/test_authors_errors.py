@@ -24,8 +24,9 @@ def fails(x):
     raise ZeroDivisionError("by zero")
 
 
-def problem(points=2.0, answer=double):
-    return Problem("double", points, "Double it.", answer, (Trial("twice", (call(1.0),)),))
+def problem(points=2.0, answer=double, **more):
+    trials = (Trial("twice", (call(1.0),)),)
+    return Problem("double", points, "Double it.", answer, trials, **more)
 
 
 def released(monkeypatch, problems, source="def double(x):\n    pass", first="# 2 points"):
@@ -74,3 +75,30 @@ def test_points_have_to_add_up(monkeypatch):
     """What the first cell promises is what the questions give."""
     with pytest.raises(LabkitError, match=r"the first cell says 9 points, .* come to 2$"):
         released(monkeypatch, (problem(),), first="about 4 hours · 9 points")
+
+
+@pytest.mark.parametrize("outcomes", [("moton",), ("motion", "moton"), "motion"])
+def test_an_outcome_that_there_is_not_is_refused(monkeypatch, outcomes):
+    """It would be missing from the class report; the names that there are are told."""
+    with pytest.raises(
+        LabkitError, match=r"problems\.py: double has the outcome '.*frames, motion"
+    ):
+        released(monkeypatch, (problem(outcomes=outcomes),))
+
+
+def test_the_outcome_of_a_measurement_is_checked_too(monkeypatch):
+    """Where the predictions are written."""
+    asked = SimpleNamespace(name="friction", outcomes=("experiments",))
+    monkeypatch.setattr(Course, "predictions", lambda self, name: (asked,))
+    with pytest.raises(LabkitError, match=r"predictions\.py: friction has the outcome 'experi"):
+        released(monkeypatch, (problem(),))
+
+
+@pytest.mark.parametrize("wrong", [
+    "from solutions.paths.answers import lin as answer", "import solutions.path.answers",
+])  # fmt: skip
+def test_an_import_in_a_stub_that_finds_nothing_is_refused(monkeypatch, wrong):
+    """The solution region is cleared for students, but whoever solves the notebook meets it."""
+    source = f"def double(x):\n    ### BEGIN SOLUTION\n    {wrong}\n    ### END SOLUTION"
+    with pytest.raises(LabkitError, match=rf"01_paths\.py:\nthe stub of double says `{wrong}`: "):
+        released(monkeypatch, (problem(),), source=source)

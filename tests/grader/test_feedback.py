@@ -28,6 +28,7 @@ from labkit.grader.grading import public_evidence
 from labkit.grader.grading.grade import _answer
 from labkit.grader.grading.plan import Plan
 from labkit.grader.grading.results import Result
+from labkit.grader.pages import TEMPLATES
 from labkit.metrics import Summary
 from labkit.replay.motion import unpack
 
@@ -337,3 +338,10 @@ def test_page_is_readable_without_scripts(chromium, visit):
     for part in ("4 of 10 points", "position error of the tip, RMS", "Baxter's left arm moves"):
         assert part in words
     assert opened.locator("svg[role=img]").count() == 3
+
+
+def test_the_words_of_a_verdict_are_those_of_the_check():
+    """The template has no word of its own for them: all come from `messages`."""
+    template = (TEMPLATES / "feedback.html.j2").read_text()
+    for words in ("tests failed", "well-known", "passed", '"failed', "needed before"):
+        assert words not in template.replace("say.passed", "")

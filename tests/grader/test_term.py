@@ -206,15 +206,12 @@ def test_pseudonyms_last_a_term_and_are_nobody_elses(course):
     assert pseudonyms(course)("ada") != first
 
 
-def test_look_alikes(term):
-    """Two who handed in the same unusual work are listed together, with what to ask."""
-    results = list(Results(term, NAME))
-    one = next(
-        r for r in results if sum(q.verdict.outcome is Outcome.WRONG for q in r.questions) > 2
-    )
-    text = report(NAME, [*map(mark_of, results), mark_of(replace(one, student="zz"))], {}, str)
-    assert "Look-alikes" in text
-    assert f"{one.student} and zz" in text
+def test_the_same_text_has_a_section_of_its_own(term):
+    """Three who handed in the same work are listed together, with what to ask."""
+    one, *_ = (r for r in Results(term, NAME) if r.score > 10.0)
+    three = [mark_of(replace(one, student=name)) for name in ("xx", "yy", "zz")]
+    text = report(NAME, three, {}, str)
+    assert "## The same text\n\n- xx, yy, zz handed in the same text in" in text
 
 
 def test_canvas_layout():

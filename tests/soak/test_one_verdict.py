@@ -46,7 +46,7 @@ def {name}(*args, **kwargs):
 
 FUNCTION = {
     "pinocchio": "pinocchio.rnea",
-    "labkit.loop": "labkit.loop.margins",
+    "labkit.stability": "labkit.stability.margins",
     "labkit.metrics": "labkit.metrics.summary",
     "labkit.tags.detection": "labkit.tags.detection.tag_pose",
 }

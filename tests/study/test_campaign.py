@@ -13,10 +13,12 @@ from solutions.study import __main__ as command_line
 from solutions.study import campaign as report
 from solutions.study import pictures
 from solutions.study.claims import Outcome, interval, judge, verdicts
-from solutions.study.gains import five
+from solutions.study.gains import course_controllers
 from solutions.study.grid import Meter, cells, pick, row_of, spread, table, work_through
 
-SMALL = cells(way=("joint velocity", "baseline"), task=("line",), plant=("baxter",), seed=(0, 1))
+SMALL = cells(
+    controller=("joint velocity", "baseline"), task=("line",), plant=("baxter",), seed=(0, 1)
+)
 
 
 @pytest.fixture(scope="module")
@@ -52,13 +54,15 @@ def test_a_dask_cluster_that_is_not_there_is_a_sentence():
 
 
 def test_every_way_starts_a_seed_at_the_same_place():
-    starts = [report.perform(way, "line", "ideal", 3).q[0] for way in report.WAYS]
+    starts = [
+        report.perform(controller, "line", "ideal", 3).q[0] for controller in report.CONTROLLERS
+    ]
     for start in starts:
         np.testing.assert_array_equal(start, starts[0])
 
 
 def test_the_five_controllers_are_the_ones_with_stated_gains():
-    assert set(report.FIVE) == set(five(lk.Model()))
+    assert set(report.FIVE) == set(course_controllers(lk.Model()))
 
 
 def test_a_run_that_is_refused_is_a_row_and_the_rest_goes_on():
@@ -79,24 +83,24 @@ def test_a_bug_in_a_job_is_no_finding():
 
 
 def test_a_table_shows_the_mean_and_the_spread_over_seeds():
-    rows = [{"way": "a", "task": "line", "x": x, "failed": None} for x in (1.0, 2.0, 6.0)] + [
-        {"way": "b", "task": "line", "x": None, "failed": None}
-    ]
-    assert table(rows, "way", "task", "x").splitlines() == [
-        "| way | line |",
+    rows = [
+        {"controller": "a", "task": "line", "x": x, "failed": None} for x in (1.0, 2.0, 6.0)
+    ] + [{"controller": "b", "task": "line", "x": None, "failed": None}]
+    assert table(rows, "controller", "task", "x").splitlines() == [
+        "| controller | line |",
         "|---|---|",
         "| a | 3 [1, 6] |",
         "| b | never |",
     ]
     assert spread([1.0, 2.0, 6.0]) == (3.0, 1.0, 6.0)
-    assert pick(rows, way="b") == rows[3:]
+    assert pick(rows, controller="b") == rows[3:]
 
 
 def test_bad_grids_and_columns_are_sentences():
     with pytest.raises(lk.LabkitError, match="axis 'seed' is empty"):
-        cells(way=("a",), seed=())
+        cells(controller=("a",), seed=())
     with pytest.raises(lk.LabkitError, match="no column 'rms'; there is"):
-        table([{"way": "a", "failed": None}], "way", "way", "rms")
+        table([{"controller": "a", "failed": None}], "controller", "controller", "rms")
     with pytest.raises(lk.LabkitError, match="jobs is 0"):
         work_through(fails_on_two, cells(n=(1,)), jobs=0)
 
@@ -180,9 +184,13 @@ def test_no_interval_is_narrower_than_the_clock_can_tell():
 
 
 def test_every_claim_of_the_report_gets_a_verdict_from_rows():
-    """On made-up rows in which the order of the ways is the order of their errors."""
+    """On made-up rows in which the order of the controllers is the order of their errors."""
     rows = [
-        {**cell, "late_rms_mm": report.WAYS.index(cell["way"]) + 0.1 * cell["seed"], "failed": None}
+        {
+            **cell,
+            "late_rms_mm": report.CONTROLLERS.index(cell["controller"]) + 0.1 * cell["seed"],
+            "failed": None,
+        }
         for cell in report.grid(2)
     ]
     gains = [
@@ -232,7 +240,7 @@ def test_the_campaign_writes_its_numbers_and_tables(tmp_path, monkeypatch, capsy
 def test_a_controller_alone_is_printed_and_not_written(tmp_path, monkeypatch, capsys):
     """Any that `gains` knows, not only the seven of the report."""
     monkeypatch.setattr(report, "TASKS", ("line",))
-    words = ["--way", "augmented PD", "--seeds", "1", "--jobs", "1", "--out", str(tmp_path)]
+    words = ["--controller", "augmented PD", "--seeds", "1", "--jobs", "1", "--out", str(tmp_path)]
     monkeypatch.setattr("sys.argv", ["campaign", *words])
     command_line.main()
     assert "| augmented PD |" in capsys.readouterr().out
@@ -243,7 +251,7 @@ def test_the_rows_kept_for_notebooks_are_those_of_the_campaign(rows):
     kept = recordings.campaign()
     assert len(kept) == len(report.grid(5))
     for fresh in rows:
-        cell = {k: fresh[k] for k in ("way", "task", "plant", "seed")}
+        cell = {k: fresh[k] for k in ("controller", "task", "plant", "seed")}
         (old,) = pick(kept, **cell)
         for number in ("late_rms_mm", "late_max_mm", "settling", "effort"):
             assert old[number] == pytest.approx(fresh[number], rel=1e-3, abs=1e-4)

@@ -24,7 +24,8 @@ def test_a_loop_that_is_not_passive_is_stable_at_a_hard_wall():
 
 def test_by_the_image_a_wrong_focal_length_does_no_harm_and_by_the_pose_it_does():
     image, pose = (
-        image_servoing.approach(way, 0.2).distance[-1] for way in ("image", "pose, goal measured")
+        image_servoing.approach(method, 0.2).distance[-1]
+        for method in ("image", "pose, goal measured")
     )
     assert image < 5e-4 and pose > 0.02
 

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 import labkit as lk
-from labkit.loop import VelocityJoint, ultimate_gain
+from labkit.stability import VelocityJoint, ultimate_gain
 from solutions.study import speed_gains
 from solutions.study.gains import KD
 from solutions.study.report_procedure import decay_ratio, report_procedure
@@ -58,4 +58,4 @@ def test_a_loop_that_never_oscillates_is_a_sentence():
 def test_the_compared_derivative_gain_is_what_the_tuning_finds():
     """For both velocity controllers, on two paths."""
     rows = speed_gains.trials(seeds=2)
-    assert {speed_gains.best(rows, way) for way in speed_gains.WAYS} == {KD}
+    assert {speed_gains.best(rows, controller) for controller in speed_gains.CONTROLLERS} == {KD}

@@ -1,6 +1,7 @@
 """Write a synthetic class into a course, or take it through a whole term in a folder of its own."""
 
 import argparse
+import os
 import sys
 from functools import partial
 from pathlib import Path
@@ -8,7 +9,7 @@ from pathlib import Path
 from labkit.course.authoring.layout import Course
 from labkit.course.seed import PUBLIC_SEED
 from labkit.grader.each import Failures
-from labkit.grader.grading.batch import GradeOptions, workers
+from labkit.grader.grading.batch import GradeOptions
 
 from . import expected_file, make_class
 from .rehearsal import rehearse
@@ -35,7 +36,7 @@ def main() -> int:
         print(f"what they deserve: {expected_file(course, args.assignment)}")
         return 0
     with Failures() as failures:
-        how = GradeOptions(jobs=workers(), tell=partial(print, flush=True))
+        how = GradeOptions(jobs=len(os.sched_getaffinity(0)), tell=partial(print, flush=True))
         steps = rehearse(course, args.assignment, args.rehearse, args.count, how)
         for sentence in failures.sift(steps, "failed"):
             print(sentence, flush=True)

@@ -2,6 +2,11 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
+from pathlib import Path
+
+from ...errors import LabkitError
+
 OUTCOMES = {
     "frames": "express points, poses and errors of orientation in named frames, and test them",
     "motion": "plan a motion within limits of speed and acceleration, and predict its peaks",
@@ -13,3 +18,18 @@ OUTCOMES = {
     "evidence": "state a claim with a number, its unit and an interval, or that it is undecided",
 }
 """Eight outcomes, by the name that a question's ``outcomes`` gives them."""
+
+
+def check_outcomes(file: Path, name: str, outcomes: Iterable[str]) -> None:
+    """Raise a LabkitError unless a question's outcomes are names of `OUTCOMES`.
+
+    Args:
+        file: Where they are written.
+        name: Of the question.
+        outcomes: What it is evidence of.
+    """
+    for outcome in outcomes:
+        if outcome not in OUTCOMES:
+            raise LabkitError(
+                f"{file}: {name} has the outcome {outcome!r}; take one of {', '.join(OUTCOMES)}"
+            )

@@ -1,4 +1,4 @@
-"""What the class understood: marks, success, misconceptions by name, look-alikes."""
+"""What the class understood: marks, success, misconceptions by name, the same texts."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ from ..grading.batch import common_failures
 from ..grading.results import Result
 from ..marks.mark import Mark
 from ..pages import render
-from .alike import pairs_alike, same_text
+from .alike import same_text
 
 SLOW = 30.0
 FEWEST = 5
@@ -87,7 +87,7 @@ def report(
         doubtful=list(common_failures(graded)),
         slow_limit=f"{SLOW:g}",
         slow=[f"{name}: {seconds:.0f} s" for seconds, name in times if seconds > SLOW],
-        alike=[*same_text(graded, who), *pairs_alike(graded, who)],
+        same_text=list(same_text(graded, who)),
     )
     return text.rstrip() + "\n"
 

@@ -22,8 +22,9 @@ from typing import Any, NamedTuple
 import numpy as np
 from markupsafe import Markup
 
+from ...course import messages
 from ...course.authoring.layout import Course
-from ...course.messages import GATE, foretells, why, word
+from ...course.messages import foretells
 from ...errors import LabkitError
 from ...metrics import SETTLED
 from ...replay.motion import unpack
@@ -97,9 +98,7 @@ def page(
         by_hand=[line for line in mark.lines if line.name not in asked],
         answers=[q.verdict for q in result.questions if not foretells(q.verdict)],
         predictions=[q.verdict for q in result.questions if foretells(q.verdict)],
-        word=word,
-        gate=GATE,
-        why=why,
+        say=messages,
         error_over_time=error_over_time,
         measures=measures,
         number_by_number=number_by_number,

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import os
 import time
 from collections import Counter
 from collections.abc import Callable, Iterable, Iterator, Sequence
@@ -68,11 +67,6 @@ class GradedSubmission:
 
     result: Result
     says: str = ""
-
-
-def workers() -> int:
-    """How many workers fit this machine."""
-    return max(1, len(os.sched_getaffinity(0)))
 
 
 def grade_class(

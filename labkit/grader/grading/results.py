@@ -12,7 +12,7 @@ from dataclasses import dataclass, field, fields
 from functools import cache
 from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
-from typing import Any, TypedDict
+from typing import TypedDict
 
 import labkit
 
@@ -196,15 +196,6 @@ class Result:
         """Why nothing in it is an attempt at a question, in a sentence; "" if something may be."""
         other = (note for note in self.notes if note.startswith(OTHER_NOTEBOOK))
         return self.rejected or next(other, "")
-
-    @property
-    def verdict(self) -> dict[str, Any]:
-        """Everything that must come out the same wherever it is graded."""
-        data: dict[str, Any] = record_data(self)
-        del data["seconds"], data["isolation"]
-        for cell in data["cells"]:
-            del cell["seconds"]
-        return data
 
 
 class Results:

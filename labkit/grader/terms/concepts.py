@@ -17,7 +17,7 @@ from typing import Any, Literal
 import msgspec
 
 from ...course.authoring.layout import Course
-from ...course.authoring.outcomes import OUTCOMES
+from ...course.authoring.outcomes import check_outcomes
 from ...errors import LabkitError
 from ..pages import file, render, render_page
 
@@ -66,9 +66,7 @@ def items(course: Course) -> tuple[Item, ...]:
     except (ValueError, KeyError) as error:
         raise LabkitError(f"{path}: {error}; correct that") from None
     for item in found:
-        if item.outcome not in OUTCOMES:
-            known = ", ".join(OUTCOMES)
-            raise LabkitError(f"{path}: {item.outcome!r} is not an outcome; there are {known}")
+        check_outcomes(path, item.name, (item.outcome,))
     return found
 
 

@@ -7,6 +7,7 @@ said before anything is written: the file, the question, and what to do.
 
 from __future__ import annotations
 
+import ast
 import re
 import shutil
 import traceback
@@ -17,9 +18,10 @@ from pathlib import Path
 import nbformat
 
 from ...course.authoring.layout import Course
+from ...course.authoring.outcomes import check_outcomes
 from ...course.authoring.problem import Problem
 from ...course.authoring.release import Prepared, prepare, write
-from ...course.notebook import BLANK, about, by_hand, grade_id, manifest
+from ...course.notebook import BLANK, about, by_hand, grade_id, kind, manifest
 from ...course.source import look
 from ...errors import LabkitError
 from ..nbgrader.gradebook import migrate
@@ -134,12 +136,17 @@ def prepared(course: Course, name: str, seed: int) -> Prepared:
     path = course.notebook_source(name)
     try:
         _check_types(path, course.problems(name))
+        for problem in course.problems(name):
+            check_outcomes(path.with_name("problems.py"), problem.name, problem.outcomes)
+        for asked in course.predictions(name):
+            outcomes = getattr(asked, "outcomes", ())  # a prediction has none
+            check_outcomes(path.with_name("predictions.py"), asked.name, outcomes)
         made = prepare(course, name, seed)
     except (LabkitError, MemoryError):
         raise
     except Exception as error:
         raise LabkitError(_where(course, error)) from error
-    if reasons := [*_unreadable(made), *_sums(made)]:
+    if reasons := [*_unreadable(made), *_not_importable(made), *_sums(made)]:
         raise LabkitError("\n".join([f"{path.name}:", *reasons]))
     return made
 
@@ -182,6 +189,20 @@ def _unreadable(made: Prepared) -> Iterator[str]:
         if broken:
             what = f"the stub of {grade_id(cell)}" if grade_id(cell) else f"cell {number}"
             yield f"{what} is not Python: {broken}"
+
+
+def _not_importable(made: Prepared) -> Iterator[str]:
+    """Imports in the stubs, solutions included, that find nothing."""
+    for cell in made.source.cells:
+        if kind(cell) != "answer" or look(cell.source)["broken"]:
+            continue
+        for node in ast.walk(ast.parse(cell.source)):
+            if isinstance(node, ast.Import | ast.ImportFrom):
+                try:
+                    exec(ast.unparse(node), {})
+                except ImportError as error:
+                    says = ast.unparse(node)
+                    yield f"the stub of {grade_id(cell)} says `{says}`: {error}; correct it"
 
 
 def _sums(made: Prepared) -> Iterator[str]:

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 import labkit as lk
-from labkit.loop import VelocityJoint, margins, mean_age, ultimate_gain, velocity_joint_of
+from labkit.stability import VelocityJoint, margins, mean_age, ultimate_gain, velocity_joint_of
 from solutions.study.report_procedure import decay_ratio
 from solutions.study.tuning import trial_on
 
