@@ -137,7 +137,7 @@ def import_list(
         summary.append(f"not in this list, and still in the roster: {still}")
     if len(entries) < len(rows):
         summary.append(
-            "not taken: Test Student, whom Canvas makes for a teacher's view as a student"
+            "not taken: Test Student, whom Canvas makes for an instructor's view as a student"
         )
     summary += about_teams(who for entry in entries if (who := entry.student.team))
     if assignment:
