@@ -70,7 +70,8 @@ class HandIn:
         lines += [f"[note] {text}" for text in self.notes]
         lines += [f"  {line}" for line in self.lines]
         lines += [
-            f"  {name}: {words} words; your instructor reads it" for name, words in self.texts.items()
+            f"  {name}: {words} words; your instructor reads it"
+            for name, words in self.texts.items()
         ]
         right = {name for name, v in self.verdicts.items() if v is not None and v.right}
         tasks = self.verdicts.keys() - set(self.predictions)

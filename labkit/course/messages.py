@@ -41,7 +41,9 @@ def head(verdict: Verdict) -> str:
         return f"{verdict.name}: a possible answer. When it is marked, it earns {points} if it is \
 true of your own arm."
     elif verdict.outcome is Outcome.RIGHT and not verdict.complete:
-        return f"{verdict.name}: {says} on all cases here; {points} if the instructor's cases agree."
+        return (
+            f"{verdict.name}: {says} on all cases here; {points} if the instructor's cases agree."
+        )
     return f"{verdict.name}: {says}. {verdict.earned:g} of {points}."
 
 

@@ -296,7 +296,9 @@ def test_words_of_a_text_are_counted_without_the_placeholder(folder):
     assert found.texts and set(found.texts.values()) == {0}
     assert any(f"{name} has 0 words; it needs" in str(found) for name in found.texts)
     found = with_texts_of(folder, 30)
-    assert all(f"  {name}: 30 words; your instructor reads it" in str(found) for name in found.texts)
+    assert all(
+        f"  {name}: 30 words; your instructor reads it" in str(found) for name in found.texts
+    )
     assert "at most" not in str(found)
 
 
