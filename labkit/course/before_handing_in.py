@@ -184,7 +184,7 @@ def examine(path: Path) -> HandIn:
 def _on_the_public_arm(
     path: Path, code: list[str], verdicts: Mapping[str, Verdict | None]
 ) -> tuple[list[str], list[str]]:
-    """What to correct, or to know, where numbers of one's own arm were measured on the public one."""
+    """What to correct, and to know, where one's own arm was measured on the public one."""
     measured = [
         name
         for name, verdict in verdicts.items()

@@ -145,7 +145,7 @@ def message(
 
 
 def summary(verdict: Verdict) -> list[str]:
-    """A verdict for an instructor's page: its head, and after a failure the mistake and each test."""
+    """A verdict for an instructor: its head, and after a failure the mistake and each test."""
     lines = [head(verdict)]
     if verdict.outcome in (Outcome.WRONG, Outcome.ERROR):
         lines += [f"  {mistake(verdict.mistake)}"] if verdict.mistake else []

@@ -97,10 +97,8 @@ class Surroundings:
         T_wd = self.wanted()
         if T_wd is not None:
             fixed = not isinstance(self._latest, PoseSample)
-            found[TARGET] = _placed("target", T_wd) | {
-                "fixed": fixed,
-                "shift": self._shift.tolist(),
-            }
+            about = {"fixed": fixed, "shift": self._shift.tolist()}
+            found[TARGET] = _placed("target", T_wd) | about
         for i, thing in enumerate(self._arm.world.things):
             if data := drawn_thing(thing):
                 found[f"thing {i}"] = data
