@@ -15,7 +15,7 @@ from ..trajectory import PoseSample, Sample
 
 TARGET = "target"
 POINTS = 121
-"""In so many points the path of the target is drawn."""
+"""Of this many points is the path of the target."""
 FASTEST = 2.0
 """Dragged walls and bands move at most this fast, in [m/s], so no wall jumps over the tip."""
 
