@@ -114,7 +114,7 @@ def try_gains(kp, kd):
     gains = f", kp = {kp:.3g}, kd = {kd:.3g}" if joint_law == "joint velocity PD" else ", which has no gains"
     jitter = np.abs(np.diff(log.command, axis=0)).max()
     return figure, (
-        f"Baxter by {joint_law}{gains}: the largest error in the last quarter is "
+        f"Baxter by {joint_law.partition(',')[0]}{gains}: the largest error in the last quarter is "
         f"{last:.3f} rad, the largest jump of a command {jitter:.2f} rad/s."
     )
 
