@@ -12,14 +12,13 @@ import os
 import sys
 from collections.abc import Callable
 from dataclasses import replace
-from io import BytesIO
 from pathlib import Path
 from typing import Any
 
 from ..errors import LabkitError, UnknownName
 from .advice import line_of
 from .calling import heard
-from .card import card
+from .card import card, picture
 from .checks_file import read_checks
 from .gaps import calculated
 from .identification import on_the_public_arm
@@ -308,20 +307,5 @@ def _say(says: Message, verdict: Verdict, found: Mismatch | None) -> None:
     from IPython.display import display
 
     outcome = Outcome.NOT_TRIED if waits(verdict) else verdict.outcome
-    shown = card(says, outcome, found and _picture(found))
+    shown = card(says, outcome, found and picture(found))
     display(shown, metadata=verdict_metadata(verdict), raw=True)
-
-
-def _picture(found: Mismatch) -> tuple[bytes, str]:
-    """A small figure of the answers that gave a known mistake away, and its words."""
-    from .. import plotting
-
-    picture = BytesIO()  # a notebook draws figures only once pyplot has made one
-    plotting.answers(*found).savefig(picture, format="png")
-    call, expected, given = found
-    words = f"{call}, number by number: expected {_list(expected)}; yours {_list(given)}."
-    return picture.getvalue(), words
-
-
-def _list(numbers: Any) -> str:
-    return ", ".join(f"{x:.3g}" for x in numbers)
