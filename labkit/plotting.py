@@ -25,6 +25,15 @@ from .model import Model
 STYLES = ("-", "--", "-.", ":")
 AXES = ("x", "y", "z")
 
+stand_ins: list[str] = []
+"""Answers that a stand-in replaces in the cell that runs; `labkit.course.use` writes them here."""
+
+
+def as_drawn(caption: str) -> str:
+    """A caption that says, where it is so, that a stand-in draws what it tells of."""
+    names = " and ".join(dict.fromkeys(stand_ins))
+    return f"With a stand-in for {names}: {caption}" if names else caption
+
 
 def tracking(log: Log, model: Model | None = None, *, axes: Any = None) -> Any:
     """The tip against its target above, the length of its position error below.
@@ -95,7 +104,7 @@ def show(caption: str) -> None:
     Args:
         caption: What is to be seen, with its numbers; a line under the figure.
     """
-    figure = plt.gcf()
+    figure, caption = plt.gcf(), as_drawn(caption)
     if get_ipython() is not None:
         display(figure, metadata={"image/png": {"alt": caption}})
     kept = caption.replace(" %", "\N{NO-BREAK SPACE}%")
@@ -138,7 +147,8 @@ def describe(log: Log, model: Model | None = None) -> str:
 
 
 def dials(
-    draw: Callable[..., tuple[Figure, str]], **ranges: tuple[float, float, float]
+    draw: Callable[..., tuple[Figure, str]],
+    **ranges: tuple[float, float, float] | tuple[float, float, float, str],
 ) -> dict[str, Any]:
     """Show a figure under sliders that change it.
 
@@ -147,7 +157,7 @@ def dials(
 
     Args:
         draw: A function of a number for each slider, by name; returns a figure and its caption.
-        ranges: For each slider its least value, its largest one, and where it starts.
+        ranges: For each slider its least value, its largest one, where it starts, and its unit.
 
     Returns:
         The sliders by name; setting a slider's `value` redraws.
@@ -156,22 +166,28 @@ def dials(
 
     from .replay.saved import in_its_place
 
+    by = as_drawn("")
+
     def drawn() -> dict[str, Any]:
-        figure, caption.value = draw(**{name: slider.value for name, slider in sliders.items()})
+        figure, told = draw(**{name: slider.value for name, slider in sliders.items()})
+        caption.value = by + told
         plt.close(figure)
         return {"obj": figure, "metadata": {"image/png": {"alt": caption.value}}}
 
-    sliders = {
-        name: ipywidgets.FloatSlider(
-            start, min=a, max=b, step=(b - a) / 100, description=name, continuous_update=False
-        )
-        for name, (a, b, start) in ranges.items()
-    }
+    sliders, rows, spans = {}, [], []
+    for name, (a, b, start, *unit) in ranges.items():
+        words = " ".join([f"{name} from {a:g} to {b:g}", *unit])
+        sliders[name] = ipywidgets.FloatSlider(
+            start, min=a, max=b, step=(b - a) / 100, description=name, tooltip=words,
+            continuous_update=False,
+        )  # fmt: skip
+        ends = ipywidgets.Label(" ".join([f"{a:g} to {b:g}", *unit]))
+        rows.append(ipywidgets.HBox([sliders[name], ends]))
+        spans.append(words)
     caption = ipywidgets.HTML()
-    span = ", ".join(f"{name} from {a:g} to {b:g}" for name, (a, b, _) in ranges.items())
-    words = f"Dials: {span}"
+    words = f"Dials: {', '.join(spans)}"
     display(in_its_place(f"{words}; run the cell to turn them."), raw=True)
-    _display(ipywidgets.VBox([*sliders.values(), caption]), words)
+    _display(ipywidgets.VBox([*rows, caption]), words)
     first = drawn()
     figure = display(first.pop("obj"), display_id=True, **first)
     for slider in sliders.values():

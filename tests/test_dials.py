@@ -49,6 +49,17 @@ def test_a_slider_redraws_with_the_caption_as_alt_text(shown):
     assert plt.get_fignums() == others
 
 
+def test_a_caption_says_that_a_stand_in_draws(shown, monkeypatch, capsys):
+    """Under a figure and under dials, whatever else the caption tells."""
+    monkeypatch.setattr(lk.plotting, "stand_ins", ["gains", "law", "law"])
+    plt.figure()
+    lk.plotting.show("It rests.")
+    lk.plotting.dials(lambda kd: (plt.figure(), "It moves."), kd=(0.0, 2.0, 1.0))
+    assert "With a stand-in for gains and law: It rests." in capsys.readouterr().out
+    says = [x["metadata"]["image/png"]["alt"] for x in shown if "metadata" in x][-1]
+    assert says == "With a stand-in for gains and law: It moves."
+
+
 def test_a_bar_says_how_long_it_takes_and_when_it_is_done(shown, widgets, monkeypatch):
     """Told every tick, it is drawn five times a second at most, and its end never fails to show."""
     clock = iter([0.0, 0.1, 0.25, 0.3, 1.0])
@@ -65,12 +76,13 @@ def test_a_bar_says_how_long_it_takes_and_when_it_is_done(shown, widgets, monkey
     assert bar.value == 10.0 and shown[1:] == [{"text/plain": "pushing: done"}]
 
 
-def test_boxes_are_words_where_no_widget_can_be_shown(shown):
+def test_boxes_are_words_where_no_widget_can_be_shown(shown, widgets):
     """A page that shows the saved notebook as text is told what was there."""
-    lk.plotting.dials(lambda kd: (plt.figure(), ""), kd=(0.0, 2.0, 1.0))
+    lk.plotting.dials(lambda kd: (plt.figure(), ""), kd=(0.0, 2.0, 1.0, "N m s/rad"))
     lk.plotting.progress("pushing", 10.0)
     words = [x["text/plain"] for x in shown if "text/plain" in x]
-    told = "Dials: kd from 0 to 2"
+    told = "Dials: kd from 0 to 2 N m s/rad"
     assert words == [f"{told}; run the cell to turn them.", told, "pushing …"]
+    assert widgets[0].children[1].value == "0 to 2 N m s/rad"
     assert 'class="lk-saved"' in shown[0]["text/html"]
     assert "application/vnd.jupyter.widget-view+json" in shown[1]

@@ -30,7 +30,7 @@ from .notebook import (
     last_verdict,
     read_cells,
 )
-from .own_arm import arms_for, opens_the_public_arm
+from .own_arm import FILE, arms_for, opens_the_public_arm
 from .serialize import decode
 from .source import look
 from .verdict import Outcome, Verdict
@@ -70,7 +70,8 @@ class HandIn:
         lines += [f"[note] {text}" for text in self.notes]
         lines += [f"  {line}" for line in self.lines]
         lines += [
-            f"  {name}: {words} words; a person reads it" for name, words in self.texts.items()
+            f"  {name}: {words} words; your instructor reads it"
+            for name, words in self.texts.items()
         ]
         right = {name for name, v in self.verdicts.items() if v is not None and v.right}
         tasks = self.verdicts.keys() - set(self.predictions)
@@ -140,7 +141,15 @@ def examine(path: Path) -> HandIn:
         for verdict in verdicts.values()
         if verdict is not None and verdict.withheld
     ]
-    problems += _on_the_public_arm(path, code, verdicts)
+    lost, told = _on_the_public_arm(path, code, verdicts)
+    problems += lost
+    notes += told
+    problems += [
+        f"the cell of {name} says None, although you had committed to a prediction; the cell is "
+        "what is marked, so write your prediction into it again and run it"
+        for name in predictions
+        if (said := verdicts[name]) and said.right and _holds_nothing(code, name)
+    ]
     stale = [name for name in verdicts if changed_since(cells, name)]
     if stale:
         notes.append(
@@ -174,19 +183,32 @@ def examine(path: Path) -> HandIn:
 
 def _on_the_public_arm(
     path: Path, code: list[str], verdicts: Mapping[str, Verdict | None]
-) -> list[str]:
-    """What to say where numbers of one's own arm were measured on the public one."""
+) -> tuple[list[str], list[str]]:
+    """What to correct, and to know, where one's own arm was measured on the public one."""
     measured = [
         name
         for name, verdict in verdicts.items()
         if verdict and verdict.right and any(test.name == OWN_ARM for test in verdict.tests)
     ]
-    if not (measured and opens_the_public_arm(code) and arms_for(path.resolve().parent)):
-        return []
-    return [
-        f'HANDLE is "demo", the public arm, and {", ".join(measured)} will be judged by an arm of '
-        "your own; set HANDLE to the name that your instructor gave you, and measure again"
+    if not (measured and opens_the_public_arm(code)):
+        return [], []
+    begins, names = 'HANDLE is "demo", the public arm', ", ".join(measured)
+    if arms_for(path.resolve().parent):
+        return [
+            f"{begins}, and {names} will be judged by an arm of your own; set HANDLE to the name "
+            "that your instructor gave you, and measure again"
+        ], []
+    return [], [
+        f"{begins}, and {FILE} is not beside the notebook: {names} will earn nothing if your "
+        "course gave you an arm of your own. If it did, ask your instructor for this file"
     ]
+
+
+def _holds_nothing(code: list[str], name: str) -> bool:
+    """Whether the last cell with a prediction says None."""
+    pattern = rf"^{name}\s*=\s*predict\(\s*['\"]{name}['\"]\s*(,\s*(said\s*=\s*)?(None)?\s*)?\)"
+    made = [cell for cell in code if re.search(rf"^{name}\s*=", cell, re.MULTILINE)]
+    return bool(made) and bool(re.search(pattern, made[-1], re.MULTILINE))
 
 
 def _cells_of(cells: list[dict[str, Any]], question: str, name: str) -> tuple[list[str], list[str]]:

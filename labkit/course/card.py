@@ -6,6 +6,8 @@ import base64
 import re
 from collections.abc import Iterable
 from html import escape
+from io import BytesIO
+from typing import Any
 
 from .messages import PRINTED, Message, failures
 from .verdict import Outcome
@@ -72,3 +74,18 @@ def _inline(text: str) -> str:
 
 def _block(lines: Iterable[str]) -> str:
     return f"<pre>{escape(chr(10).join(lines))}</pre>"
+
+
+def picture(found: tuple[str, Any, Any]) -> tuple[bytes, str]:
+    """A small figure of the answers that gave a known mistake away, and its words."""
+    from .. import plotting
+
+    drawn = BytesIO()  # a notebook draws figures only once pyplot has made one
+    plotting.answers(*found).savefig(drawn, format="png")
+    call, expected, given = found
+    words = f"{call}, number by number: expected {_list(expected)}; yours {_list(given)}."
+    return drawn.getvalue(), words
+
+
+def _list(numbers: Any) -> str:
+    return ", ".join(f"{x:.3g}" for x in numbers)

@@ -8,8 +8,10 @@ from typing import Any
 from .brief import heading, where_hints_are
 from .bugs import Found, Telling
 from .forms import OWN_ARM, Measured
-from .own_arm import OwnArm
+from .own_arm import DEMO, OwnArm, draw
 from .question import Call, Question, Test
+from .seed import PUBLIC_SEED
+from .verdict import Difference, Kind, Outcome, Verdict
 
 
 @dataclass(frozen=True)
@@ -89,3 +91,15 @@ def personal(question: Question, arm: OwnArm) -> Question:
         return question
     expected = question.judge.expected(arm)
     return question.with_cases(lambda c: replace(c, expected=expected) if c.hidden else c)
+
+
+def on_the_public_arm(question: Question, verdict: Verdict, answer: Any) -> tuple[Verdict, str]:
+    """The verdict on an answer that may be right, where the arm is the public one, and a remark."""
+    judge: Any = question.judge
+    if judge(answer, judge.expected(draw(PUBLIC_SEED, DEMO))) is None:
+        return verdict, f"It is true of the public arm, {DEMO!r}."
+    why = Difference(Kind.REFUSED, found=f"it is not true of the public arm, {DEMO!r}")
+    call = f"{question.name}()"
+    wrong = replace(verdict.tests[-1], outcome=Outcome.WRONG, call=call, difference=why)
+    tests = (*verdict.tests[:-1], wrong)
+    return replace(verdict, outcome=Outcome.WRONG, earned=0.0, tests=tests), ""

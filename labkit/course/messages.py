@@ -41,7 +41,9 @@ def head(verdict: Verdict) -> str:
         return f"{verdict.name}: a possible answer. When it is marked, it earns {points} if it is \
 true of your own arm."
     elif verdict.outcome is Outcome.RIGHT and not verdict.complete:
-        return f"{verdict.name}: {says} on all cases here; {points} if the teacher's cases agree."
+        return (
+            f"{verdict.name}: {says} on all cases here; {points} if the instructor's cases agree."
+        )
     return f"{verdict.name}: {says}. {verdict.earned:g} of {points}."
 
 
@@ -143,7 +145,7 @@ def message(
 
 
 def summary(verdict: Verdict) -> list[str]:
-    """A verdict for a teacher's page: its head, and after a failure the mistake and each test."""
+    """A verdict for an instructor: its head, and after a failure the mistake and each test."""
     lines = [head(verdict)]
     if verdict.outcome in (Outcome.WRONG, Outcome.ERROR):
         lines += [f"  {mistake(verdict.mistake)}"] if verdict.mistake else []
@@ -181,10 +183,10 @@ def _lead(verdict: Verdict) -> Difference | None:
 
 
 def _unseen(question: Question) -> Iterator[str]:
-    """What only the teacher's copy of a question tests."""
+    """What only the instructor's copy of a question tests."""
     also = dict.fromkeys(test.also for test in question.tests if test.also)
     if also:
-        yield f"The teacher also tries: {'; '.join(also)}."
+        yield f"The instructor also tries: {'; '.join(also)}."
     for test in question.tests:
         if not test.cases:
             yield f"Not tried here, and points hang on it: {test.name}."

@@ -41,7 +41,8 @@ class Prediction:
         lines = [head, "", self.asks, "", *(f"- ({letter}) {text}" for letter, text in options)]
         mouse = "run the cell, choose with the mouse, and run the same cell again"
         how = f"Write {form.how}, in place of `None`; or {mouse}."
-        return "\n".join([*lines, "", how])
+        stays = "Leave it in the cell: what the cell says is what is marked."
+        return "\n".join([*lines, "", f"{how} {stays}"])
 
     def cell(self) -> str:
         """The cell that the student fills in."""

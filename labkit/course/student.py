@@ -11,20 +11,22 @@ import linecache
 import os
 import sys
 from collections.abc import Callable
-from io import BytesIO
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
 from ..errors import LabkitError, UnknownName
 from .advice import line_of
 from .calling import heard
-from .card import card
+from .card import card, picture
 from .checks_file import read_checks
 from .gaps import calculated
+from .identification import on_the_public_arm
 from .marking import Mismatch, mark, not_counted, try_public
 from .messages import HEADS, Message, message, waits, wrapped
 from .notebook import verdict_metadata
 from .observed import diagnosed
+from .own_arm import DEMO, spelt
 from .question import Call, Question
 from .reply import Here
 from .serialize import read_question
@@ -184,8 +186,12 @@ def check(name: str, function: Callable[..., Any]) -> float:
         print(wrapped(_NOT_RUN.format(name=name)))
         return Points(0.0)
     verdict, printed, found = desk().verdict(name, function)
+    more: list[str] = []
+    if waits(verdict) and shell() and spelt(str(shell().user_ns.get("HANDLE"))) == DEMO:
+        verdict, *more = on_the_public_arm(question, verdict, function)
     lost = calculated(cells_run(function), name) if waits(verdict) else ""
     says = message(question, verdict, printed, desk().leaning(name, function), lost)
+    says = replace(says, helps=[*filter(None, more), *says.helps])
     _say(says, verdict, found if verdict.mistake else None)
     return Points(verdict.earned)
 
@@ -227,7 +233,7 @@ def hint(name: str, level: int = 1) -> None:
         assignment = read_checks(Path.cwd())["assignment"]
         text = (
             f"{name} has {len(hints)} hints, and no hint {level!r}. If it does not work with all "
-            "of them, ask the teacher or a forum. This line in a new cell prints what to send: "
+            "of them, ask the instructor or a forum. This line in a new cell prints what to send: "
             f"!labkit submit-check --forum {assignment}.ipynb"
         )
         print(wrapped(text if hints else f"{name} has no hints."))
@@ -266,7 +272,7 @@ def use(
     """
     if name in _unfinished:
         print(wrapped(f"[stand-in] {_NOT_RUN.format(name=name)}"))
-        return given
+        return _standing_in(name, given)
     known, verdict = desk().checked.get(name, (None, None))
     if known is not function or verdict is None:
         verdict, *_ = desk().verdict(name, function)
@@ -281,6 +287,15 @@ def use(
     elif anyway:
         text += " anyway=True takes only a function that runs to its end on every case."
     print(wrapped(text))
+    return _standing_in(name, given)
+
+
+def _standing_in(name: str, given: Callable[..., Any]) -> Callable[..., Any]:
+    """The stand-in; the captions of the cell say so."""
+    if shell() is not None:
+        from .. import plotting  # slow to load
+
+        plotting.stand_ins.append(name)
     return given
 
 
@@ -292,20 +307,5 @@ def _say(says: Message, verdict: Verdict, found: Mismatch | None) -> None:
     from IPython.display import display
 
     outcome = Outcome.NOT_TRIED if waits(verdict) else verdict.outcome
-    shown = card(says, outcome, found and _picture(found))
+    shown = card(says, outcome, found and picture(found))
     display(shown, metadata=verdict_metadata(verdict), raw=True)
-
-
-def _picture(found: Mismatch) -> tuple[bytes, str]:
-    """A small figure of the answers that gave a known mistake away, and its words."""
-    from .. import plotting
-
-    picture = BytesIO()  # a notebook draws figures only once pyplot has made one
-    plotting.answers(*found).savefig(picture, format="png")
-    call, expected, given = found
-    words = f"{call}, number by number: expected {_list(expected)}; yours {_list(given)}."
-    return picture.getvalue(), words
-
-
-def _list(numbers: Any) -> str:
-    return ", ".join(f"{x:.3g}" for x in numbers)

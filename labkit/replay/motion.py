@@ -27,6 +27,9 @@ STEPS = {  # how fine each channel is kept
     "force": 1e-2,  # N
 }
 
+STILL = 0.005
+"""A joint that travels less than this, in [rad], is told to be at rest."""
+
 CRASH = 1000.0
 """A force above this, in [N], is not told in numbers, since an arm that ran away hit something."""
 
@@ -147,18 +150,23 @@ class Motion:
         names = [name.removeprefix(f"{self.robot.name}_") for name in self.robot.joint_names]
         travel = np.ptp(self.q, axis=0)
         most = int(travel.argmax())
-        words = [
-            self.alt,
-            f"Joint {names[most]} travels farthest, {travel[most]:.2f} rad between"
-            f" {self.q[:, most].min():.2f} and {self.q[:, most].max():.2f} rad.",
-        ]
+        words = [self.alt]
+        if travel[most] < STILL:
+            words.append(f"No joint moves by more than {STILL:g} rad.")
+        else:
+            words.append(
+                f"Joint {names[most]} travels farthest, {travel[most]:.2f} rad between"
+                f" {self.q[:, most].min():.2f} and {self.q[:, most].max():.2f} rad."
+            )
         if self.target_position is not None:
             low, high = self.target_position.min(0), self.target_position.max(0)
+            ends = [(f"{a:.2f}", f"{b:.2f}") for a, b in zip(low, high, strict=True)]
             spans = (
-                f"{axis} from {a:.2f} to {b:.2f} m"
-                for axis, a, b in zip("xyz", low, high, strict=True)
+                f"{axis} from {a} to {b} m" if a != b else f"{axis} = {a} m"
+                for axis, (a, b) in zip("xyz", ends, strict=True)
             )
-            words.append(f"The target moves within {', '.join(spans)}.")
+            does = "moves within" if any(a != b for a, b in ends) else "stays at"
+            words.append(f"The target {does} {', '.join(spans)}.")
         if self.error is not None:
             e, peak = np.abs(self.error), int(np.abs(self.error).argmax())
             words.append(

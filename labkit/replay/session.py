@@ -35,7 +35,7 @@ STEP = 0.05
 
 _OVER = 10**9  # a tick later than the last of any run
 
-_LIMIT = "a run is at most {:g} s long: a new one, which can be kept, began at t = {:.0f} s"
+_LIMIT = "a run ends after {:g} s; at t = {:.0f} s the next one began, which Keep this run keeps"
 
 
 class Session(Simulated):

@@ -14,6 +14,8 @@ from ..shapes import Array, as_array
 from ..trajectory import PoseSample, Sample
 
 TARGET = "target"
+POINTS = 121
+"""Of this many points is the path of the target."""
 FASTEST = 2.0
 """Dragged walls and bands move at most this fast, in [m/s], so no wall jumps over the tip."""
 
@@ -60,12 +62,22 @@ class Surroundings:
 
     def wanted(self) -> Array | None:
         """The pose that the tip should have, shape (4, 4); None where only a point is named."""
-        sample = self.target(0.0) if self._latest is None else self._shifted()
+        return self._pose(self.target(0.0) if self._latest is None else self._shifted())
+
+    def _pose(self, sample: Any) -> Array | None:
         if isinstance(sample, PoseSample):
             return np.asarray(sample.pose)
         if isinstance(sample, Sample) and sample.position.size == self._arm.robot.n:
             return self._arm.model.pose(sample.position)
         return None
+
+    def path(self) -> list[list[float]]:
+        """Where a target that moves will be, undragged, in [m]; empty where nobody can know it."""
+        times = np.linspace(0.0, getattr(self._target, "duration", 0.0), POINTS)
+        poses = [self._pose(self._target(t)) for t in times] if times[-1] else []
+        places = [T[:3, 3] for T in poses if T is not None]
+        moves = bool(places) and np.ptp(places, axis=0).max() > 1e-3
+        return np.round(places, 4).tolist() if moves else []
 
     def seen(self) -> dict[str, Any]:
         """The arm and all around it, in plain numbers for who draws it."""
@@ -85,7 +97,8 @@ class Surroundings:
         T_wd = self.wanted()
         if T_wd is not None:
             fixed = not isinstance(self._latest, PoseSample)
-            found[TARGET] = _placed("target", T_wd) | {"fixed": fixed}
+            about = {"fixed": fixed, "shift": self._shift.tolist()}
+            found[TARGET] = _placed("target", T_wd) | about
         for i, thing in enumerate(self._arm.world.things):
             if data := drawn_thing(thing):
                 found[f"thing {i}"] = data

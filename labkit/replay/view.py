@@ -85,6 +85,7 @@ def live(
             "dials": [asdict(dial) for dial in found.values()],
             "joints": [n.removeprefix(f"{arm.robot.name}_") for n in arm.robot.joint_names],
             "first": first,
+            "path": widget.session.around.path(),
         }
     )
     widget.words = (

@@ -11,6 +11,7 @@ from typing import Any
 import numpy as np
 
 from ..errors import TypeMismatch
+from ..plotting import as_drawn
 from ..shapes import Array, shown
 from .figure import VIEWER, figure_html, viewer_scripts
 from .motion import Motion
@@ -38,7 +39,7 @@ def show(motion: Motion) -> Any:
             f"motion is {shown(motion)}, expected what lk.replay.motion_of(log, title) returns"
         )
     made = _replay_class()(data=motion.to_json())
-    made.words = f"{motion.title}. {motion.description}"
+    made.words = as_drawn(f"{motion.title}. {motion.description}")
     made.picture = lambda: motion_still(motion)
     return made
 

@@ -99,7 +99,9 @@ def push_and_release(m, b, k):
     )
 
 
-dials = lk.plotting.dials(push_and_release, m=(0.5, 10.0, 1.0), b=(1.0, 80.0, 20.0), k=(50.0, 1000.0, 300.0))
+dials = lk.plotting.dials(
+    push_and_release, m=(0.5, 10.0, 1.0, "kg"), b=(1.0, 80.0, 20.0, "N s/m"), k=(50.0, 1000.0, 300.0, "N/m")
+)
 
 # %% [markdown]
 # You can feel each of the three numbers: the *stiffness* while you hold the mass away from its target, the
@@ -373,7 +375,7 @@ def press(stiffness):
 
 
 if wall_force is not None:  # first comes your prediction
-    lk.plotting.dials(press, stiffness=(100.0, 1000.0, 300.0))
+    lk.plotting.dials(press, stiffness=(100.0, 1000.0, 300.0, "N/m"))
 
 rammed = meet(stiff, into_the_wall, wall)
 

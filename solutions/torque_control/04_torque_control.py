@@ -334,7 +334,7 @@ def error_of_one_joint(frequency, damping):
     )
 
 
-dials = lk.plotting.dials(error_of_one_joint, frequency=(0.5, 6.0, 2.0), damping=(0.1, 2.0, 0.7))
+dials = lk.plotting.dials(error_of_one_joint, frequency=(0.5, 6.0, 2.0, "Hz"), damping=(0.1, 2.0, 0.7))
 
 # %% [markdown]
 # ## The torque is constant between two ticks
@@ -607,7 +607,7 @@ def same_gains_everywhere(kp, kd):
     return figure, f"kp = {kp:g} N m/rad, kd = {kd:g} N m s/rad everywhere: {lk.metrics.summary(log)}."
 
 
-dials = lk.plotting.dials(same_gains_everywhere, kp=(0.0, 200.0, 50.0), kd=(0.0, 40.0, 8.0))
+dials = lk.plotting.dials(same_gains_everywhere, kp=(0.0, 200.0, 50.0, "N m/rad"), kd=(0.0, 40.0, 8.0, "N m s/rad"))
 
 # %% [markdown]
 # The shoulder needs higher gains, but the wrist cannot bear them. Your gains may differ from joint to joint,

@@ -111,14 +111,15 @@ def try_gains(kp, kd):
     below.set_ylabel("command [rad/s]")
     below.set_xlabel("time [s]")
     last = np.abs(error[-len(error) // 4 :]).max()
+    gains = f", kp = {kp:.3g}, kd = {kd:.3g}" if joint_law == "joint velocity PD" else ", which has no gains"
     jitter = np.abs(np.diff(log.command, axis=0)).max()
     return figure, (
-        f"Baxter with kp = {kp:.3g}, kd = {kd:.3g}: the largest error in the last quarter is "
+        f"Baxter by {joint_law.partition(',')[0]}{gains}: the largest error in the last quarter is "
         f"{last:.3f} rad, the largest jump of a command {jitter:.2f} rad/s."
     )
 
 
-dials = lk.plotting.dials(try_gains, kp=(0.0, 40.0, 5.0), kd=(0.0, 3.0, 0.0))
+dials = lk.plotting.dials(try_gains, kp=(0.0, 40.0, 5.0, "1/s"), kd=(0.0, 3.0, 0.0))
 
 # %% [markdown]
 # ## What D does here
@@ -523,7 +524,7 @@ def circling(state, target, kp):
 
 view = lk.live(
     lk.Arm("left", lk.BAXTER, q0=q0), {joint_law: circling}, joints, title="Velocity control",
-    kp=(0.0, 30.0, 5.0), state_delay=(0.0, 0.2), payload=(0.0, 1.0),
+    kp=(0.0, 30.0, 5.0, "1/s"), state_delay=(0.0, 0.2), payload=(0.0, 1.0),
 )
 view
 

@@ -10,7 +10,7 @@ import pytest
 
 from labkit import LabkitError
 from labkit.course.before_handing_in import HandIn, examine
-from labkit.course.forms import OWN_ARM
+from labkit.course.forms import COMMITTED, OWN_ARM
 from labkit.course.notebook import PLACEHOLDER, verdict_metadata
 from labkit.course.own_arm import FILE
 from labkit.course.receipt import _last_word, hand_in, receipt
@@ -127,7 +127,7 @@ def test_what_the_check_said_is_repeated(folder):
     """The same words, from the data in the output, not from its text."""
     ran = [output("circle", Outcome.RIGHT, 4.0, complete=False)]
     found = answered(folder, "circle", "def circle(*a): return 1", ran)
-    says = "  circle: right on all cases here; 4 points if the teacher's cases agree."
+    says = "  circle: right on all cases here; 4 points if the instructor's cases agree."
     assert says in str(found).splitlines()
     assert "1 of 6 tasks were right, as far as can be tried here, and 0 of" in str(found)
     lies = [{"output_type": "stream", "name": "stdout", "text": "circle: right. 4 of 4 points.\n"}]
@@ -261,7 +261,32 @@ def test_numbers_of_the_public_arm_are_named_where_ones_own_was_due(tmp_path):
     path.write_text(path.read_text().replace('HANDLE = \\"ada\\"', 'HANDLE = \\" Demo \\"'))
     assert examine(path).problems
     (folder / FILE).unlink()
-    assert not examine(path).problems
+    found = examine(path)
+    assert not found.problems
+    (note,) = [text for text in found.notes if "public arm" in text]
+    assert "arms.json is not beside the notebook: my_wall will earn nothing if your course" in note
+
+
+def test_an_emptied_prediction_is_named(folder):
+    """What was committed to and then taken out of its cell would lose its point without a word."""
+
+    def committed(said):
+        def change(cells):
+            for cell in cells:
+                text = "".join(cell["source"])
+                if text.startswith("twice_the_time ="):
+                    cell["source"] = f'twice_the_time = predict("twice_the_time", {said})'
+                if 'check("twice_the_time"' in text:
+                    test = TestResult(COMMITTED, 1.0, Outcome.RIGHT)
+                    cell["outputs"] = [output("twice_the_time", Outcome.RIGHT, tests=(test,))]
+            return cells
+
+        return change
+
+    path = folder / "01_paths.ipynb"
+    assert not examine(edited(path, committed("2.0"))).problems
+    (problem,) = examine(edited(path, committed("None"))).problems
+    assert problem.startswith("the cell of twice_the_time says None, although you had committed")
 
 
 def test_words_of_a_text_are_counted_without_the_placeholder(folder):
@@ -271,7 +296,9 @@ def test_words_of_a_text_are_counted_without_the_placeholder(folder):
     assert found.texts and set(found.texts.values()) == {0}
     assert any(f"{name} has 0 words; it needs" in str(found) for name in found.texts)
     found = with_texts_of(folder, 30)
-    assert all(f"  {name}: 30 words" in str(found) for name in found.texts)
+    assert all(
+        f"  {name}: 30 words; your instructor reads it" in str(found) for name in found.texts
+    )
     assert "at most" not in str(found)
 
 

@@ -150,7 +150,7 @@ def test_in_a_notebook_the_cells_tell_and_the_output_keeps_the_verdict(desk):
     assert first.startswith("double: not counted: uses lk.Circle")
     verdict = verdict_in({"metadata": {"labkit": kept}})
     assert verdict == not_counted(circle, ("labkit.Circle",))
-    assert second == "double: right on all cases here; 4 points if the teacher's cases agree."
+    assert second == "double: right on all cases here; 4 points if the instructor's cases agree."
     assert then == stamp() | {"verdict": record_data(mark(circle, lambda x: 2 * x))}
 
 
@@ -158,11 +158,13 @@ def test_an_older_answer_is_not_tried_when_its_cell_has_an_error(desk):
     """After a syntax error, or an error above the definition, the check names the cell's error."""
     program = KERNEL.format(folder=str(desk)).replace("        assert shell", "        shell") + (
         "shell.run_cell('from labkit.course import use')\n"
+        "from labkit import plotting\n"
         "def say(cell):\n"
         "    with capture_output() as out:\n"
         "        shell.run_cell(cell, store_history=True)\n"
         '        shell.run_cell(\'check("double", double);use("double", double, 1)\')\n'
-        "    print('not tried' in out.stdout, '[stand-in]' in out.stdout)\n"
+        "    told = plotting.stand_ins == ['double']\n"
+        "    print('not tried' in out.stdout, '[stand-in]' in out.stdout and told)\n"
         "for before in '', 'return 1 +', '':\n"
         "    say(f'def double(x):\\n    {before}\\n    return 2 * x')\n"
         "say('1 / 0\\ndef double(x): return x')\n"

@@ -4,6 +4,7 @@ import json
 import unicodedata
 from dataclasses import replace
 from pathlib import Path
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -18,6 +19,7 @@ from labkit.course import (
     mark,
     my_arm,
     own_arm,
+    student,
 )
 from labkit.course.authoring.layout import Course
 from labkit.course.bugs import CAUSES, MOVES, Bug, tells_apart
@@ -194,3 +196,23 @@ def test_how_near_a_measured_number_has_to_be_is_said_above_its_cell():
         "m", "?", Measured("payload", "kg", 0.0, 3.0, 0.01), 0.3, "a number", 3.0
     )
     assert "It counts if it is off by at most 0.01 kg." in asked.brief()
+
+
+def test_a_measurement_of_the_public_arm_is_right_or_wrong_at_once(monkeypatch):
+    """Its numbers are known: the check says which, and keeps the number to itself."""
+    monkeypatch.chdir(Course.here(Path(__file__)).root / "assignments/03_velocity_control")
+    notebook = SimpleNamespace(
+        user_ns={"HANDLE": "Demo"}, history_manager=SimpleNamespace(input_hist_raw=[])
+    )
+    said = []
+    monkeypatch.setattr(student, "shell", lambda: notebook)
+    monkeypatch.setattr(student, "_say", lambda says, *_: said.append(str(says)))
+    student.check("my_lag", 0.1)
+    student.check("my_lag", 0.032)
+    notebook.user_ns["HANDLE"] = "kestrel"
+    student.check("my_lag", 0.1)
+    wrong, right, waiting = said
+    assert wrong.startswith("my_lag: not yet right.") and "not true of the public arm" in wrong
+    assert "Where it fails" not in wrong and "0.03" not in wrong
+    assert "a possible answer" in right and "It is true of the public arm" in right
+    assert "a possible answer" in waiting and "public arm" not in waiting

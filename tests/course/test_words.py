@@ -46,8 +46,8 @@ def test_not_attempted_says_what_to_do():
 def test_right_says_what_else_is_tried():
     """Where hidden cases are still to come, a right answer hears of them, and no promise."""
     assert said(double).splitlines() == [
-        "double: right on all cases here; 4 points if the teacher's cases agree.",
-        "  The teacher also tries: any number.",
+        "double: right on all cases here; 4 points if the instructor's cases agree.",
+        "  The instructor also tries: any number.",
     ]
     graded = replace(
         DOUBLE, tests=(*DOUBLE.tests[:2], Test("more", (CALLS[2], HIDDEN), 1.0, "any number"))

@@ -31,7 +31,7 @@ SLIGHTLY_WRONG = """def bang_bang(t, duration):
 
 @pytest.mark.slow
 def test_the_hidden_case_that_decided_is_laid_open(course, solved, capsys):
-    """The call, expected and given, the answer and a page for the teacher; the rest is marked."""
+    """The call, expected and given, the answer, a page for the instructor; the rest is marked."""
     hand_in(course, NAME, "ada", put(solved, "bang_bang", SLIGHTLY_WRONG))
     assert main(["grade", NAME, "--course", str(course.root)]) == 0
     capsys.readouterr()

@@ -1,14 +1,18 @@
 """What the model texts of the whys say of a run is what a run gives."""
 
+import re
 from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 
 import labkit as lk
+from labkit.replay.hand import STRONGEST, Hand
 from solutions.torque_control.answers import computed_torque
+from solutions.velocity_control.answers import joint_velocity_pd
 
 TORQUE = Path("solutions/torque_control/04_torque_control.py")
+VELOCITY = Path("solutions/velocity_control/03_velocity_control.py")
 
 
 def _sag(plant: lk.Plant, controller: object) -> float:
@@ -35,3 +39,34 @@ def test_springs_sag_further_under_the_load_than_computed_torque_of_the_same_num
     assert np.allclose(stiffness[:2], 80.0, atol=5.0)
     assert stiffness[4:].min() > 1.9
     assert stiffness[4:].max() < 4.2
+
+
+def test_only_at_a_torque_limit_does_velocity_mode_give_way():
+    """The push that notebook 03 names brings a motor to its limit; a third of it moves nothing."""
+    text = VELOCITY.read_text(encoding="utf-8").replace("\n# ", " ")
+    (said,) = re.findall(r"push at the tip with (\d+) N along \+y", text)
+    assert float(said) == STRONGEST
+    model = lk.Model("left")
+    T = model.pose(model.robot.ready)
+    circle = lk.Circle(T[:3, 3], T[:3, 3] + [0.0, -0.12, 0.0])
+    poses = lk.Trajectory(lk.PosePath(circle, T[:3, :3]), lk.Quintic(5.0))
+    joints = model.joint_trajectory(poses, model.robot.ready)
+
+    def pushed(newtons: float) -> tuple[bool, float]:
+        """Whether a motor reaches its limit, and how far the tip gets off its circle in [mm]."""
+        with lk.Arm("left", lk.BAXTER, q0=model.robot.ready) as arm:
+            hand = Hand(arm)
+            arm.world.put(hand)
+            hand.push(arm.robot.n, np.zeros(3), [0.0, newtons, 0.0])
+            spent = []
+
+            def law(state: lk.State, target: lk.Sample) -> lk.JointVelocity:
+                spent.append((np.abs(arm.torque) >= 0.999 * arm.robot.effort).any())
+                return joint_velocity_pd(state, target, kp=5.0, kd=0.0)
+
+            off = lk.metrics.tip_error(lk.run(arm, joints, law))[:, :3]
+        return any(spent), float(1e3 * np.linalg.norm(off, axis=1).max())
+
+    (third, little), (whole, much) = pushed(STRONGEST / 3.0), pushed(STRONGEST)
+    assert (third, whole) == (False, True)
+    assert little < 10.0 < 100.0 < much

@@ -14,6 +14,7 @@ from labkit.replay.dials import read_dials
 from labkit.replay.hand import FRESH, SLOW_PAGE, STEADY, STRONGEST, Hand
 from labkit.replay.pacer import FRAME
 from labkit.replay.session import Session
+from labkit.replay.surroundings import Surroundings
 from labkit.replay.watch import _LOOK, TURN, Watch
 
 READY = np.array(lk.robot("left").ready)
@@ -266,7 +267,7 @@ def test_a_run_that_reached_the_limit_says_so(live, monkeypatch):
     session, frames = live({"springs": springy})
     session.tell({"kind": "go"})
     note = until(frames, lambda f: f.get("note"))["note"]
-    assert note.startswith("a run is at most 0.1 s long: a new one, which can be kept, began")
+    assert note.startswith("a run ends after 0.1 s; at t = ")
 
 
 def test_a_view_without_a_kept_run_says_so():
@@ -531,3 +532,16 @@ def test_a_right_law_is_not_suspected(live):
     until(frames, lambda f: f["t"] > 2.0)
     assert frames[-1]["error"] > 0.05
     assert {f["note"] for f in frames} == {""}
+
+
+def test_only_a_target_that_moves_has_a_path():
+    """Of a circle there are points, in angles as in poses; of a place and an endless one none."""
+    model = lk.Model("left")
+    circle = lk.Circle(T_READY[:3, 3], T_READY[:3, 3] + [0.0, -0.1, 0.0])
+    poses = lk.Trajectory(lk.PosePath(circle, T_READY[:3, :3]), lk.Quintic(4.0))
+    with lk.Arm("left", q0=READY) as arm:
+        for target in (poses, model.joint_trajectory(poses, READY)):
+            wide = np.ptp(Surroundings(arm, target).path(), axis=0)
+            np.testing.assert_allclose(wide, [0.2, 0.2, 0.0], atol=1e-3)
+        for target in (lk.Hold(T_READY, 1.0), lambda t: poses(t % 4.0)):
+            assert Surroundings(arm, target).path() == []

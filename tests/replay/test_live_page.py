@@ -2,12 +2,14 @@
 
 import json
 
+import numpy as np
 import pytest
 from accessibility import violations
 from figures.embed import shared_files
 
 import labkit as lk
 from labkit.replay.figure import VIEWER
+from labkit.replay.surroundings import POINTS
 
 
 @pytest.fixture(scope="module")
@@ -22,7 +24,9 @@ def data():
 
     with lk.Arm(robot, q0=robot.ready, world=lk.World(things=[wall])) as arm:
         laws = {"soft": soft, "stiff": lk.control.hold(robot.ready)}
-        view = lk.live(arm, laws, lk.Hold(T, 1.0), title="Feel it", factor=(0.0, 2.0, 1.0))
+        circle = lk.Circle(T[:3, 3], T[:3, 3] + [0.0, 0.05, 0.0])
+        target = lk.Trajectory(lk.PosePath(circle, T[:3, :3]), lk.Quintic(5.0))
+        view = lk.live(arm, laws, target, title="Feel it", factor=(0.0, 2.0, 1.0))
         return view.data
 
 
@@ -92,6 +96,49 @@ def test_another_force_applies_while_it_pushes(page):
         box.press("Enter")
         assert sent(page, "hand")[-1]["force"] == [0, force, 0]
     assert box.input_value() == "60"
+    assert page.inner_text(".lk-say") == "A push is at most 60 N."
+
+
+def test_a_force_above_the_limit_is_corrected_before_any_push(page):
+    """Left with 100 N in it, the box says 60 and the page says why; nothing is pushed."""
+    box = page.get_by_label("Force in newtons")
+    box.fill("100")
+    box.blur()
+    assert box.input_value() == "60"
+    assert page.inner_text(".lk-say") == "A push is at most 60 N."
+    assert not sent(page, "hand")
+
+
+@pytest.mark.parametrize(("link", "told"), [(6, "at joint w2"), (7, "at the tip")])
+def test_a_link_is_named_in_a_sentence(page, data, link, told):
+    """A joint is a joint by its name, the tip is the tip."""
+    at = json.loads(data)["first"]["things"]["target"]["position"]
+    page.evaluate("(f) => tell(f)", frame(data, force=[0, 10, 0], at=at, link=link))
+    assert f"your force 10.0 N {told}" in page.inner_text(".lk-readout")
+
+
+@pytest.mark.parametrize("size", [(940, 690), (390, 844)])
+def test_picture_curve_and_dials_are_on_one_screen(page, size):
+    """In a notebook of 1280 x 800, and on a phone."""
+    page.set_viewport_size({"width": size[0], "height": size[1]})
+    page.wait_for_timeout(100)
+    parts = (".lk-stage", ".lk-play", ".lk-plot", ".lk-readout", ".lk-livedials")
+    boxes = [page.locator(part).first.bounding_box() for part in parts]
+    ends = [box["y"] + box["height"] for box in boxes]
+    assert max(ends) - boxes[0]["y"] < size[1]
+
+
+def test_the_path_of_the_target_is_drawn_and_goes_where_it_is_dragged(page, data):
+    """Each point that the kernel told, moved with the target."""
+    path = json.loads(data)["path"]
+    assert len(path) == POINTS
+    assert np.allclose(np.ptp(path, axis=0), [0.1, 0.1, 0.0], atol=1e-3)
+    things = json.loads(data)["first"]["things"]
+    things["target"]["shift"] = [0.1, 0.2, 0.3]
+    page.evaluate("(f) => tell(f)", frame(data, things=things))
+    drawn = page.evaluate(f"{LIVE}.path.position.toArray()")
+    assert drawn == [0.1, 0.2, 0.3]
+    assert page.evaluate(f"{LIVE}.path.parent === {LIVE}.picture.stage.scene")
 
 
 @pytest.mark.parametrize(("name", "kind"), [("Reset", "reset"), ("Stop", "close")])

@@ -3,6 +3,7 @@
 import json
 import re
 import sys
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -92,3 +93,15 @@ def test_importing_replay_does_not_import_the_widgets():
     code = "import sys; import labkit.replay; print('anywidget' in sys.modules)"
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
     assert done.stdout.strip() == "False"
+
+
+def test_what_stays_is_told_in_one_number():
+    """A range whose ends are equal is one value, and a joint at rest travels nowhere."""
+    still = np.tile([0.641, 0.43, 0.03], (2, 1))
+    rest = Motion("left", np.array([0.0, 1.0]), np.zeros((2, 7)), target_position=still)
+    assert rest.description.endswith(
+        "No joint moves by more than 0.005 rad. The target stays at x = 0.64 m, y = 0.43 m, "
+        "z = 0.03 m."
+    )
+    line = replace(rest, target_position=still + [[0.0, 0.0, 0.0], [0.1, 0.0, 0.0]])
+    assert "moves within x from 0.64 to 0.74 m, y = 0.43 m, z = 0.03 m." in line.description

@@ -121,7 +121,7 @@ class _Clock:
 
 
 def _hand_in(stage: Course, name: str, count: int, download: Path) -> None:
-    """Let a class that is in the roster hand in on Moodle: one zip, as a teacher downloads it."""
+    """Let a class that is in the roster hand in on Moodle: one zip, as it is downloaded."""
     make_class(stage, name, PUBLIC_SEED, count)
     listed = tuple(Student(who, last_name=who) for who in students(stage, name))
     save_roster(stage, Roster(listed))

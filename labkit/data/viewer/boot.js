@@ -52,14 +52,18 @@ html[data-theme="dark"] .cell_output .text_html:has(.lk-embed) { /* the theme ma
 .lk-icon { min-width: 2rem; padding: 0.1rem 0.3rem; }
 .lk-gap { flex: 0 0 0.6rem; }
 .lk-say { margin: 0; padding: 0.45rem 0.75rem; border-bottom: 1px solid var(--lk-edge); color: var(--lk-text); }
-.lk-live > .lk-say { min-height: 2.8em; } /* of two lines: a sentence that comes or goes must not move the buttons */
-.lk-live > .lk-say[hidden] { display: block; visibility: hidden; }
+.lk-beside .lk-say { min-height: 2.8em; } /* of two lines: a sentence that comes or goes must not move the buttons */
+.lk-beside .lk-say[hidden] { display: block; visibility: hidden; }
 .lk-say[hidden], .lk-dials[hidden] { display: none; }
 .lk-say.lk-alarm { border-left: 5px solid var(--lk-trace); font-weight: 600; }
+.lk-player:has(> .lk-beside) { container-type: inline-size; }
+@container (min-width: 44rem) { .lk-beside { display: grid; grid-template-columns: 3fr 2fr; } } /* the curve beside the picture */
+.lk-beside > div { min-width: 0; }
 .lk-livedials { padding: 0.1rem 0.75rem 0.4rem; }
 .lk-live .lk-choice label { flex-basis: auto; }
 .lk-live button[aria-pressed="true"] { background: var(--lk-accent); color: var(--lk-face); }
 .lk-live button:disabled { opacity: 0.55; cursor: default; }
+.lk-check[hidden] { display: none !important; }
 .lk-check { display: flex; align-items: center; gap: 0.3rem; white-space: nowrap; font-size: 0.9rem; }
 .lk-choice.lk-magnify label { flex-basis: auto; }
 .lk-choice[hidden] { display: none; }
@@ -90,13 +94,13 @@ html[data-theme="dark"] .cell_output .text_html:has(.lk-embed) { /* the theme ma
 .lk-dials { display: grid; grid-template-columns: repeat(auto-fit, minmax(min(100%, 19rem), 1fr)); gap: 0.35rem 1.2rem; }
 .lk-dial, .lk-choice { display: flex; align-items: center; gap: 0.45rem; min-width: 0; }
 .lk-dial label, .lk-choice label { flex: 0 0 5rem; margin: 0; }
-:is(.lk-player, .lk-demo, .lk-embed) .lk-dial input[type="number"] { width: 4.3rem; padding-inline: 0.4rem; }
+:is(.lk-player, .lk-demo, .lk-embed) .lk-dial input[type="number"] { width: 5rem; padding-inline: 0.4rem; }
 .lk-demo fieldset.lk-dials { grid-template-columns: repeat(auto-fit, minmax(min(100%, 14rem), 1fr)); }
 fieldset .lk-dial label { flex-basis: 2.6rem; }
 .lk-dial input[type="range"] { flex: 1 1 5rem; min-width: 4rem; }
 .lk-dial .lk-unit { flex: 0 0 1.9rem; font-size: 0.85rem; line-height: 1.1; }
 .lk-end { flex: none; color: var(--lk-quiet); font-size: 0.85rem; }
-.lk-livedials.lk-dials { grid-template-columns: repeat(auto-fit, minmax(min(100%, 24rem), 1fr)); }
+.lk-livedials.lk-dials { grid-template-columns: repeat(auto-fit, minmax(min(100%, 20rem), 1fr)); }
 .lk-livedials .lk-dial :is(label, .lk-unit) { flex-basis: auto; white-space: nowrap; }
 .lk-livedials .lk-dial label { min-width: 5rem; }
 .lk-choice select { flex: 1 1 auto; min-width: 0; }
@@ -109,6 +113,7 @@ fieldset .lk-dial label { flex-basis: 2.6rem; }
 .lk-table thead th[aria-current="true"], .lk-table td.lk-chosen { border-left: 3px solid var(--lk-accent); font-weight: 700; }
 @media (max-width: 500px) {
   .lk-canvas { aspect-ratio: 1; }
+  .lk-beside .lk-canvas { aspect-ratio: 16 / 11; }
   .lk-range { flex-basis: 100%; order: -1; }
   .lk-speed { margin-left: auto; }
   .lk-word { display: none; }
@@ -121,4 +126,4 @@ fieldset .lk-dial label { flex-basis: 2.6rem; }
   .lk-bar, .lk-load, .lk-dial { display: none !important; }
   .lk-player, .lk-demo { break-inside: avoid; }
 }
-`;function o(){if(globalThis.labkitStyled)return;let e=new CSSStyleSheet;e.replaceSync(r),document.adoptedStyleSheets=[...document.adoptedStyleSheets,e],globalThis.labkitStyled=!0}var n=document.currentScript.src.split("?")[0].replace(/[^/]*$/,""),m=matchMedia("(max-width: 500px)"),p={};function i(e){return p[e]??=new Promise((l,a)=>{let t=document.createElement("script");t.src=e,t.addEventListener("load",l),t.addEventListener("error",()=>a(new Error(`${e} is missing`))),document.head.append(t)})}async function c(e,l){let a=new URL(l,document.baseURI).href;return await i(a),globalThis.labkitRuns[l.replace(/^.*\//,"").replace(/\.js$/,"")]}var b=globalThis.labkitLoad=async()=>(await Promise.all([i(`${n}viewer.js`),i(`${n}robot.js`)]),globalThis.labkitViewer);async function s(e){if(e.dataset.mounted)return;e.dataset.mounted="1",e.querySelector(".lk-load")?.remove();let l=JSON.parse(e.querySelector('script[type="application/json"]').textContent);try{let{mount:a}=await b(),t=document.createElement("div");e.insertBefore(t,e.querySelector("figcaption")),a(t,l,c),t.querySelector(".lk-note")&&e.classList.add("lk-flat")}catch(a){delete e.dataset.mounted,console.error(a)}}function u(e){let l=document.createElement("button");l.type="button",l.className="lk-load",l.textContent="Tap to load the interactive view",l.addEventListener("click",()=>s(e).then(()=>e.querySelector("button, input, select")?.focus())),e.insertBefore(l,e.querySelector("figcaption"))}function d(){if(globalThis.labkitStarted)return;globalThis.labkitStarted=!0,o();let e=new IntersectionObserver(l=>{for(let{isIntersecting:a,target:t}of l)a&&(e.unobserve(t),s(t))},{rootMargin:"400px"});for(let l of document.querySelectorAll(".lk-embed"))m.matches?u(l):e.observe(l)}document.readyState==="loading"?document.addEventListener("DOMContentLoaded",d):d();})();
+`;function n(){if(globalThis.labkitStyled)return;let e=new CSSStyleSheet;e.replaceSync(r),document.adoptedStyleSheets=[...document.adoptedStyleSheets,e],globalThis.labkitStyled=!0}var o=document.currentScript.src.split("?")[0].replace(/[^/]*$/,""),m=matchMedia("(max-width: 500px)"),p={};function a(e){return p[e]??=new Promise((l,i)=>{let t=document.createElement("script");t.src=e,t.addEventListener("load",l),t.addEventListener("error",()=>i(new Error(`${e} is missing`))),document.head.append(t)})}async function c(e,l){let i=new URL(l,document.baseURI).href;return await a(i),globalThis.labkitRuns[l.replace(/^.*\//,"").replace(/\.js$/,"")]}var b=globalThis.labkitLoad=async()=>(await Promise.all([a(`${o}viewer.js`),a(`${o}robot.js`)]),globalThis.labkitViewer);async function s(e){if(e.dataset.mounted)return;e.dataset.mounted="1",e.querySelector(".lk-load")?.remove();let l=JSON.parse(e.querySelector('script[type="application/json"]').textContent);try{let{mount:i}=await b(),t=document.createElement("div");e.insertBefore(t,e.querySelector("figcaption")),i(t,l,c),t.querySelector(".lk-note")&&e.classList.add("lk-flat")}catch(i){delete e.dataset.mounted,console.error(i)}}function u(e){let l=document.createElement("button");l.type="button",l.className="lk-load",l.textContent="Tap to load the interactive view",l.addEventListener("click",()=>s(e).then(()=>e.querySelector("button, input, select")?.focus())),e.insertBefore(l,e.querySelector("figcaption"))}function d(){if(globalThis.labkitStarted)return;globalThis.labkitStarted=!0,n();let e=new IntersectionObserver(l=>{for(let{isIntersecting:i,target:t}of l)i&&(e.unobserve(t),s(t))},{rootMargin:"400px"});for(let l of document.querySelectorAll(".lk-embed"))m.matches?u(l):e.observe(l)}document.readyState==="loading"?document.addEventListener("DOMContentLoaded",d):d();})();

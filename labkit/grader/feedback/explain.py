@@ -33,7 +33,7 @@ from ..sandbox.limits import Limits, slowness
 from ..submission import Submission, none_of
 from .page import page
 
-_ALONE = "all cases are laid open here, so this page is for teachers and not for students"
+_ALONE = "all cases are laid open here, so this page is for instructors and not for students"
 
 
 def explain(course: Course, student: str, question: str, assignment: str | None = None) -> str:

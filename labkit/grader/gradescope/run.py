@@ -96,7 +96,7 @@ def _student(path: Path, bundle: Bundle) -> tuple[str, str]:
     known = [mail for mail in mails if mail in bundle.arms.handles]
     unknown = (
         f"The course's list has no address {mails[0]}, so answers about your own arm were held "
-        'against the arm "demo"; tell your teacher.'
+        'against the arm "demo"; tell your instructor.'
     )
     return (known or mails)[0], unknown if bundle.arms.handles and not known else ""
 

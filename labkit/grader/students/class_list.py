@@ -102,7 +102,7 @@ class Entry:
 
     @property
     def is_canvas_test_student(self) -> bool:
-        """Whether it is "Student, Test", which Canvas makes for a teacher to look as a student."""
+        """Whether it is "Student, Test", which Canvas makes so that one can look as a student."""
         return bool(self.student.lms_user_id) and self.student.name == "Test Student"
 
 

@@ -143,7 +143,7 @@ def import_list(
         )
     if len(entries) < len(rows):
         summary.append(
-            "not taken: Test Student, whom Canvas makes for a teacher's view as a student"
+            "not taken: Test Student, whom Canvas makes for an instructor's view as a student"
         )
     summary += about_teams(who for entry in entries if (who := entry.student.team))
     if assignment:

@@ -18,7 +18,7 @@ in ``10_cup.ipynb``.
 Every file comes with all ways to read whose it is, and with the reason for which it is refused.
 Nothing is unpacked, so a name in a download leads nowhere.
 
-Folders and zips that no platform named are read by a pattern of the lecturer's: the clones of
+Folders and zips that no platform named are read by a pattern of the instructor's: the clones of
 GitHub Classroom, ``paths-ada/01_paths.ipynb``, or files from anywhere, ``01_paths_4711.ipynb``.
 What stands for the student must be known to the roster: a login, an address, a number, the name on
 GitHub, or the student's own name.

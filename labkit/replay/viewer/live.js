@@ -3,6 +3,7 @@
 import { Picture } from "./picture.js";
 import { Plot } from "./plots.js";
 import { choice, dial, entered, h } from "./dom.js";
+import { line } from "./marks.js";
 import { sight } from "./sight.js";
 
 const NEWTON = 0.006; // metres of arrow
@@ -11,7 +12,11 @@ const SLOW = 100; // ms without a turn for the timers, from which on the kernel 
 const AXES = [["+x", [1, 0, 0]], ["−x", [-1, 0, 0]], ["+y", [0, 1, 0]], ["−y", [0, -1, 0]], ["+z", [0, 0, 1]], ["−z", [0, 0, -1]]];
 const STALE = 400; // ms without a force in a hand that holds, from which on the page says why
 const TOLD = 3; // s of the arm's time for which the page says that a run was kept
+const MOST = 60; // N, of a push and a pull
 const SHOWN = 10; // seconds of the curves
+
+/** A link in a sentence. */
+const spoken = (link) => (/^(tip|elbow)/.test(link) ? `the ${link}` : `joint ${link}`);
 
 export class LiveArm {
   /** link: {send(message), hear(f)}, the way to the kernel; without it the picture stands still. */
@@ -24,11 +29,12 @@ export class LiveArm {
     this.status = h("p", { class: "lk-hidden", role: "status" });
     this.picture = new Picture(this.stagebox, `${data.title}. Drag the arm or a thing to pull at it, elsewhere to turn the view`);
     this.times = 1; // the error is drawn this many times as large
-    this.sight = sight(this.picture, { camera: !!data.first.things.camera,
+    this.sight = sight(this.picture, { whole: !this.robot.arm, camera: !!data.first.things.camera,
       magnify: (k) => { this.times = k; this.draw(this.frame); } });
     this.plot = new Plot({ title: "Distance from the target [mm]", xName: "time [s]", zero: true, least: 1, ...this.curve() });
-    this.element.append(this.stagebox, this.note, this.buttons(), this.sight.element, this.hand(), this.dials(), this.readout, this.status,
-      h("div", { class: "lk-plots" }, this.plot.element));
+    const seen = h("div", {}, this.stagebox, this.note, this.buttons());
+    const told = h("div", {}, h("div", { class: "lk-plots" }, this.plot.element), this.readout, this.dials());
+    this.element.append(h("div", { class: "lk-beside" }, seen, told), this.sight.element, this.hand(), this.status);
     host.append(this.element);
     if (this.picture.works) this.furnish();
     else {
@@ -58,7 +64,7 @@ export class LiveArm {
       onchange: (name) => this.send({ kind: "law", name }) }).element];
     return h("div", { class: "lk-bar" }, this.start, button("Step", "step", "Advance by 0.05 s"),
       button("Reset", "reset", "Back to where the arm began", release),
-      button("Keep this run", "keep", "The present run becomes view.log. A run begins with Start, Reset, another controller or a dial, and anew after 120 s"),
+      button("Keep this run", "keep", "The present run becomes view.log. A run begins with Start, Reset, a choice of controller or a turn of a dial, and ends after 120 s; then the next begins"),
       button("Stop", "close", "End it, and free the arm for other cells", release), laws);
   }
 
@@ -67,14 +73,26 @@ export class LiveArm {
     const { joints } = this.data;
     this.links = [...joints.map((j) => (j === "e1" ? "elbow (e1)" : j)), "tip"];
     this.where = choice({ label: "Push at", values: [...this.links].reverse() });
-    this.newtons = h("input", { type: "number", "aria-label": "Force in newtons", min: 0, max: 60, step: "any", value: 10, disabled: !this.link });
-    entered(this.newtons, () => this.pushing?.(), () => String(this.size));
+    this.newtons = h("input", { type: "number", "aria-label": "Force in newtons", min: 0, max: MOST, step: "any", value: 10, disabled: !this.link });
+    this.size = 10;
+    entered(this.newtons, () => (this.pushing ?? this.bounded)(), () => String(this.size));
     this.pushes = AXES.map(([name, axis]) => h("button", { type: "button", class: "lk-icon", "aria-pressed": "false", disabled: !this.link,
       "aria-label": `Push along ${name.replace("−", "minus ").replace("+", "plus ")}`, title: "Push until it is pressed again",
       onclick: (e) => this.push(e.currentTarget, axis, name) }, name));
     return h("div", { class: "lk-bar", role: "group", "aria-label": "Push with keys" }, this.where.element,
-      this.newtons, h("span", { class: "lk-unit" }, "N (0 to 60) along"), this.pushes, h("span", { class: "lk-unit" }, "(press again to let go)"));
+      this.newtons, h("span", { class: "lk-unit" }, `N (0 to ${MOST}) along`), this.pushes, h("span", { class: "lk-unit" }, "(press again to let go)"));
   }
+
+  /** The force in the box, brought within its limits, in the box too. */
+  bounded = () => {
+    const asked = this.newtons.valueAsNumber || 0;
+    this.newtons.value = this.size = Math.min(MOST, Math.max(0, asked));
+    if (asked > MOST) {
+      this.kept = { t: this.frame.t, words: `A push is at most ${MOST} N.` };
+      this.say(this.kept.words);
+    }
+    return this.size;
+  };
 
   push(button, axis, name) {
     const on = button.getAttribute("aria-pressed") !== "true";
@@ -83,10 +101,8 @@ export class LiveArm {
     button.setAttribute("aria-pressed", "true");
     const where = this.where.get(), link = this.links.indexOf(where);
     this.pushing = () => { // again when another force is typed
-      const size = Math.min(60, Math.max(0, this.newtons.valueAsNumber || 0));
-      this.newtons.value = this.size = size;
+      const size = this.bounded();
       this.take({ link, local: [0, 0, 0], force: axis.map((x) => size * x) });
-      this.speak(`Pushing ${size} N along ${name} at the ${where}.`, 0);
       this.speak(() => `Under ${size} N along ${name}: ${this.numbers()}`, 1500);
     };
     this.pushing();
@@ -142,7 +158,12 @@ export class LiveArm {
     picture.pose(this.data.side, this.data.first.q);
     const seen = [picture.tip.p, ...Object.values(this.data.first.things).filter((t) => t.kind !== "face").map((t) => t.position)];
     picture.stage.rig.mirror = this.data.side === "right" ? -1 : 1;
-    picture.stage.rig.around([...seen, picture.frames[`${this.data.side}_e1`]?.p ?? picture.tip.p]);
+    const { path } = this.data;
+    if (path?.length) {
+      this.path = line(path, { colour: 0xc77700, width: 2, dash: 0.012, gap: 0.008, opacity: 0.6 });
+      picture.stage.scene.add(this.path);
+    }
+    picture.stage.rig.around([...seen, ...path ?? [], picture.frames[`${this.data.side}_e1`]?.p ?? picture.tip.p]);
     picture.stage.rig.use("Motion");
     picture.stage.drawn = () => {
       this.host.dataset.ready = "1";
@@ -218,6 +239,7 @@ export class LiveArm {
     const { picture } = this;
     picture.pose(this.data.side, q);
     picture.furnish(things);
+    this.path?.position.fromArray(things.target?.shift ?? [0, 0, 0]);
     const size = force ? Math.hypot(...force) : 0;
     if (force) this.taken = performance.now();
     const starts = this.held?.force && force && link < this.links.length - 1 ? picture.outside(at, force) : at ?? picture.tip.p;
@@ -239,7 +261,7 @@ export class LiveArm {
     const { t, error, force, link, spent, pace, kept, law } = this.frame;
     const words = [law, `t = ${t.toFixed(2)} s`];
     if (error !== null) words.push(`${(1000 * error).toFixed(1)} mm from the target`);
-    words.push(force ? `your force ${Math.hypot(...force).toFixed(1)} N at the ${this.links[link]}` : "your force 0.0 N");
+    words.push(force ? `your force ${Math.hypot(...force).toFixed(1)} N at ${spoken(this.links[link])}` : "your force 0.0 N");
     if (spent.length) words.push(`at its torque limit: ${spent.map((k) => this.data.joints[k]).join(", ")}`);
     if (pace && pace < 0.95 && this.state === "running") words.push(`${pace.toFixed(2)} × real time`);
     if (kept.length) words.push(`${kept.length} kept`);

@@ -24,7 +24,7 @@ export class Player {
     this.picture = new Picture(this.stagebox, "Baxter");
     this.stage = this.picture.stage;
     this.times = 1; // the error is drawn this many times as large
-    this.sight = sight(this.picture, { magnify: (k) => { this.times = k; this.dress(); this.explain(); this.arrange(); } });
+    this.sight = sight(this.picture, { whole: !json.robot?.arm, magnify: (k) => { this.times = k; this.dress(); this.explain(); this.arrange(); } });
     this.element.append(this.stagebox, this.timebar(), this.sight.element, this.legend, this.readout, this.status, this.plotbox);
     host.append(this.element);
     if (this.stage.works) this.furnish();

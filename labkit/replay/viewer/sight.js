@@ -13,9 +13,10 @@ export function check(label, value, onchange) {
 /**
  * The bar under a picture: {element, magnifier, alone}, the last the box that hides the rest of the robot.
  * @param magnify  called with 1, 10 or 50; without it there is no such choice
+ * @param whole  whether the robot is more than its arm, which can then be shown alone
  * @param camera  whether a camera is among the things, whose picture can be shown
  */
-export function sight(picture, { magnify, camera } = {}) {
+export function sight(picture, { magnify, camera, whole = true } = {}) {
   const { stage } = picture;
   const views = Object.keys(VIEWS).map((name) => h("button", { type: "button", onclick: () => stage.rig?.use(name) }, name));
   const moves = [
@@ -29,6 +30,7 @@ export function sight(picture, { magnify, camera } = {}) {
   }), check("Arm alone", false, (on) => picture.alone(on)),
   check("Velocity", false, (on) => { picture.quick = on; picture.velocity([0, 0, 0]); })];
   if (camera) boxes.push(check("Camera's picture", false, (on) => inset(on && (() => picture.seen()))));
+  boxes[1].hidden = !whole;
   const [near, , , lens] = boxes.map((box) => box.querySelector("input"));
   const inset = (from) => { // one inset: the close-up or the camera's picture
     if (!stage.small) stage.inset();
