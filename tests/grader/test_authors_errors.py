@@ -96,9 +96,19 @@ def test_the_outcome_of_a_measurement_is_checked_too(monkeypatch):
 
 @pytest.mark.parametrize("wrong", [
     "from solutions.paths.answers import lin as answer", "import solutions.path.answers",
+    "from . import answers",
 ])  # fmt: skip
 def test_an_import_in_a_stub_that_finds_nothing_is_refused(monkeypatch, wrong):
     """The solution region is cleared for students, but whoever solves the notebook meets it."""
     source = f"def double(x):\n    ### BEGIN SOLUTION\n    {wrong}\n    ### END SOLUTION"
     with pytest.raises(LabkitError, match=rf"01_paths\.py:\nthe stub of double says `{wrong}`: "):
         released(monkeypatch, (problem(),), source=source)
+
+
+@pytest.mark.parametrize(
+    "right", ["%time\n    import math", "try: import nowhere\n    except ImportError: pass"]
+)
+def test_an_import_that_may_fail_and_a_magic_are_no_error(monkeypatch, right):
+    """A stub whose import is tried, or that has a magic of IPython's, is released."""
+    source = f"def double(x):\n    ### BEGIN SOLUTION\n    {right}\n    ### END SOLUTION"
+    released(monkeypatch, (problem(),), source=source)

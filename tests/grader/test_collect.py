@@ -343,14 +343,15 @@ def test_marks_go_with_the_work(course, tmp_path):
 
 
 def test_what_cannot_be_moved_is_named(bare, tmp_path):
-    """A result that cannot be read stays under the old name."""
+    """A mark under the old name, or other work under the new one, wants a look."""
     take(bare, zipped(tmp_path / "1.zip", [("hoppergrace_7_99_x.ipynb", "moodle's")]))
+    (bare.submitted / "grace" / NAME).mkdir(parents=True)
     (bare.results / NAME).mkdir(parents=True)
     (bare.results / NAME / "hoppergrace-7.json").write_text("{}")
     roster(bare, "grace,Grace,Hopper,,7,,")
     (said,) = troubles(bare, tmp_path / "1.zip")
-    assert f"results/{NAME}/hoppergrace-7.json of the same student stays" in said
-    assert counting(bare) == {"grace": "moodle's"}
+    assert f"submitted/hoppergrace-7/{NAME} and results/{NAME}/hoppergrace-7.json" in said
+    assert counting(bare)["hoppergrace-7"] == counting(bare)["grace"] == "moodle's"
 
 
 # The exchange

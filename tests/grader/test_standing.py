@@ -10,7 +10,7 @@ import shutil
 from dataclasses import replace
 
 import pytest
-from made import NAME, graded, handed_in, notebook_of, result_of
+from made import NAME, changed, graded, handed_in, notebook_of, result_of
 
 from labkit.__main__ import main
 from labkit.grader.grading.batch import common_failures
@@ -148,6 +148,21 @@ def test_a_mark_of_an_earlier_release_is_an_empty_cell(marked, capsys, change, s
     assert [rows[who]["score"] for who in ("ada", "bob", "carl")] == ["", "", "0.0"]
     code, _, err = verb(marked, capsys, "feedback")
     assert (code, err.count("no page: ")) == (1, 2)
+
+
+def test_a_mark_falls_by_the_share_of_what_both_releases_ask(course):
+    """Neither other points nor a question more or less is a fall; a rejection is one."""
+    full, half = result_of(course, "ada"), result_of(course, "ada", share=0.5)
+    assert half.falls_from(full) and not full.falls_from(half)
+    cheaper = changed(full, 0, {"points": 1.0, "earned": 1.0})
+    dearer = changed(full, 0, {"points": 9.0, "earned": 9.0})
+    new = changed(full, 0, {"name": "new", "earned": 0.0})
+    for one in (cheaper, dearer, new, replace(full, questions=full.questions[1:])):
+        assert not one.falls_from(full) and not full.falls_from(one)
+    assert changed(dearer, 0, {"earned": 8.0}).falls_from(full)
+    rejected = result_of(course, "ada", rejected="the file is empty")
+    assert rejected.falls_from(full) and not full.falls_from(rejected)
+    assert not result_of(course, "ada", share=0.5, data=b"another").falls_from(full)
 
 
 def test_tables_of_a_class_that_is_whole_say_nothing(marked, capsys):

@@ -1,4 +1,4 @@
-"""Two folders of one student: the import of a list joins them, or names them."""
+"""Two folders of one student: the import of a list names them and joins nothing."""
 
 from __future__ import annotations
 
@@ -6,12 +6,7 @@ from datetime import UTC, datetime
 
 import pytest
 from downloaded import NAME, bare_course, counting, from_moodle, kept
-from made import notebook_of, result_of
 
-from labkit.grader.grading.results import Results
-from labkit.grader.marks.table import marks_of
-from labkit.grader.nbgrader.gradebook import open_gradebook, record
-from labkit.grader.students.attempts import attempts
 from labkit.grader.students.class_list import Student
 from labkit.grader.students.collect import collect
 from labkit.grader.students.enrol import import_list
@@ -39,50 +34,22 @@ def handed_in_twice(course, tmp_path, first, second):
 
 
 @pytest.mark.parametrize(("rule", "expected"), [("latest", "2"), ("latest in time", "1")])
-def test_two_folders_of_one_student_become_one(bare, tmp_path, rule, expected):
-    """Once a list says whose they are, all attempts are kept, and one counts by the rule."""
+def test_two_folders_of_one_student_are_named_and_collecting_again_keeps_both(
+    bare, tmp_path, rule, expected
+):
+    """The import joins nothing, for a name may be another's; the downloads know whose they are."""
     rules = f"counts = '{rule}'\n[assignments.{NAME}]\ndue = 2026-03-02T00:00:00\n"
     (bare.root / "course.toml").write_text(rules)
     handed_in_twice(bare, tmp_path, "1", "2")
     assert counting(bare) == {"Ada-Lovelace-42": "1", "ada": "2"}
     _, (said,) = import_list(bare, tmp_path / "list.csv")
-    assert said.startswith(f"Ada-Lovelace-42 and ada are one student; {NAME}: of 2 attempts, the")
-    assert counting(bare) == {"ada": expected}
+    assert "Ada-Lovelace-42/01_paths of the same student stays, as ada has work too" in said
+    assert counting(bare) == {"Ada-Lovelace-42": "1", "ada": "2"}
+    take(bare, tmp_path / "1.zip")
+    assert counting(bare)["ada"] == expected
     assert kept(bare, "ada") == {"1", "2"}
-    assert not (bare.root / "attempts/Ada-Lovelace-42").exists()
-    assert not import_list(bare, tmp_path / "list.csv")[1]
-
-
-def test_the_same_work_in_two_folders_is_one_attempt(bare, tmp_path):
-    """It has both times at which it was handed in."""
-    handed_in_twice(bare, tmp_path, "1", "1")
-    import_list(bare, tmp_path / "list.csv")
-    (one,) = attempts(bare, "ada", NAME)
-    assert {x.origin for x in one.hand_ins} == {"moodle", "files"}
-
-
-@pytest.mark.parametrize("newer", [False, True])
-def test_of_two_marks_that_of_the_work_that_counts_stays(course, tmp_path, newer):
-    """A mark by hand of the other work is said once, and is in no table any more."""
-    first, second = notebook_of("1"), notebook_of("2")
-    handed_in_twice(course, tmp_path, first.decode(), second.decode())
-    for student, data, points in [("Ada-Lovelace-42", first, 1.5), ("ada", second, 2.5)]:
-        Results(course, NAME).keep(result := result_of(course, student, data=data))
-        record(course, NAME, [result])
-        with open_gradebook(course) as book:
-            book.find_grade("circle-check", NAME, NAME, student).manual_score = points
-            book.db.commit()
-    rules = f"counts = 'latest in time'\n[assignments.{NAME}]\ndue = 2026-03-02T00:00:00\n"
-    (course.root / "course.toml").write_text("" if newer else rules)
-    _, said = import_list(course, tmp_path / "list.csv")
-    gone, points = ("Ada-Lovelace-42", 1.5) if newer else ("ada", 2.5)
-    assert f"{gone}: {NAME}: circle-check had {points:g} by hand, for an attempt that" in said[1]
-    (mark,) = marks_of(course, NAME)
-    assert (mark.student, mark.missing, Results(course, NAME).students()) == ("ada", "", ["ada"])
-    assert {x.by_hand for x in mark.lines} == {None, 4.0 - points}
-    with open_gradebook(course) as book:
-        assert [one.id for one in book.students] == ["ada"]
-    assert not list(course.root.glob("autograded/Ada*"))
+    (summary, left) = import_list(bare, tmp_path / "list.csv")
+    assert "work of nobody in the roster: Ada-Lovelace-42; " in " ".join(summary) and not left
 
 
 def test_two_students_of_the_roster_are_never_joined(bare, tmp_path):
@@ -98,13 +65,13 @@ def test_two_students_of_the_roster_are_never_joined(bare, tmp_path):
 
 
 def test_a_folder_of_nobody_in_the_roster_is_named(bare, tmp_path):
-    """At import, and by `term forget`, for it may be somebody's second one."""
+    """At import, and not by `term forget` of somebody with another name."""
     people = [(("Ada Lovelace", 1), "x.ipynb", "1"), (("Ada King", 2), "x.ipynb", "2")]
     take(bare, from_moodle(tmp_path / "1.zip", people))
     (tmp_path / "list.csv").write_text("name,login\nAda Lovelace,ada\n")
     (_, said), _ = import_list(bare, tmp_path / "list.csv")
     assert said.startswith("work of nobody in the roster: Ada-King-2; import a list")
-    assert "perhaps theirs too: Ada-King-2; look" in " ".join(left_by_hand(bare, "ada"))
+    assert "perhaps theirs too" not in " ".join(left_by_hand(bare, "ada"))
 
 
 def test_without_a_list_forget_names_who_is_called_alike(bare, tmp_path):

@@ -61,7 +61,8 @@ def grade(course: Course, assignment: str, student: str | None, as_json: bool, *
     """Grade every submission that is not graded yet.
 
     Each submission is graded in a sandbox of its own. After you have changed a test and released
-    the assignment, all submissions are graded again. No mark is lowered unless you add --lower.
+    the assignment, all submissions are graded again. No mark is lowered unless you add --lower; if
+    a question has other points since, its share of them is compared.
     A notebook of another assignment that was handed in is named at the end, with exit code 1.
     """
     from ..grading.batch import GradeOptions, common_failures, grade_class, watch

@@ -103,7 +103,8 @@ def draw(course: Course, student: str) -> tuple[Asked, ...]:
     """The questions of a student's defence; fewer where fewer answers can be asked about.
 
     Raises:
-        LabkitError: Nobody has this name, or there are fewer because work has no result.
+        LabkitError: Nobody has this name, nothing was handed in, or there are fewer because work
+            has no result.
         NoIsolation: No sandbox can be made here.
     """
     answers, missing = accepted(course, student)
@@ -135,15 +136,15 @@ def accepted(course: Course, student: str) -> tuple[list[Accepted], list[str]]:
     """The answers of a student that count in full, and why work that was handed in has no result.
 
     Raises:
-        LabkitError: The student is not in the roster, and nothing of theirs is here.
+        LabkitError: Nothing of theirs is here.
     """
     found: list[Accepted] = []
     missing: list[str] = []
     roster = [one.id for one in read_roster(course).students]
-    known = student in roster
+    worked = False
     for name in sorted(path.stem for path in course.bundle.glob("*.json")):
         for result in standing(course, name, student):
-            known = True
+            worked = True
             if isinstance(result, Failure):
                 missing.append(f"{name}: {result.why}")
                 continue
@@ -154,7 +155,9 @@ def accepted(course: Course, student: str) -> tuple[list[Accepted], list[str]]:
                 for question in bundle.questions
                 if question.name in answers and edits(answers[question.name].source)
             ]
-    if not known:
+    if not worked and student in roster:
+        raise LabkitError(f"{student} has handed in nothing, so there is nothing to ask about")
+    if not worked:
         folders = [path.name for path in course.submitted.glob("*") if is_name(path.name)]
         raise LabkitError(
             f"there is no student {student!r}: not in the roster, and nothing of theirs is in "

@@ -198,18 +198,15 @@ def _kept(
 
 
 def _keep(results: Results, result: Result, lower: bool) -> GradedSubmission:
-    """Store a result, unless it would lower the mark of an unchanged submission unasked.
-
-    Marks are compared as shares of full marks, which a release can change.
-    """
+    """Store a result, unless it would lower the mark of an unchanged submission unasked."""
     before = results.get(result.student)
-    if before is not None and not lower:
-        same = before.hashes["submission"] == result.hashes["submission"]
-        if same and result.score * before.points < before.score * result.points:
-            now = f"{result.score:g} of {result.points:g}"
-            return GradedSubmission(before, f"kept; --lower lets it fall to {now}")
+    if before is not None and not lower and result.falls_from(before):
+        now = f"{result.score:g} of {result.points:g}"
+        return GradedSubmission(before, f"kept; --lower lets it fall to {now}")
     results.keep(result)
-    return GradedSubmission(result, "" if before is None else f"was {before.score:g}")
+    was = "" if before is None else f"was {before.score:g}"
+    full = f" of {before.points:g}" if before and before.points != result.points else ""
+    return GradedSubmission(result, was + full)
 
 
 def common_failures(results: Sequence[Result]) -> Iterator[str]:

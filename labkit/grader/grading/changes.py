@@ -98,8 +98,8 @@ def summary(found: Sequence[Change]) -> Iterator[str]:
         if change.by or change.before is None:
             yield str(change)
     changed = sum(bool(m.by) for m in found)
-    lower = sum(m.by < 0 for m in found)
-    would = f"{changed} of {len(found)} marks would change, {lower} of them to a lower mark"
+    lower = sum(bool(m.before and m.after.falls_from(m.before)) for m in found)
+    would = f"{changed} of {len(found)} marks would change, {lower} of them only with --lower"
     yield would if changed else f"none of the {len(found)} marks would change"
     before = {m.before.points for m in found if m.before} - {m.after.points for m in found}
     if before:

@@ -191,6 +191,23 @@ class Result:
         came = f"{self.score:g} of {self.points:g}"
         return f"{self.student}: {f'rejected; {self.rejected}' if self.rejected else came}"
 
+    def falls_from(self, before: Result) -> bool:
+        """Whether the same submission had more before, of the questions that both releases ask.
+
+        A release can change what a question is worth, so the share of each question is compared,
+        times its points now; with the same points that is the mark.
+        """
+        if before.hashes["submission"] != self.hashes["submission"]:
+            return False
+        if self.rejected:
+            return before.score > 0.0
+        worth = {q.verdict.name: q.verdict.points for q in self.questions}
+        was, now = (
+            sum(v.earned / v.points * worth.get(v.name, 0.0) for v in verdicts if v.points)
+            for verdicts in ([q.verdict for q in x.questions] for x in (before, self))
+        )
+        return now < was - 1e-6
+
     @property
     def unanswered(self) -> str:
         """Why nothing in it is an attempt at a question, in a sentence; "" if something may be."""

@@ -100,8 +100,8 @@ def import_list(
         assignment: Where the file is Moodle's grading worksheet of this assignment.
 
     Returns:
-        What was done; and what a person should look at: work of one student that was in two
-        folders, and hand-in times that are not set.  A sentence each.
+        What was done; and what a person should look at: work of one student that is in two folders,
+        and hand-in times that are not set.  A sentence each.
 
     Raises:
         LabkitError: The list does not fit the roster or itself, or it is not a list.
@@ -137,9 +137,8 @@ def import_list(
         summary.append(f"not in this list, and still in the roster: {still}")
     if others := strangers(course, done.roster):
         summary.append(
-            f"work of nobody in the roster: {some(others)}; import a list that has them. If one is "
-            "a student's second folder, copy what should count to "
-            "submitted/STUDENT/ASSIGNMENT/ASSIGNMENT.ipynb, and move the folder away"
+            f"work of nobody in the roster: {', '.join(others)}; import a list that has them, or "
+            "move their folders away from submitted/ and attempts/"
         )
     if len(entries) < len(rows):
         summary.append(

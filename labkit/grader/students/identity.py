@@ -157,14 +157,7 @@ def places(
 
 
 def _claim(one: LmsUser, folder: str, roster: Roster) -> tuple[str, ...]:
-    """Which student of the roster a person of a platform is, or claims to be by name.
-
-    The names of files are the instructor's own, so one student may have several; not those on
-    GitHub, which anybody can take.
-    """
-    students = roster.whose(one)
-    if one.system == "files" and len(students) == 1 and not students[0].github:
-        return one.key
+    """Which student of the roster a person of a platform is, or claims to be by name."""
     return (one.system, *([folder] if folder in roster else [s.id for s in roster.whose(one)]))
 
 

@@ -2,24 +2,15 @@
 
 from __future__ import annotations
 
-import shutil
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, replace
-from datetime import UTC, datetime
-from functools import partial
 from pathlib import Path
 from typing import Any
 
 from ...course.authoring.layout import Course
-from ...errors import LabkitError
-from ..each import Failure, for_student
 from ..grading.results import Results
 from ..nbgrader.gradebook import open_gradebook
-from ..sandbox.limits import Limits
-from ..submission import Submission, digest
-from ..timestamp import TIMESTAMP
-from .attempts import FOLDER, adopt, install, keep
-from .exchange import SECRET, read_secret
+from .attempts import FOLDER
 from .identity import all_lms_users, places, remember
 from .roster import Roster, read_roster
 
@@ -61,144 +52,65 @@ def strangers(course: Course, roster: Roster) -> list[str]:
 def bring(course: Course, moves: Iterable[Move]) -> list[str]:
     """Take work from one folder to another, and then its marks, also those by hand.
 
-    If there is work in both, all attempts are kept in the new folder, and one of them counts by the
-    rules of the course.  Work in the folder of another student of the roster stays there.
+    Nothing that is there is overwritten, and no two works are made one: who they are may be known
+    by a name alone.
 
     Returns:
-        What wants a look: what was joined, and what stayed where it was; a sentence each.
+        What stayed where it was and wants a look, a sentence each.
     """
     moves = [move for move in moves if move.old and move.old != move.new]
-    roster, said = read_roster(course), list[str]()
     for move in moves:
-        both = [_work(course, move.assignment, name) for name in (move.old, move.new)]
-        if all(both) and move.old not in roster:
-            joined = for_student(move.old, partial(_join, course, move))
-            said.append(joined.why if isinstance(joined, Failure) else joined)
-        for base in () if all(both) else (*_WORK, *_MADE_OF_IT):
-            source, target = _folders(course, base, move)
+        for base in (*_WORK, *_MADE_OF_IT):
+            source = course.root / base / move.old / move.assignment
+            target = course.root / base / move.new / move.assignment
             if source.exists() and not target.exists():
-                _take(source, target)
-    done = [move for move in moves if not _work(course, move.assignment, move.old)]
-    said += _bring_marks(course, done)
+                target.parent.mkdir(parents=True, exist_ok=True)
+                source.rename(target)
+                if not any(source.parent.iterdir()):
+                    source.parent.rmdir()
+    _bring_marks(course, [move for move in moves if not _work(course, move)])
+    said: list[str] = []
     for move in moves:
         result = Results(course, move.assignment).path(move.old)
-        left = [*_work(course, move.assignment, move.old), *[result] * result.exists()]
+        left = [*_work(course, move), *[result] * result.exists()]
         if left:
             names = " and ".join(str(path.relative_to(course.root)) for path in left)
-            said.append(f"{names} of the same student stays; look what it is, and move it away")
+            said.append(
+                f"{names} of the same student stays, as {move.new} has work too; to keep both, "
+                "collect the same downloads again, which brings each file to its student; then "
+                "move what stays away"
+            )
     return said
 
 
-def _join(course: Course, move: Move) -> str:
-    """Keep all attempts of both folders in the new one, and let the right one count."""
-    name, now = move.assignment, str(datetime.now(UTC))
-    theirs, there = (adopt(course, x, name, now) for x in (move.old, move.new))
-    for sha256, one in theirs.items():
-        folder = one.file.parent
-        if sha256 not in there:
-            _take(folder, course.root / FOLDER / move.new / name / folder.name)
-            continue
-        data, secret = one.file.read_bytes(), read_secret(folder)
-        for hand_in in one.hand_ins:
-            keep(course, move.new, name, data, hand_in, secret, there)
-        shutil.rmtree(folder)
-    chosen = install(course, move.new, name)
-    submitted = course.submitted / move.old / name
-    for path in (*submitted.glob("*.ipynb"), submitted / TIMESTAMP, submitted / SECRET):
-        path.unlink(missing_ok=True)  # the attempts have it
-    for base in _WORK:
-        _remove_empty(_folders(course, base, move)[0])
-    if chosen is None:
-        raise LabkitError(f"neither {move.old} nor {move.new} has an attempt at {name}")
-    from_old = chosen.attempt.sha256 in theirs
-    for base in _MADE_OF_IT:  # what was made of the work that counts
-        source, target = _folders(course, base, move)
-        shutil.rmtree(target if from_old else source, ignore_errors=True)
-        if source.exists():
-            _take(source, target)
-        _remove_empty(source)
-    return (
-        f"{move.old} and {move.new} are one student; {name}: of {len(theirs | there)} attempts, "
-        f"the one of {chosen.first.when:%Y-%m-%d %H:%M %Z} counts; type: labkit grade {name}"
-    )
-
-
-def _folders(course: Course, base: str, move: Move) -> tuple[Path, Path]:
-    """Where something of an assignment is, and where it goes."""
-    return (
-        course.root / base / move.old / move.assignment,
-        course.root / base / move.new / move.assignment,
-    )
-
-
-def _take(source: Path, target: Path) -> None:
-    target.parent.mkdir(parents=True, exist_ok=True)
-    source.rename(target)
-    _remove_empty(source.parent)
-
-
-def _remove_empty(folder: Path) -> None:
-    """Remove a folder, and the one around it, if there is nothing in them."""
-    for path in (folder, folder.parent):
-        if path.is_dir() and not any(path.iterdir()):
-            path.rmdir()
-
-
-def _work(course: Course, assignment: str, student: str) -> list[Path]:
-    """What was handed in and is in the folder of a student."""
-    folders = [course.root / base / student / assignment for base in _WORK]
+def _work(course: Course, move: Move) -> list[Path]:
+    """What was handed in and is still in the old folder."""
+    folders = [course.root / base / move.old / move.assignment for base in _WORK]
     return [path for path in folders if path.exists()]
 
 
-def _bring_marks(course: Course, moves: Sequence[Move]) -> list[str]:
-    """Bring results and marks; of two for one assignment, those of the work that counts stay.
-
-    Returns:
-        Which marks given by hand were of the other work, a sentence each.
-    """
-    kept: dict[Move, str] = {}
+def _bring_marks(course: Course, moves: Sequence[Move]) -> None:
     for move in moves:
         results = Results(course, move.assignment)
-        mine, other = results.get(move.old), results.get(move.new)
-        now = Submission.of(course, move.assignment, move.new).read(Limits().notebook)[0]
-        alone = not results.path(move.new).exists()
-        counts = mine is not None and mine.hashes["submission"] == digest(now)
-        kept[move] = move.old if counts or alone else move.new
-        if mine is not None and kept[move] == move.old:
-            results.keep(replace(mine, student=move.new))
-        if mine is not None and (other is not None or alone):
+        result = results.get(move.old)
+        if result is not None and not results.path(move.new).exists():
+            results.keep(replace(result, student=move.new))
             results.path(move.old).unlink()
     if not moves or not (course.root / "gradebook.db").exists():
-        return []
-    said: list[str] = []
+        return
     with open_gradebook(course) as book:
-        for move in moves:
-            there = {x.student.id: x for x in book.assignment_submissions(move.assignment)}
-            if move.old in there and move.new in there:
-                gone = move.new if kept[move] == move.old else move.old
-                said += _by_hand(there.pop(gone), move.assignment)
-                book.remove_submission(move.assignment, gone)
-            if move.old in there:
-                there[move.old].student = book.update_or_create_student(move.new)
+        for assignment, old, new in ((x.assignment, x.old, x.new) for x in moves):
+            there = {one.student.id: one for one in book.assignment_submissions(assignment)}
+            if old in there and new not in there:
+                there[old].student = book.update_or_create_student(new)
                 book.db.commit()
         for old, new in {(x.old, x.new) for x in moves}:
             _bring_the_rest(course, book, old, new)
-    return said
-
-
-def _by_hand(submission: Any, assignment: str) -> Iterator[str]:
-    """The marks that a person gave to work that does not count any more."""
-    for grade in (x for notebook in submission.notebooks for x in notebook.grades):
-        if grade.manual_score is not None:
-            yield (
-                f"{submission.student.id}: {assignment}: {grade.name} had {grade.manual_score:g} "
-                "by hand, for an attempt that does not count any more"
-            )
 
 
 def _bring_the_rest(course: Course, book: Any, old: str, new: str) -> None:
     """What belongs to no file, such as the mark of a defence, and then the empty name."""
-    if old not in {one.id for one in book.students}:
+    if old not in {one.id for one in book.students} or old in read_roster(course):
         return
     if any((course.root / base / old).exists() for base in _WORK):
         return  # somebody's work is there still

@@ -24,7 +24,6 @@ from ..students.identity import FILE as LMS
 from ..students.identity import all_lms_users, alone, save_lms_users
 from ..students.roster import FILE as ROSTER
 from ..students.roster import Roster, read_roster, same_name, save_roster
-from ..students.settle import strangers
 from ..submission import is_name, meant
 from .older import relocate
 from .term import archives
@@ -121,12 +120,14 @@ def unknown(course: Course, student: str) -> LabkitError:
 
 
 def _perhaps_theirs(term: Course, student: str) -> list[str]:
-    """Other folders of a term: of nobody in the roster, or of somebody who is called alike."""
+    """Other folders of a term, of nobody in the roster, of somebody who is called alike."""
     roster, users = read_roster(term), all_lms_users(term).values()
     known = [(folder, same_name(one.name)) for each in users for folder, one in each.items()]
-    names = {name for folder, name in known if folder == student and name}
-    alike = {folder for folder, name in known if name in names and folder not in roster}
-    return sorted((alike | set(strangers(term, roster) if roster.students else ())) - {student})
+    names = {name for folder, name in known if folder == student}
+    names |= {same_name(one.name) for one in roster.students if one.id == student}
+    return sorted(
+        {x for x, name in known if name and name in names and x not in roster} - {student}
+    )
 
 
 def _read_by_others(course: Course, student: str) -> Iterator[Path]:

@@ -22,7 +22,7 @@ from ...course.authoring.outcomes import check_outcomes
 from ...course.authoring.problem import Problem
 from ...course.authoring.release import Prepared, prepare, write
 from ...course.notebook import BLANK, about, by_hand, grade_id, kind, manifest
-from ...course.source import look
+from ...course.source import look, parsed
 from ...errors import LabkitError
 from ..nbgrader.gradebook import migrate
 from ..nbgrader_api import nbgrader_api, reason
@@ -196,11 +196,13 @@ def _not_importable(made: Prepared) -> Iterator[str]:
     for cell in made.source.cells:
         if kind(cell) != "answer" or look(cell.source)["broken"]:
             continue
-        for node in ast.walk(ast.parse(cell.source)):
-            if isinstance(node, ast.Import | ast.ImportFrom):
+        nodes = list(ast.walk(parsed(cell.source)[1]))
+        tried = {x for node in nodes if isinstance(node, ast.Try) for x in ast.walk(node)}
+        for node in nodes:
+            if isinstance(node, ast.Import | ast.ImportFrom) and node not in tried:
                 try:
-                    exec(ast.unparse(node), {})
-                except ImportError as error:
+                    exec(ast.unparse(node), {"__name__": "stub"})
+                except (Exception, SystemExit) as error:
                     says = ast.unparse(node)
                     yield f"the stub of {grade_id(cell)} says `{says}`: {error}; correct it"
 

@@ -6,6 +6,7 @@ import ctypes
 import os
 import signal
 import time
+from collections.abc import Collection
 from contextlib import suppress
 from multiprocessing import resource_tracker
 from pathlib import Path
@@ -38,8 +39,11 @@ class Family:
         ctypes.CDLL(None).prctl(_ADOPTS, 0, 0, 0, 0)
 
     def now(self) -> dict[tuple[int, int], str]:
-        """What runs now: ids and times of start, with the words they were started with."""
-        return {who: words for who, words in descendants().items() if who not in self.before}
+        """What runs now: ids and times of start, with the words they were started with.
+
+        What was there before may start more, as a browser does; that is not of this block.
+        """
+        return descendants(before=self.before)
 
     def left(self) -> list[str]:
         """What still runs once it had its time to end; dead children are buried."""
@@ -54,18 +58,26 @@ class Family:
         return []
 
 
-def descendants(of: int = 0) -> dict[tuple[int, int], str]:
-    """All that descend from a process, this one by default, with the words they were started with."""
+def descendants(
+    of: int = 0, before: Collection[tuple[int, int]] = ()
+) -> dict[tuple[int, int], str]:
+    """All that descend from a process, with the words they were started with.
+
+    Args:
+        of: Which process; by default this one.
+        before: Processes that are left out, with all that they started.
+    """
     of = of or os.getpid()
     parents: dict[int, tuple[int, int]] = {}
     for folder in Path("/proc").glob("[0-9]*"):
         with suppress(OSError, ValueError):
             fields = (folder / "stat").read_text(errors="replace").rpartition(")")[2].split()
             parents[int(folder.name)] = int(fields[1]), int(fields[19])
+    others = {pid for pid, start in before if parents.get(pid, (0, 0))[1] == start}
     family, size = {of}, 0
     while len(family) > size:
         size = len(family)
-        family |= {pid for pid, (parent, _) in parents.items() if parent in family}
+        family |= {pid for pid, (parent, _) in parents.items() if parent in family} - others
     return {(pid, parents[pid][1]): words(pid) for pid in family - {of} if pid in parents}
 
 
