@@ -8,7 +8,7 @@ Curves differ by line style as well as by colour, and `describe` gives each figu
 from __future__ import annotations
 
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from textwrap import fill
 from typing import Any
 
@@ -25,13 +25,13 @@ from .model import Model
 STYLES = ("-", "--", "-.", ":")
 AXES = ("x", "y", "z")
 
-stand_ins: list[str] = []
-"""Answers that a stand-in replaces in the cell that runs; `labkit.course.use` writes them here."""
+stand_ins: Callable[[], Iterable[str]] = tuple
+"""Gives the names of the answers that captions are to name; a course may set another."""
 
 
 def as_drawn(caption: str) -> str:
     """A caption that says, where it is so, that a stand-in draws what it tells of."""
-    names = " and ".join(dict.fromkeys(stand_ins))
+    names = " and ".join(stand_ins())
     return f"With a stand-in for {names}: {caption}" if names else caption
 
 

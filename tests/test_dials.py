@@ -49,17 +49,6 @@ def test_a_slider_redraws_with_the_caption_as_alt_text(shown):
     assert plt.get_fignums() == others
 
 
-def test_a_caption_says_that_a_stand_in_draws(shown, monkeypatch, capsys):
-    """Under a figure and under dials, whatever else the caption tells."""
-    monkeypatch.setattr(lk.plotting, "stand_ins", ["gains", "law", "law"])
-    plt.figure()
-    lk.plotting.show("It rests.")
-    lk.plotting.dials(lambda kd: (plt.figure(), "It moves."), kd=(0.0, 2.0, 1.0))
-    assert "With a stand-in for gains and law: It rests." in capsys.readouterr().out
-    says = [x["metadata"]["image/png"]["alt"] for x in shown if "metadata" in x][-1]
-    assert says == "With a stand-in for gains and law: It moves."
-
-
 def test_a_bar_says_how_long_it_takes_and_when_it_is_done(shown, widgets, monkeypatch):
     """Told every tick, it is drawn five times a second at most, and its end never fails to show."""
     clock = iter([0.0, 0.1, 0.25, 0.3, 1.0])

@@ -66,7 +66,7 @@ ORDER = [
         "course.seed",
     },
     {"course.forms"},
-    {"course.judges", "course.withheld", "course.unfinished"},
+    {"course.judges", "course.withheld", "course.unfinished", "course.stand_ins"},
     {"course.baxter_cup", "course.bugs"},
     {"course.own_arm"},
     {"course.equivalence"},

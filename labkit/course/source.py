@@ -178,18 +178,20 @@ def _definition(part: list[ast.stmt], lines: list[str]) -> dict[str, Any]:
     """What a statement at a cell's top level gives a meaning to, and what it leans on.
 
     Returns:
-        Names that it ``binds``; names from ``outside``; the dotted names that it ``uses``; what
-        names of these that it imports itself ``mean``, "*" for all of a module; whether it is a
-        ``stub``.
+        Names that it ``binds``; names from ``outside``; the dotted names that it ``uses``; names
+        that it ``fills`` by setting items; what names of these that it imports itself ``mean``,
+        "*" for all of a module; whether it is a ``stub``.
     """
     scope = symtable.symtable(_text(part, lines), "", "exec")
     binds, outside = _own(scope), set(_from_elsewhere(scope))
     mean: dict[str, str] = {}
-    chains: set[str] = set()
+    chains, fills = set[str](), set[str]()
     for node in _used(part):
         kind = type(node)
         if kind in _CHAINS:
             chains.add(dotted(node))
+        elif isinstance(node, ast.Subscript) and isinstance(node.ctx, ast.Store):
+            fills.add(dotted(node.value))
         elif kind in _IMPORTS:
             mean |= imported(node)
     uses = {x for x in chains if (root := x.partition(".")[0]) in outside or root in mean}
@@ -197,6 +199,7 @@ def _definition(part: list[ast.stmt], lines: list[str]) -> dict[str, Any]:
         "binds": sorted(binds | (mean.keys() & {"*"})),
         "outside": sorted(outside),
         "uses": sorted(uses),
+        "fills": sorted(fills & outside),
         "mean": mean,
         "stub": is_stub(part[0]),
     }

@@ -31,6 +31,7 @@ from .question import Call, Question
 from .reply import Here
 from .serialize import read_question
 from .source import look
+from .stand_ins import StandIns
 from .unfinished import watch
 from .verdict import Outcome, Verdict
 from .withheld import withheld_tools, withhold
@@ -48,6 +49,7 @@ class Desk:
         self.chosen: dict[str, Any] = {}
         self.drafts: dict[str, list[Any]] = {}
         self.revealed: set[str] = set()
+        self.stand_ins = StandIns()
 
     @classmethod
     def beside(cls, folder: Path) -> Desk:
@@ -272,7 +274,7 @@ def use(
     """
     if name in _unfinished:
         print(wrapped(f"[stand-in] {_NOT_RUN.format(name=name)}"))
-        return _standing_in(name, given)
+        return desk().stand_ins.give(name, given, shell())
     known, verdict = desk().checked.get(name, (None, None))
     if known is not function or verdict is None:
         verdict, *_ = desk().verdict(name, function)
@@ -280,6 +282,7 @@ def use(
     if anyway and wrong:
         print(f"[anyway] {name}: yours is not right yet, and drives the arm all the same.")
     if verdict.right or (anyway and wrong):
+        desk().stand_ins.discard(name)
         return yours or function
     text = f"[stand-in] {name}: yours is replaced here by a stand-in ({HEADS[verdict.outcome]})."
     if wrong:
@@ -287,16 +290,7 @@ def use(
     elif anyway:
         text += " anyway=True takes only a function that runs to its end on every case."
     print(wrapped(text))
-    return _standing_in(name, given)
-
-
-def _standing_in(name: str, given: Callable[..., Any]) -> Callable[..., Any]:
-    """The stand-in; the captions of the cell say so."""
-    if shell() is not None:
-        from .. import plotting  # slow to load
-
-        plotting.stand_ins.append(name)
-    return given
+    return desk().stand_ins.give(name, given, shell())
 
 
 def _say(says: Message, verdict: Verdict, found: Mismatch | None) -> None:

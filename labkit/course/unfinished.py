@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import re
-import sys
 from typing import Any
 
 from .source import look
@@ -30,8 +29,6 @@ def watch(shell: Any) -> set[str]:
     before: dict[str, Any] = {}
 
     def begins(_: Any) -> None:
-        if drawing := sys.modules.get("labkit.plotting"):
-            drawing.stand_ins.clear()
         before.clear()
         before.update(shell.user_ns)
 

@@ -1,0 +1,114 @@
+"""A caption says which stand-ins its figure is drawn with, whichever cell asked for them."""
+
+import json
+import subprocess
+import sys
+from dataclasses import replace
+from pathlib import Path
+
+import pytest
+from questions import DOUBLE
+
+from labkit.course import question_data
+from labkit.course.checks_file import FILE
+from labkit.course.stand_ins import drawn_with
+from labkit.formats import stamp
+
+KERNEL = """
+import json, sys
+from IPython.core.interactiveshell import InteractiveShell
+from IPython.utils.capture import capture_output
+shell, said = InteractiveShell.instance(), []
+for cell in json.load(sys.stdin):
+    with capture_output() as out:
+        shell.run_cell(cell, store_history=True)
+    alts = [o.metadata.get("image/png", {}).get("alt") for o in out.outputs]
+    result = repr(shell.user_ns["replay"]) if "replay =" in cell else None
+    told = [x for x in (*alts, result) if x] or [out.stdout]
+    said.append(told[-1])
+print(json.dumps(said))
+"""
+HEAD = f"""
+import sys
+sys.path.insert(0, {str(Path(__file__).parents[1] / "replay")!r})
+import matplotlib
+matplotlib.use("Agg")
+import matplotlib.pyplot as plt
+import labkit as lk
+from labkit.course import use
+def given(x): return x
+def triple(x): raise NotImplementedError
+"""
+ANSWER = "def double(x): return {} * x"
+USE = 'my_double = use("double", double, given)\nmy_triple = use("triple", triple, given)\n'
+OTHER = 'plt.plot([given(2)])\nlk.plotting.show("Given.")'
+DRAW = 'plt.plot([my_double(2)])\nlk.plotting.show("Drawn.")'
+NAMED, BOTH = "With a stand-in for double: ", "With a stand-in for double and triple: "
+
+
+@pytest.fixture
+def said(tmp_path):
+    """Runs cells after `HEAD` in a shell; the last alternative text of each, or what it printed."""
+    questions = [question_data(replace(DOUBLE, name=name)) for name in ("double", "triple")]
+    data = {**stamp(), "assignment": "sample", "questions": questions}
+    (tmp_path / FILE).write_text(json.dumps(data))
+
+    def run(*cells):
+        done = subprocess.run(
+            [sys.executable, "-c", KERNEL],
+            input=json.dumps([HEAD, *cells]),
+            capture_output=True,
+            text=True,
+            check=True,
+            cwd=tmp_path,
+        )
+        return [x.strip() for x in json.loads(done.stdout)[1:]]
+
+    return run
+
+
+def test_a_later_cell_that_draws_with_a_stand_in_says_so(said):
+    """In a figure, under dials and in a replay; through functions and runs of other cells too."""
+    cells = (
+        "def at(x): return my_double(x)\nruns = {}\nfor x in (1, 2):\n    runs[x] = at(x)",
+        'plt.plot([at(2)])\nlk.plotting.show("Called.")',
+        'plt.plot(runs.values())\nlk.plotting.show("Kept.")',
+        'def draw(k): return plt.figure(), f"{k * at(1):g}."\nlk.plotting.dials(draw, k=(0, 4, 2))',
+        "from samples import swing\nshown = swing() if at(1) else None\n"
+        "replay = lk.replay.show(shown)",
+        'plt.plot([my_triple(my_double(1))])\nlk.plotting.show("Two.")',
+    )
+    _, _, drawn, _, called, kept, dialled, replayed, two = said(ANSWER.format(3), USE, DRAW, *cells)
+    assert [drawn, called, kept] == [f"{NAMED}{x}" for x in ("Drawn.", "Called.", "Kept.")]
+    assert dialled == f"{NAMED}2."
+    assert replayed.startswith(f"Replay: {NAMED}Circle with") and replayed.count(NAMED) == 1
+    assert two == f"{BOTH}Two."
+
+
+def test_a_figure_without_a_stand_in_says_nothing(said):
+    """Also in the cell that asks for one, and drawn with the very function that stands in."""
+    cells = (USE + OTHER, OTHER, USE + DRAW, f"def later():\n    return my_double\n{OTHER}")
+    _, *told = said(ANSWER.format(3), *cells)
+    assert told == ["Given.", "Given.", f"{NAMED}Drawn.", "Given."]
+
+
+def test_a_right_answer_is_not_called_a_stand_in(said):
+    """Once `use` takes it, or takes a wrong one anyway; until then the stand-in still draws."""
+    anyway = USE.replace("double, given)", "double, given, anyway=True)")
+    right, wrong = ANSWER.format(2), ANSWER.format(3)
+    told = said(wrong, USE, DRAW, right, DRAW, USE, DRAW, wrong, USE, DRAW, anyway, DRAW)
+    assert [told[k] for k in (2, 4, 6, 9, 11)] == [
+        *[f"{NAMED}Drawn."] * 2, "Drawn.", f"{NAMED}Drawn.", "Drawn."
+    ]  # fmt: skip
+
+
+def test_an_older_answer_is_replaced_by_a_stand_in_that_is_named(said):
+    """After an error in its cell, a right answer of before is not used."""
+    right = ANSWER.format(2)
+    *_, drawn = said(right, USE, DRAW, f"1 / 0\n{right}", USE, DRAW)
+    assert drawn == f"{NAMED}Drawn."
+
+
+def test_before_a_cell_has_run_nothing_is_drawn():
+    """A history without cells."""
+    assert drawn_with([], {"double"}) == drawn_with([""], {"double"}) == []
