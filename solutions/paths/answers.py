@@ -21,7 +21,7 @@ def bang_bang(t: float, duration: float) -> tuple[float, float, float]:
         return 0.0, 0.0, 0.0
     if t >= duration:
         return 1.0, 0.0, 0.0
-    a = 4.0 / duration**2  # half the way in half the time: a (T/2)^2 / 2 = 1/2
+    a = 4.0 / duration**2  # half the distance in half the time: a (T/2)^2 / 2 = 1/2
     if t < duration / 2.0:
         return a * t**2 / 2.0, a * t, a
     left = duration - t
@@ -30,7 +30,7 @@ def bang_bang(t: float, duration: float) -> tuple[float, float, float]:
 
 def trapezoid(t: float, distance: float, v_max: float, a_max: float) -> tuple[float, float, float]:
     """Accelerate, cruise, brake, with limits in metres (Lynch & Park, section 9.2.2)."""
-    v = min(v_max, sqrt(distance * a_max))  # a short way never reaches v_max
+    v = min(v_max, sqrt(distance * a_max))  # a short distance never reaches v_max
     ramp = v / a_max
     duration = distance / v + ramp
     if t < 0.0:

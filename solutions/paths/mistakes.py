@@ -52,14 +52,14 @@ def twice_too_slow(t: float, duration: float) -> tuple[float, float, float]:
 def always_cruises(
     t: float, distance: float, v_max: float, a_max: float
 ) -> tuple[float, float, float]:
-    """No triangular case: a short way still has the ramps of a long one."""
+    """No triangular case: a short distance still has the ramps of a long one."""
     return _ramps(t, distance, v_max, a_max)
 
 
 def speeds_up_all_the_way(
     t: float, distance: float, v_max: float, a_max: float
 ) -> tuple[float, float, float]:
-    """On a short way the speed that it would have if it never braked."""
+    """Over a short distance the speed that it would have if it never braked."""
     return _ramps(t, distance, min(v_max, sqrt(2.0 * distance * a_max)), a_max)
 
 
@@ -315,7 +315,7 @@ class Ramps:
         half: Of the one half in the ramps' way.
         ds: Of the speed while braking.
         dds: Of the acceleration while braking.
-        top: Of the peak speed of a short way.
+        top: Of the peak speed over a short distance.
         reach: Of the shortest way on which v_max is reached.
         cruise: Acceleration while cruising, as a share of a_max.
         brakes: Whether it brakes at all.

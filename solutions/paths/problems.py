@@ -161,7 +161,7 @@ BANG_BANG = Problem(
         ),
         Wrong(
             "an acceleration of 8/T²",
-            "That goes the whole way in half of the time. In T/2 only half of the way is done: a (T/2)²/2 = 1/2.",
+            "That goes the whole distance in half of the time. In T/2 only half of it is done: a (T/2)²/2 = 1/2.",
             mistakes.Bang(a=2.0),
             "Check the middle of every symmetric motion: s(T/2) = 1/2.",
         ),
@@ -185,14 +185,14 @@ TRAPEZOID = Problem(
     judge=SCALING,
     trials=(
         Trial(
-            "a long way: 0.3 m at 0.2 m/s and 0.4 m/s²",
+            "a long distance: 0.3 m at 0.2 m/s and 0.4 m/s²",
             tuple(call(t, 0.3, 0.2, 0.4) for t in (0.2, 1.0, 1.8)),
             hidden.trapezoid_long,
             "other limits",
             weight=0.0,
         ),
         Trial(
-            "ways too short to reach v_max: 0.03 m and 0.08 m",
+            "distances too short to reach v_max: 0.03 m and 0.08 m",
             (*(call(t, 0.03, 0.2, 0.4) for t in (0.1, 0.3, 0.5)), call(0.5, 0.08, 0.2, 0.4)),
             hidden.trapezoid_short,
             "a move of one centimetre",
@@ -211,7 +211,7 @@ TRAPEZOID = Problem(
     hints=(
         "Work in metres: find the way gone, its speed and its acceleration, and divide all three by "
         "the distance at the very end.",
-        "The speed reached is v = min(v_max, √(distance·a_max)): on a short way the two ramps meet "
+        "The speed reached is v = min(v_max, √(distance·a_max)): over a short distance the two ramps meet "
         "before v_max. Then ramp = v/a_max and duration = distance/v + ramp.",
         "The ramp lasts v/a, or the square root of d/a where v is never reached. Write the "
         "way in metres in each of the three phases, the last one by the time that is left; "
@@ -248,7 +248,7 @@ TRAPEZOID = Problem(
         ),
         Wrong(
             "one ramp taken for two",
-            "v_max**2/(2 a_max) is the way of one ramp. To speed up to v_max and brake again takes "
+            "v_max**2/(2 a_max) is the distance of one ramp. To speed up to v_max and brake again takes "
             "twice that, so that a way shorter than v_max**2/a_max is a triangle.",
             mistakes.Ramps(reach=0.5),
             "Both ramps need room.",
@@ -267,12 +267,12 @@ TRAPEZOID = Problem(
         ),
         Wrong(
             "the cruise begins where the ramp did not end",
-            "At the end of the ramp the way is v·ramp/2, so that the cruise is v (t - ramp/2). v·t jumps there.",
+            "At the end of the ramp the distance is v·ramp/2, so that the cruise is v (t - ramp/2). v·t jumps there.",
             mistakes.Ramps(offset=0.0),
             "Position and speed at the end of one phase are the start of the next.",
         ),
         Wrong(
-            "the way of the ramp forgotten",
+            "the distance of the ramp forgotten",
             "v (t - ramp) starts the cruise at 0, although the ramp has gone v·ramp/2 already.",
             mistakes.Ramps(offset=2.0),
             "Position and speed at the end of one phase are the start of the next.",
@@ -297,7 +297,7 @@ TRAPEZOID = Problem(
         ),
         Wrong(
             "a triangle that is too low",
-            "Half of the way is there to speed up: v²/(2 a) = distance/2, so that v = √(distance·a_max), without a 2 below.",
+            "Half of the distance is there to speed up: v²/(2 a) = distance/2, so that v = √(distance·a_max), without a 2 below.",
             mistakes.Ramps(top=0.5**0.5),
             "A triangle has two halves.",
         ),

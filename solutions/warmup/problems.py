@@ -86,7 +86,7 @@ JOINT_ERROR = Problem(
         Wrong(
             "the error wrapped to half a turn",
             "A joint has stops: from -2.9 to 2.9 rad the only way is back through zero, 5.8 rad, "
-            "because the short way ends at the stop. Do not wrap the error.",
+            "because the short turn ends at the stop. Do not wrap the error.",
             mistakes.wrapped,
             "Wrap what can go round and round; a joint with stops cannot.",
         ),

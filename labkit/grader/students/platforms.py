@@ -96,7 +96,7 @@ class Named:
         who: The person.
         file: What the student called the file.
         late: Whether Canvas counts it as late.
-        kind: What Moodle calls the way of handing in; "file", or another, such as "onlinetext".
+        kind: How it was handed in, in Moodle's words: "file", or another, such as "onlinetext".
     """
 
     who: LmsUser
