@@ -88,7 +88,9 @@ def look(source: str) -> Look:
         outside = {name for definition in definitions for name in definition["outside"]}
         found["binds"], found["uses"] = sorted(binds), sorted(outside - binds)
         found["definitions"] = definitions
-    except (SyntaxError, ValueError, RecursionError, MemoryError) as error:
+    except SyntaxError as error:
+        found["broken"] = f"{type(error).__name__}: {error.msg}, line {error.lineno}"[:200]
+    except (ValueError, RecursionError, MemoryError) as error:
         found["broken"] = f"{type(error).__name__}: {error}"[:200]
     return found
 

@@ -143,7 +143,7 @@ def test_a_mark_of_an_earlier_release_is_an_empty_cell(marked, capsys, change, s
     path.write_text(json.dumps(data))
     code, out, err = verb(marked, capsys, "export")
     assert code == 1
-    assert f"no mark: ada: graded before the last release: {says}; {GRADE} --lower" in err
+    assert f"no mark: ada: graded before the last release: {says}; {GRADE}, and with --lower" in err
     rows = table(out)
     assert [rows[who]["score"] for who in ("ada", "bob", "carl")] == ["", "", "0.0"]
     code, _, err = verb(marked, capsys, "feedback")

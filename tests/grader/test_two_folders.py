@@ -43,13 +43,13 @@ def test_two_folders_of_one_student_are_named_and_collecting_again_keeps_both(
     handed_in_twice(bare, tmp_path, "1", "2")
     assert counting(bare) == {"Ada-Lovelace-42": "1", "ada": "2"}
     _, (said,) = import_list(bare, tmp_path / "list.csv")
-    assert "Ada-Lovelace-42/01_paths of the same student stays, as ada has work too" in said
+    assert "Ada-Lovelace-42/01_paths: left there, as the same student has work in ada too" in said
     assert counting(bare) == {"Ada-Lovelace-42": "1", "ada": "2"}
     take(bare, tmp_path / "1.zip")
     assert counting(bare)["ada"] == expected
     assert kept(bare, "ada") == {"1", "2"}
-    (summary, left) = import_list(bare, tmp_path / "list.csv")
-    assert "work of nobody in the roster: Ada-Lovelace-42; " in " ".join(summary) and not left
+    (_, said), _ = import_list(bare, tmp_path / "list.csv")
+    assert said.startswith("work of nobody who is known to be in the roster: Ada-Lovelace-42; ")
 
 
 def test_two_students_of_the_roster_are_never_joined(bare, tmp_path):
@@ -60,7 +60,7 @@ def test_two_students_of_the_roster_are_never_joined(bare, tmp_path):
     worksheet = tmp_path / "worksheet.csv"
     worksheet.write_text("Identifier,Full name,Email address\nParticipant 5,Bo Li,li2@x\n")
     said, *_ = import_list(bare, worksheet, NAME)[1]
-    assert "submitted/li1/01_paths of the same student stays" in said
+    assert "submitted/li1/01_paths: left there, as the same student has work in li2 too" in said
     assert counting(bare) == {"li1": "5", "li2": "6"}
 
 
@@ -70,7 +70,7 @@ def test_a_folder_of_nobody_in_the_roster_is_named(bare, tmp_path):
     take(bare, from_moodle(tmp_path / "1.zip", people))
     (tmp_path / "list.csv").write_text("name,login\nAda Lovelace,ada\n")
     (_, said), _ = import_list(bare, tmp_path / "list.csv")
-    assert said.startswith("work of nobody in the roster: Ada-King-2; import a list")
+    assert said.startswith("work of nobody who is known to be in the roster: Ada-King-2; where")
     assert "perhaps theirs too" not in " ".join(left_by_hand(bare, "ada"))
 
 

@@ -105,6 +105,7 @@ def _by_the_grader(
     yield _head(mark, line)
     yield from map(wrapped, _judged(bundle, student, question, result))
     yield "\nWhat the student has read, and may be shown:"
+    yield from (wrapped(f"Note: {note}.") for note in before.notes)
     yield from map(wrapped, summary(shown))
     hidden = {test.name for test in shown.tests if test.hidden}
     if shown.outcome is Outcome.NOT_ATTEMPTED:

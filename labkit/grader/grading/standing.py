@@ -88,7 +88,9 @@ def _counts(
             raise LabkitError(f"handed in again and not graded since; {remedy}")
         graded = {q.verdict.name: q.verdict.points for q in result.questions}
         if released is not None and not result.rejected and graded != released:
-            raise LabkitError(f"{_changed(graded, released)}; {remedy} --lower")
+            raise LabkitError(
+                f"{_changed(graded, released)}; {remedy}, and with --lower if a mark is then kept"
+            )
     return result
 
 

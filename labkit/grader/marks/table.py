@@ -7,6 +7,7 @@ why: nobody is given a 0 that they did not earn.
 
 from __future__ import annotations
 
+import shlex
 from collections.abc import Iterator, Sequence
 from dataclasses import replace
 from typing import Any
@@ -132,7 +133,10 @@ def _marked(row: Mark, submission: Any, one: Result | Failure | None, assignment
         return replace(row, missing=missing)
     row = replace(row, lines=lines, late=_span(submission.total_seconds_late))
     if none := [line.name for line in lines if line.score is None]:
-        why = f"no mark for {', '.join(none)}; give it by hand, in formgrader"
+        how = "give it by hand, in formgrader"
+        if assignment == DEFENCE:
+            how = f"type: labkit defence {shlex.quote(row.student)} --mark A,B,C"
+        why = f"no mark for {', '.join(none)}; {how}"
         return replace(row, missing=why)
     if row.open:
         why = f"changed after the mark by hand: {', '.join(row.open)}; look at it in formgrader"

@@ -135,10 +135,12 @@ def import_list(
     if absent:
         still = f"{len(absent)} ({some(absent)})"
         summary.append(f"not in this list, and still in the roster: {still}")
-    if others := strangers(course, done.roster):
+    others = [x for x in strangers(course, done.roster) if not any(f"/{x}/" in y for y in left)]
+    if others:
         summary.append(
-            f"work of nobody in the roster: {', '.join(others)}; import a list that has them, or "
-            "move their folders away from submitted/ and attempts/"
+            f"work of nobody who is known to be in the roster: {', '.join(others)}; where it is a "
+            "listed student's, copy the notebook that is to count to "
+            "submitted/STUDENT/ASSIGNMENT/ASSIGNMENT.ipynb"
         )
     if len(entries) < len(rows):
         summary.append(

@@ -76,9 +76,9 @@ def bring(course: Course, moves: Iterable[Move]) -> list[str]:
         if left:
             names = " and ".join(str(path.relative_to(course.root)) for path in left)
             said.append(
-                f"{names} of the same student stays, as {move.new} has work too; to keep both, "
-                "collect the same downloads again, which brings each file to its student; then "
-                "move what stays away"
+                f"{names}: left there, as the same student has work in {move.new} too; to keep "
+                "both, collect the same downloads again, which brings each file to its student; "
+                "then move what was left away"
             )
     return said
 
