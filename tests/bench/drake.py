@@ -58,19 +58,19 @@ def diagram(target, controller):
 
 
 def measure():
-    """Speed of `run` as a multiple of Drake's; None without Drake."""
+    """Speed of `run` on MuJoCo as a multiple of Drake's; None without Drake."""
     try:
         import pydrake  # noqa: F401
     except ImportError:
         return {"closed_loop_vs_drake_python": None}
     target, controller = task()
     in_drake, ratios = diagram(target, controller), []
-    with lk.Arm("left") as arm:
+    with lk.Arm("left", world=lk.World(engine="mujoco")) as arm:
         for _ in range(PAIRS):
             arm.reset(target(0.0).position)
             labkit_s, log = timed(lambda: lk.run(arm, target, controller, rate=1000))
             drake_s, q = timed(in_drake)
             if np.abs(q - log.q[-1]).max() > 1e-4:
-                raise AssertionError("Drake's arm did not end where PyBullet's did")
+                raise AssertionError("Drake's arm did not end where MuJoCo's did")
             ratios.append(drake_s / labkit_s)
     return {"closed_loop_vs_drake_python": median(ratios)}
