@@ -123,6 +123,7 @@ def test_an_added_question_leaves_other_marks_alone(marked, capsys):
     become(True)
     made = release(course, NAME, SEED)
     assert made.questions == 8
+    assert f"graded with another release: 2 submissions; type: labkit grade {NAME}" in str(made)
     assert marks(course) == {s: m | {f"{LATER}-check": 0.0} for s, m in before.items()}
     for words in (["--diff"], []):
         assert main(["grade", NAME, "--course", str(course.root), *words]) == 0

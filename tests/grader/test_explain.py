@@ -66,6 +66,26 @@ def test_where_a_visible_case_decided_it_is_said(course, solved, capsys):
 
 
 @pytest.mark.slow
+def test_a_mark_that_was_kept_after_a_test_changed_is_told_as_kept(course, solved, capsys):
+    """What the answer would earn now, and what to type if that is to count."""
+    words = [NAME, "--course", str(course.root)]
+    hand_in(course, NAME, "ada", solved)
+    assert main(["grade", *words]) == 0
+    path = course.bundle / f"{NAME}.json"
+    data = json.loads(path.read_text())
+    (witness,) = [question for question in data["questions"] if question["name"] == "witness"]
+    hidden = witness["tests"]["items"][0]["cases"]["items"][-1]
+    hidden["expected"] = [[0.0, 0.1]]  # so that the right answer is wrong
+    path.write_text(json.dumps(data | {"hash": "0" * 64}))
+    assert main(["grade", *words]) == 0
+    assert "kept; --lower lets it fall" in capsys.readouterr().out
+    assert main(["explain", "ada", "witness", *words[1:]]) == 0
+    said = " ".join(capsys.readouterr().out.split())
+    assert "the mark was kept. Now the answer earns 0 of 2" in said and "ATTENTION" not in said
+    assert f"type: labkit grade {NAME} --student ada --lower" in said
+
+
+@pytest.mark.slow
 def test_an_answer_that_python_cannot_read_is_shown_with_the_error_at_its_line(
     course, solved, capsys
 ):

@@ -14,6 +14,7 @@ from made import NAME, changed, graded, handed_in, notebook_of, result_of
 
 from labkit.__main__ import main
 from labkit.grader.grading.batch import common_failures
+from labkit.grader.grading.changes import Change, summary
 from labkit.grader.grading.results import OTHER_NOTEBOOK, Results
 from labkit.grader.marks.export import LAYOUTS
 from labkit.grader.nbgrader.gradebook import open_gradebook
@@ -165,6 +166,18 @@ def test_a_mark_falls_by_the_share_of_what_both_releases_ask(course):
     assert not result_of(course, "ada", share=0.5, data=b"another").falls_from(full)
 
 
+def test_a_fall_in_per_cent_alone_is_listed(course):
+    """With the same points, of a question that is now worth more, --diff names the student."""
+    full = result_of(course, "ada")
+    points = full.questions[0].verdict.points
+    less = changed(full, 0, {"points": points + 1.0, "earned": points})
+    less = replace(less, points=full.points + 1.0)
+    line, count, _ = summary([Change(full, less)])
+    of = full.points
+    assert line == f"ada: {of:g} of {of:g} -> {of:g} of {of + 1:g}"
+    assert count == "1 of 1 marks would change, 1 of them only with --lower"
+
+
 def test_tables_of_a_class_that_is_whole_say_nothing(marked, capsys):
     """Exit 0 and no word on stderr, but for a file that was rejected: its 0 is explained.
 
@@ -215,7 +228,7 @@ def test_page_and_report_name_whom_they_leave_out(marked, capsys, fault):
     code, out, err = verb(marked, capsys, "feedback")
     assert (code, err.count("no page: ada: ")) == (1, 1)
     assert FAULTS[fault] in err and err.strip().endswith(GRADE)
-    assert "pages in" in out and ": 2, " in out
+    assert "pages in" in out and ": 2\n" in out
     assert not (marked.root / "feedback" / "ada").exists()
     code, out, err = verb(marked, capsys, "class-report", "--names")
     assert (code, err.count("left out: ada: ")) == (1, 1)

@@ -70,8 +70,7 @@ def feedback(
             raise nobody(assignment, student)
         pages = write_feedback(course, assignment, marks)
         made = list(failures.sift(pages, "no page"))
-        size = sum(path.stat().st_size for path in made) / 1e6
-        print(f"pages in {course.root / 'feedback'}: {len(made)}, {size:.1f} MB")
+        print(f"pages in {course.root / 'feedback'}: {len(made)}")
         sent = for_exchange(course, assignment, made)
         if any(list(failures.sift(sent, "not for the exchange"))):
             print(f"back to the exchange: nbgrader release_feedback {assignment}")

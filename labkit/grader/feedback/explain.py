@@ -118,7 +118,14 @@ def _by_the_grader(
     elif not shown.right:
         yield "\nThe tests that the student has seen decided this mark; no hidden case did."
     if (shown.right, shown.earned) != (now.right, now.earned):
-        yield "\nATTENTION: this time it came out otherwise:"
+        if bundle.of_student(student).data["hash"] == result.hashes["bundle"]:
+            yield "\nATTENTION: this time it came out otherwise:"
+        else:
+            yield "\n" + wrapped(
+                "The release has changed since this mark was made, and the mark was kept. Now "
+                f"the answer earns {now.earned:g} of {now.points:g}; if that is to count, type: "
+                f"labkit grade {result.assignment} --student {student} --lower"
+            )
         yield from map(wrapped, summary(now))
     if line.comment:
         yield f"\nComment: {line.comment}"

@@ -62,7 +62,7 @@ class GradedSubmission:
 
     Attributes:
         result: The one that counts.
-        says: How it stands to the one before; empty if there was none.
+        says: How it stands to the one before; empty if the mark is the same, or there was none.
     """
 
     result: Result
@@ -204,9 +204,10 @@ def _keep(results: Results, result: Result, lower: bool) -> GradedSubmission:
         now = f"{result.score:g} of {result.points:g}"
         return GradedSubmission(before, f"kept; --lower lets it fall to {now}")
     results.keep(result)
-    was = "" if before is None else f"was {before.score:g}"
-    full = f" of {before.points:g}" if before and before.points != result.points else ""
-    return GradedSubmission(result, was + full)
+    if before is None or (before.score, before.points) == (result.score, result.points):
+        return GradedSubmission(result)
+    full = f" of {before.points:g}" if before.points != result.points else ""
+    return GradedSubmission(result, f"was {before.score:g}{full}")
 
 
 def common_failures(results: Sequence[Result]) -> Iterator[str]:

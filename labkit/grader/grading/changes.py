@@ -32,6 +32,11 @@ class Change:
         """How far the mark moves."""
         return round(self.after.score - (self.before.score if self.before else 0.0), 4)
 
+    @property
+    def falls(self) -> bool:
+        """Whether it is lowered only with --lower."""
+        return self.before is not None and self.after.falls_from(self.before)
+
     def __str__(self) -> str:
         if self.before is None:
             return f"{self.after.student}: new, {self.after.score:g} of {self.after.points:g}"
@@ -42,10 +47,11 @@ class Change:
             if v.earned != each.get(v.name, 0.0)
         ]
         says = f" ({'; '.join(parts)})" if parts else ""
-        return (
-            f"{self.after.student}: {self.before.score:g} -> {self.after.score:g}, "
-            f"{self.by:+g}{says}"
-        )
+        was, now = self.before, self.after
+        some = f"{was.score:g} -> {now.score:g}, {self.by:+g}"
+        if was.points != now.points:
+            some = f"{was.score:g} of {was.points:g} -> {now.score:g} of {now.points:g}"
+        return f"{now.student}: {some}{says}"
 
 
 def changes(
@@ -95,10 +101,10 @@ def _refuse_unreleased(course: Course, assignment: str) -> None:
 def summary(found: Sequence[Change]) -> Iterator[str]:
     """Whose mark moves and how many there are, a sentence each."""
     for change in sorted(found, key=lambda m: m.by):
-        if change.by or change.before is None:
+        if change.by or change.falls or change.before is None:
             yield str(change)
-    changed = sum(bool(m.by) for m in found)
-    lower = sum(bool(m.before and m.after.falls_from(m.before)) for m in found)
+    changed = sum(bool(m.by) or m.falls for m in found)
+    lower = sum(m.falls for m in found)
     would = f"{changed} of {len(found)} marks would change, {lower} of them only with --lower"
     yield would if changed else f"none of the {len(found)} marks would change"
     before = {m.before.points for m in found if m.before} - {m.after.points for m in found}

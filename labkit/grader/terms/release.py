@@ -17,6 +17,7 @@ from pathlib import Path
 
 import nbformat
 
+from ...course.authoring.bundle import Bundle
 from ...course.authoring.layout import Course
 from ...course.authoring.outcomes import check_outcomes
 from ...course.authoring.problem import Problem
@@ -24,6 +25,8 @@ from ...course.authoring.release import Prepared, prepare, write
 from ...course.notebook import BLANK, about, by_hand, grade_id, kind, manifest
 from ...course.source import look, parsed
 from ...errors import LabkitError
+from ..clean import how_many
+from ..grading.results import Results
 from ..nbgrader.gradebook import migrate
 from ..nbgrader_api import nbgrader_api, reason
 from ..students.arms import lay_arms
@@ -50,6 +53,7 @@ class Released:
         points: In all.
         hidden: How many hidden cases.
         by_hand: What a person marks: the name of each cell, and its points.
+        outdated: How many submissions were graded with another release.
     """
 
     name: str
@@ -58,15 +62,20 @@ class Released:
     points: float
     hidden: int
     by_hand: Mapping[str, float]
+    outdated: int
 
     def __str__(self) -> str:
-        return (
+        lines = [
             f"{self.name}: {self.questions} questions, {self.points:g} points, "
-            f"{self.hidden} hidden cases"
-            + "".join(
-                f"\n  to be marked by hand: {k}, {v:g} points" for k, v in self.by_hand.items()
+            f"{self.hidden} hidden cases",
+            *(f"to be marked by hand: {k}, {v:g} points" for k, v in self.by_hand.items()),
+        ]
+        if self.outdated:
+            lines.append(
+                f"graded with another release: {how_many(self.outdated, 'submission')}; "
+                f"type: labkit grade {self.name}"
             )
-        )
+        return "\n  ".join(lines)
 
 
 def release(course: Course, name: str, seed: int) -> Released:
@@ -95,7 +104,12 @@ def release(course: Course, name: str, seed: int) -> Released:
     hidden = sum(case.hidden for q in questions for t in q.tests for case in t.cases)
     by_hand = {m["grade_id"]: m["points"] for m in manifest(made.source) if "points" in m}
     points = sum(q.points for q in questions) + sum(by_hand.values())
-    return Released(name, course.release / name, len(questions), points, hidden, by_hand)
+    bundle = Bundle.of(course, name)
+    outdated = sum(
+        result.hashes["bundle"] != bundle.of_student(result.student).data["hash"]
+        for result in Results(course, name)
+    )
+    return Released(name, course.release / name, len(questions), points, hidden, by_hand, outdated)
 
 
 def generate(course: Course, name: str) -> None:
