@@ -937,13 +937,14 @@ VERDICTS = Problem(
         Wrong(
             "every claim undecided",
             "Of all claims that are tried here you say undecided. This is right only where the "
-            "interval of the differences, pair by pair, holds 0. Where it does not, say which way.",
+            "interval of the differences, pair by pair, holds 0; the intervals of the two rows, each for "
+            "itself, decide nothing. Where it does not hold 0, say which way.",
             mistakes.never_decided,
             "Undecided is a result, not a way out.",
         ),
         Wrong(
             "a threshold instead of an interval",
-            "Ten percent more is much where the seeds hardly differ, and little where they do. "
+            "A fixed percentage is much where the seeds hardly differ, and little where they do. "
             "Use the interval of the differences.",
             mistakes.ten_percent,
             "How sure is a matter of the spread, not of the size.",

@@ -169,7 +169,7 @@ TRANSFORM_POINT = Problem(
         Wrong(
             "the rotation the wrong way round",
             "The rotation is transposed: that is R_ba, which takes vectors from a to b. Do not "
-            "transpose it.",
+            "transpose it; p @ R transposes it too.",
             mistakes.turns_backwards,
             "R_ab takes components in b to components in a.",
         ),
