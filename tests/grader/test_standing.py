@@ -144,7 +144,8 @@ def test_a_mark_of_an_earlier_release_is_an_empty_cell(marked, capsys, change, s
     path.write_text(json.dumps(data))
     code, out, err = verb(marked, capsys, "export")
     assert code == 1
-    assert f"no mark: ada: graded before the last release: {says}; {GRADE}, and with --lower" in err
+    remedy = f"type: labkit grade {NAME}, and with --lower"
+    assert f"no mark: ada: graded before the last release: {says}; {remedy}" in err
     rows = table(out)
     assert [rows[who]["score"] for who in ("ada", "bob", "carl")] == ["", "", "0.0"]
     code, _, err = verb(marked, capsys, "feedback")

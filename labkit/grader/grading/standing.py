@@ -89,7 +89,8 @@ def _counts(
         graded = {q.verdict.name: q.verdict.points for q in result.questions}
         if released is not None and not result.rejected and graded != released:
             raise LabkitError(
-                f"{_changed(graded, released)}; {remedy}, and with --lower if a mark is then kept"
+                f"{_changed(graded, released)}; type: labkit grade {assignment}, and with --lower "
+                "if a mark is then kept"
             )
     return result
 
