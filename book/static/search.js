@@ -70,8 +70,52 @@
     link.href = address[0] + words + (address[1] ? "#" + address[1] : "");
   }
 
+  // How many letters were left out, added, changed or swapped with the next one.
+  function slips(a, b) {
+    var rows = [Array.from({length: b.length + 1}, function (_, j) { return j; })];
+    for (var i = 1; i <= a.length; i++) {
+      rows.push([i]);
+      for (var j = 1; j <= b.length; j++) {
+        var swapped = i > 1 && j > 1 && a[i - 1] === b[j - 2] && a[i - 2] === b[j - 1];
+        rows[i].push(Math.min(
+          rows[i - 1][j] + 1, rows[i][j - 1] + 1, rows[i - 1][j - 1] + (a[i - 1] !== b[j - 1]),
+          swapped ? rows[i - 2][j - 2] + 1 : Infinity));
+      }
+    }
+    return rows[a.length][b.length];
+  }
+
+  // The query with each word that the book does not have replaced by its nearest one.
+  function meant(query, roots) {
+    var counts = new Map();
+    Object.values(window.labTexts).flat().forEach(function (part) {
+      (part[2].toLowerCase().match(/\p{L}{4,}/gu) || []).forEach(function (word) {
+        counts.set(word, (counts.get(word) || 0) + 1);
+      });
+    });
+    var words = Array.from(counts.keys());
+    return splitQuery(query.toLowerCase()).map(function (word, k) {
+      if (word.length < 4 || words.some(function (w) { return w.startsWith(roots[k]); })) return word;
+      var near = words.map(function (w) { return [slips(word, w), -counts.get(w), w]; })
+        .filter(function (found) { return found[0] <= (word.length < 6 ? 1 : 2); })
+        .sort(function (a, b) { return a[0] - b[0] || a[1] - b[1]; });
+      return near.length ? near[0][2] : word;
+    }).join(" ");
+  }
+
+  function offer(query, roots, list) {
+    var other = meant(query, roots);
+    if (other === splitQuery(query.toLowerCase()).join(" ")) return;
+    var line = document.createElement("p"), link = document.createElement("a");
+    line.setAttribute("role", "status");
+    link.href = "?q=" + encodeURIComponent(other);
+    link.textContent = other;
+    line.append("Did you mean ", link, "?");
+    list.before(line);
+  }
+
   function results() {
-    var roots = rootsOf(new URLSearchParams(location.search).get("q") || "");
+    var query = new URLSearchParams(location.search).get("q") || "", roots = rootsOf(query);
     if (!roots.length) return;
     var texts = document.createElement("script");
     texts.src = "searchtexts.js";
@@ -85,6 +129,7 @@
       }
       new MutationObserver(all).observe(list, {childList: true});
       all();
+      offer(query, roots, list);
     };
     document.head.append(texts);
   }

@@ -104,3 +104,21 @@ def test_a_link_into_a_page_brings_the_mark_into_sight(visit):
         const boxes = [...CSS.highlights.get('lab-found')].map((r) => r.getBoundingClientRect());
         return boxes.some((b) => b.top > 0 && b.bottom < innerHeight);
     }""")
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(
+    ("typed", "offered"),
+    [("singularty", "singularity"), ("pasivity", "passivity"), ("joint toruqe", "joint torque")],
+)
+def test_a_slip_of_the_fingers_is_forgiven(visit, typed, offered):
+    """A word that the book does not have leads to the nearest one that it has."""
+    page = visit("search.html")
+    page.goto(page.url.split("?")[0] + f"?q={typed}")
+    page.locator("#search-results").get_by_role("link", name=offered, exact=True).click()
+    page.wait_for_selector("#search-results li[data-complete] .context")
+
+
+@pytest.mark.slow
+def test_a_word_that_the_book_has_offers_no_other(visit):
+    assert results(visit, "singularity").get_by_text("Did you mean").count() == 0
