@@ -1,4 +1,4 @@
-"""Names for students that stay the same and say nothing, also to who has the list of the class."""
+"""Names for students that stay the same and say nothing, even with the list of the class."""
 
 from __future__ import annotations
 

@@ -133,6 +133,21 @@ def test_a_line_never_begins_with_the_sign_after_a_formula():
     assert [kept.get_text() for kept in page.select(".lab-keep")] == ["x,"]
 
 
+def test_the_reference_shows_no_object_of_the_machine_that_built_it(book):
+    """Neither an address nor a path, and no function by its inner name."""
+    for path in sorted((book / "reference").glob("*.html")):
+        page = BeautifulSoup(path.read_text(), "html.parser")
+        shown = " ".join(x.get_text() for x in page.select("dt.sig"))
+        found = re.findall(r"PosixPath|0x[0-9a-f]{6,}|<function[^)]*|<class[^)]*", shown)
+        assert not found, path.name
+
+
+def test_a_line_never_breaks_within_an_option():
+    page = BeautifulSoup('<code><span class="pre">--lower</span></code>', "html.parser")
+    lab.mend(page)
+    assert page.select_one("code .pre")["class"] == ["pre", "lab-keep"]
+
+
 def test_a_number_is_shown_as_prose_writes_it():
     assert [shown(x, ".2g") for x in (2381.0, -0.644, 12.4)] == ["2,400", "\u22120.64", "12"]
 

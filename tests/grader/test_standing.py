@@ -17,6 +17,7 @@ from labkit.grader.grading.batch import common_failures
 from labkit.grader.grading.changes import Change, summary
 from labkit.grader.grading.results import OTHER_NOTEBOOK, Results
 from labkit.grader.marks.export import LAYOUTS
+from labkit.grader.nbgrader import autograde
 from labkit.grader.nbgrader.gradebook import open_gradebook
 from labkit.grader.students.identity import remember
 from labkit.grader.students.platforms import LmsUser
@@ -162,6 +163,9 @@ def test_a_mark_falls_by_the_share_of_what_both_releases_ask(course):
     for one in (cheaper, dearer, new, replace(full, questions=full.questions[1:])):
         assert not one.falls_from(full) and not full.falls_from(one)
     assert changed(dearer, 0, {"earned": 8.0}).falls_from(full)
+    for asked in ({"name": "late"}, {"points": 0.0, "earned": 0.0}):
+        before = changed(full, 1, asked)  # what is new, or earned nothing before, hides no fall
+        assert changed(full, 0, {"earned": 0.0}).falls_from(before)
     rejected = result_of(course, "ada", rejected="the file is empty")
     assert rejected.falls_from(full) and not full.falls_from(rejected)
     assert not result_of(course, "ada", share=0.5, data=b"another").falls_from(full)
@@ -177,6 +181,15 @@ def test_a_fall_in_per_cent_alone_is_listed(course):
     of = full.points
     assert line == f"ada: {of:g} of {of:g} -> {of:g} of {of + 1:g}"
     assert count == "1 of 1 marks would change, 1 of them only with --lower"
+
+
+def test_nbgraders_own_button_lowers_no_mark_of_an_unchanged_submission(marked, monkeypatch):
+    """Its autograde keeps a mark as `labkit grade` does; only --lower lets it fall."""
+    full, none = (result_of(marked, "ada", share=share) for share in (1.0, 0.0))
+    monkeypatch.setattr(autograde, "grade_aside", lambda *_: iter([none]))
+    monkeypatch.chdir(marked.root)
+    assert autograde._grade({"assignment": NAME, "student": "ada"}).score == full.score
+    assert Results(marked, NAME).get("ada").score == full.score
 
 
 def test_tables_of_a_class_that_is_whole_say_nothing(marked, capsys):

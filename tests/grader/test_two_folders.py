@@ -52,6 +52,46 @@ def test_two_folders_of_one_student_are_named_and_collecting_again_keeps_both(
     assert said.startswith("work of nobody who is known to be in the roster: Ada-Lovelace-42; ")
 
 
+@pytest.mark.parametrize(
+    ("listed", "name"),
+    [
+        (
+            "Identifier,Full name,Email address,Username\nParticipant 50,Ada Lovelace,a@x,ada\n",
+            NAME,
+        ),
+        ("name,login\nAda Lovelace,ada\n", ""),
+    ],
+)
+def test_work_that_is_there_is_mixed_with_nobodys(bare, tmp_path, listed, name):
+    """A notebook that was copied by hand stays, and no attempt or page of another joins it."""
+    take(bare, from_moodle(tmp_path / "1.zip", [(("Ada Lovelace", 42), "x.ipynb", "42's")]))
+    page = bare.root / "feedback" / "Ada-Lovelace-42" / NAME / "page.html"
+    page.parent.mkdir(parents=True)
+    page.touch()
+    by_hand = bare.submitted / "ada" / NAME / f"{NAME}.ipynb"
+    by_hand.parent.mkdir(parents=True)
+    by_hand.write_text("ada's")
+    (tmp_path / "list.csv").write_text(listed)
+    _, said = import_list(bare, tmp_path / "list.csv", name)
+    assert "Ada-Lovelace-42/01_paths: left there" in " ".join(said)
+    assert counting(bare) == {"Ada-Lovelace-42": "42's", "ada": "ada's"}
+    assert page.exists() and not (bare.root / "feedback" / "ada").exists()
+    assert not (bare.root / "attempts" / "ada").exists()
+
+
+def test_files_named_by_two_identifiers_of_one_student_are_two_attempts(bare, tmp_path):
+    """The login first, the number in the list later: the later one counts, and both are kept."""
+    ada = Student("ada", "Ada", "Lovelace", login="ada", id_number="4711")
+    save_roster(bare, Roster((ada, Student("bo", "Bo", "Li"))))
+    for day, (who, text) in enumerate((("ada", "first"), ("4711", "second")), start=1):
+        (tmp_path / who / who).mkdir(parents=True)
+        (tmp_path / who / who / "x.ipynb").write_text(text)
+        at = datetime(2026, 3, day, tzinfo=UTC)
+        take(bare, tmp_path / who, named="{student}/*.ipynb", at=at)
+    assert counting(bare) == {"ada": "second"}
+    assert kept(bare, "ada") == {"first", "second"}
+
+
 def test_two_students_of_the_roster_are_never_joined(bare, tmp_path):
     """A worksheet that gives one's number to another leaves both as they are, and says so."""
     save_roster(bare, Roster((Student("li1", "Li", "Wei"), Student("li2", "Bo", "Li", "li2@x"))))

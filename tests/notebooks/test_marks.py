@@ -4,8 +4,10 @@ from functools import cache
 from itertools import combinations
 from pathlib import Path
 
+import numpy as np
 import pytest
 
+import labkit as lk
 from labkit.course import Call, Choice, Loop, Outcome, Tuned, fingerprint
 from labkit.course.authoring.layout import Course
 from labkit.course.authoring.report_card import rejected_below
@@ -142,3 +144,30 @@ def zeros_like(answer):
         zeros = [zeros_like(x) for x in answer]
         return type(answer)(*zeros) if hasattr(answer, "_fields") else tuple(zeros)
     return 0.0 * answer
+
+
+@pytest.mark.parametrize("name", ["workspace_impedance", "shaped_impedance"])
+def test_a_mistake_is_named_whatever_moves_the_elbow_alone(name):
+    """Notebook 05 invites to damp the elbow; that must not cost the sentence that helps."""
+    question = question_of(next(p for p in PROBLEMS if p.name == name), 1)
+
+    def damped(law):
+        def controller(*args, **gains):
+            command = law(*args, **gains)
+            if type(command) is not lk.JointTorque:
+                return command
+            state, model = args[0], next(x for x in args if isinstance(x, lk.Model))
+            J, M = model.tip_jacobian(state.q), model.mass_matrix(state.q)
+            tau = -0.5 * M @ (state.dq + 0.1)
+            felt = J.T @ np.linalg.solve(J @ np.linalg.solve(M, J.T), J @ np.linalg.solve(M, tau))
+            return lk.JointTorque(command.value + tau - felt)
+
+        return controller
+
+    problem = next(p for p in PROBLEMS if p.name == name)
+    for wrong in problem.wrong:
+        known, other = (
+            recognise(question, list(fingerprint(question, law)))
+            for law in (wrong.function, damped(wrong.function))
+        )
+        assert known and other and known.name == other.name, wrong.name

@@ -97,7 +97,7 @@ def grade_class(
             if before is not None:
                 yield GradedSubmission(before, "as before")
             elif aside is not None:
-                yield for_student(student, partial(_keep, results, aside, options.lower))
+                yield for_student(student, partial(keep, results, aside, options.lower))
             else:
                 todo.append(submission)
         yield from _kept(results, grade_aside(course, bundle, todo, options), options)
@@ -194,10 +194,10 @@ def _kept(
         if isinstance(result, Failure):
             yield result
         else:
-            yield for_student(result.student, partial(_keep, results, result, options.lower))
+            yield for_student(result.student, partial(keep, results, result, options.lower))
 
 
-def _keep(results: Results, result: Result, lower: bool) -> GradedSubmission:
+def keep(results: Results, result: Result, lower: bool = False) -> GradedSubmission:
     """Store a result, unless it would lower the mark of an unchanged submission unasked."""
     before = results.get(result.student)
     if before is not None and not lower and result.falls_from(before):

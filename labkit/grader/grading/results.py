@@ -201,12 +201,10 @@ class Result:
             return False
         if self.rejected:
             return before.score > 0.0
-        worth = {q.verdict.name: q.verdict.points for q in self.questions}
-        was, now = (
-            sum(v.earned / v.points * worth.get(v.name, 0.0) for v in verdicts if v.points)
-            for verdicts in ([q.verdict for q in x.questions] for x in (before, self))
-        )
-        return now < was - 1e-6
+        mine, theirs = ({q.verdict.name: q.verdict for q in x.questions} for x in (self, before))
+        both = [name for name in mine if name in theirs and theirs[name].points]
+        was = sum(theirs[x].earned / theirs[x].points * mine[x].points for x in both)
+        return sum(mine[x].earned for x in both) < was - 1e-6
 
     @property
     def unanswered(self) -> str:

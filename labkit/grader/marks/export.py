@@ -113,7 +113,7 @@ def of_term(marks: Mapping[str, Sequence[Mark]], weights: Mapping[str, float]) -
     """All assignments side by side, and what they come to, in percent.
 
     What has no full marks, such as the cup, is a bonus: it adds its points, times its weight, to
-    the percentage.  Who had no defence yet has the percentage of all else.
+    the percentage.  A student who had no defence yet has the percentage of all else.
 
     Args:
         marks: By assignment, the same students in each or not.

@@ -22,7 +22,7 @@ from ...course.authoring.bundle import Bundle
 from ...course.authoring.layout import Course
 from ...errors import LabkitError
 from ..each import Failure, for_student
-from ..grading.batch import GradeOptions, grade_aside
+from ..grading.batch import GradeOptions, grade_aside, keep
 from ..grading.results import Result, Results
 from ..lock import exclusive_run
 from ..submission import Submission, is_name, unfit
@@ -126,9 +126,9 @@ def _grade(about: dict[str, Any]) -> Result:
             (graded,) = grade_aside(course, bundle, [submission], GradeOptions())
             if isinstance(graded, Failure):
                 raise LabkitError(str(graded))
-            kept = for_student(graded.student, partial(results.keep, graded))
+            kept = for_student(graded.student, partial(keep, results, graded))
             if isinstance(kept, Failure):
                 raise LabkitError(str(kept))
-        result = graded
+        result = kept.result
         _known[key] = result
     return result

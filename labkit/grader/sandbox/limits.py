@@ -13,7 +13,7 @@ REPLY = 256_000
 VALUES = 10_000
 """How many numbers, texts, lists and objects an answer may have; the largest honest one has 80."""
 TRICKS = 100
-"""So many of the tricks in a notebook are named."""
+"""How many of the tricks in a notebook are named."""
 TEXT = 1_000_000
 """How much of a student's text a result keeps, in bytes; the rest may be as large."""
 _TIMES = ("parse", "cell", "cells", "call", "question", "wall", "grace")

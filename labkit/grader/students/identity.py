@@ -157,7 +157,12 @@ def places(
 
 
 def _claim(one: LmsUser, folder: str, roster: Roster) -> tuple[str, ...]:
-    """Which student of the roster a person of a platform is, or claims to be by name."""
+    """Which student of the roster a person of a platform is, or claims to be by name.
+
+    One student may hand in files under several names, if only this student can be meant by each.
+    """
+    if roster.identifies(one):
+        return one.key
     return (one.system, *([folder] if folder in roster else [s.id for s in roster.whose(one)]))
 
 

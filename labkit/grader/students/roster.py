@@ -45,6 +45,14 @@ class Roster:
             return self._by_key.get(("files", " ".join(same_name(one.name))), ())
         return found
 
+    def identifies(self, one: LmsUser) -> bool:
+        """Whether a file is named by what one student alone is listed with, such as a login.
+
+        A person's name is no such thing, nor is an account that anybody can open.
+        """
+        students = self.whose(one) if one.system == "files" else ()
+        return len(students) == 1 and one.number.casefold() in _identifiers(students[0])
+
     def namesakes(self) -> list[tuple[Student, ...]]:
         """Students who have the same name, as far as platforms write it."""
         groups = [group for (system, _), group in self._by_key.items() if system == "moodle"]
@@ -61,13 +69,19 @@ class Roster:
         for student in self.students:
             login, email = student.login.casefold(), student.email.casefold()
             keys = {("moodle", same_name(student.name)), ("canvas", student.lms_user_id)}
-            names = (student.id, login, email, email.partition("@")[0], student.id_number)
-            more = (student.lms_user_id, student.github, " ".join(same_name(student.name)))
-            keys |= {("files", name.casefold()) for name in (*names, *more)}
+            more = (student.github.casefold(), " ".join(same_name(student.name)))
+            keys |= {("files", name) for name in (*_identifiers(student), *more)}
             for key in keys | {("exchange", login), ("exchange", email)}:
                 if key[1]:
                     found[key] = (*found.get(key, ()), student)
         return found
+
+
+def _identifiers(student: Student) -> tuple[str, ...]:
+    """What a school calls a student by, and nobody else."""
+    email = student.email.casefold()
+    numbers = (student.id, student.login, student.id_number, student.lms_user_id)
+    return (*(x.casefold() for x in numbers), email, email.partition("@")[0])
 
 
 def same_name(name: str) -> tuple[str, ...]:

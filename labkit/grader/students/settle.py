@@ -52,15 +52,16 @@ def strangers(course: Course, roster: Roster) -> list[str]:
 def bring(course: Course, moves: Iterable[Move]) -> list[str]:
     """Take work from one folder to another, and then its marks, also those by hand.
 
-    Nothing that is there is overwritten, and no two works are made one: who they are may be known
-    by a name alone.
+    Where both folders have work nothing moves: the two may be of two people, as who they are may be
+    known by a name alone.
 
     Returns:
-        What stayed where it was and wants a look, a sentence each.
+        What stayed where it was, a sentence each.
     """
     moves = [move for move in moves if move.old and move.old != move.new]
     for move in moves:
-        for base in (*_WORK, *_MADE_OF_IT):
+        both = _work(course, move, move.old) and _work(course, move, move.new)
+        for base in () if both else (*_WORK, *_MADE_OF_IT):
             source = course.root / base / move.old / move.assignment
             target = course.root / base / move.new / move.assignment
             if source.exists() and not target.exists():
@@ -68,11 +69,11 @@ def bring(course: Course, moves: Iterable[Move]) -> list[str]:
                 source.rename(target)
                 if not any(source.parent.iterdir()):
                     source.parent.rmdir()
-    _bring_marks(course, [move for move in moves if not _work(course, move)])
+    _bring_marks(course, [move for move in moves if not _work(course, move, move.old)])
     said: list[str] = []
     for move in moves:
         result = Results(course, move.assignment).path(move.old)
-        left = [*_work(course, move), *[result] * result.exists()]
+        left = [*_work(course, move, move.old), *[result] * result.exists()]
         if left:
             names = " and ".join(str(path.relative_to(course.root)) for path in left)
             said.append(
@@ -83,9 +84,9 @@ def bring(course: Course, moves: Iterable[Move]) -> list[str]:
     return said
 
 
-def _work(course: Course, move: Move) -> list[Path]:
-    """What was handed in and is still in the old folder."""
-    folders = [course.root / base / move.old / move.assignment for base in _WORK]
+def _work(course: Course, move: Move, student: str) -> list[Path]:
+    """What was handed in and is in one of the two folders."""
+    folders = [course.root / base / student / move.assignment for base in _WORK]
     return [path for path in folders if path.exists()]
 
 
