@@ -105,7 +105,7 @@ def settling_time(t: Any, error: Any, tolerance: float) -> float:
 
     Raises:
         OutOfRange: There is no instant.
-        ShapeError: Times and errors are not as many.
+        ShapeError: Times and errors differ in number.
     """
     e = _rows(error)
     t = as_array(t, (len(e),), "t")

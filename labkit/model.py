@@ -206,7 +206,8 @@ class Model(Kinematics):
     def operational_inertia(self, q: Any) -> Array:
         r"""The inertia felt at the tip, :math:`\Lambda = (J M^{-1} J^T)^{-1}`, in world axes.
 
-        Khatib 1987; Lynch & Park, section 8.6.  The course's own helper called it `cart_inertia`.
+        Khatib 1987; Lynch & Park, section 8.6.  The starter code of Berkeley's lab called it
+        `cart_inertia`.
 
         Args:
             q: Joint angles, shape (n,) in [rad].

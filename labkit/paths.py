@@ -169,7 +169,7 @@ class Spline:
 
         Raises:
             OutOfRange: There are fewer, or ``s`` does not rise.
-            ShapeError: There are not as many values as places.
+            ShapeError: Values and places differ in number.
         """
         from scipy.interpolate import make_interp_spline  # a slow import, seldom needed
 

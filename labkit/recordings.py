@@ -1,4 +1,4 @@
-"""Runs and trials that were recorded once and come with labkit, for who lacks planner or time.
+"""Runs and trials that come with labkit, recorded for those without the planner or the time.
 
 They are made by ``solutions/study``: `baseline`, `campaign`, `maps` and `trials`.
 """

@@ -102,6 +102,8 @@ def mend(page: BeautifulSoup, notebooks: Sequence[str] = ()) -> None:
     _exercises(page, notebooks)
     for rule in (
         _punctuation,
+        _options,
+        _values,
         _names,
         _citations,
         _landmarks,
@@ -134,6 +136,24 @@ def _punctuation(page: BeautifulSoup) -> None:
         if type(after) is NavigableString and (found := CLOSING.match(after)):
             formula.wrap(page.new_tag("span", attrs={"class": "lab-keep"})).append(found[0])
             after.replace_with(after[found.end() :])
+
+
+def _options(page: BeautifulSoup) -> None:
+    """A line never breaks between the two dashes of an option."""
+    for word in page.select("code .pre"):
+        if re.fullmatch(r"--[\w-]{1,30}", word.get_text()):
+            word["class"] = ["pre", "lab-keep"]
+
+
+def _values(page: BeautifulSoup) -> None:
+    """An object's address, or a path of the machine that built the book, tells a reader nothing."""
+    for value in page.select("dt.sig > em.property"):
+        if re.search(r"<class |Path\(|0x[0-9a-f]{6}|np\.float64", value.get_text()):
+            value.decompose()
+    for taken in page.select("dt.sig .sig-param"):
+        name, is_function, _ = taken.get_text().partition("=<function")
+        if is_function:
+            taken.string = f"{name}=…"
 
 
 def _names(page: BeautifulSoup) -> None:

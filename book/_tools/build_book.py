@@ -102,8 +102,8 @@ def _notebooks(folder: Path) -> None:
         "# The notebooks",
         "",
         "Each notebook is shown here as students receive it, before any answer is written. "
-        "Download it, or open it from the repository with `make lab`. The files lie in the folder "
-        "`_static/notebooks` of this book, too.",
+        "Download it, or open it from the repository with `make lab`. The files are also in the "
+        "folder `_static/notebooks` of this book.",
         "",
     ]
     for path in found:

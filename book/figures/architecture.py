@@ -30,7 +30,7 @@ LAYERS = (
 )
 """From the ground up: a module imports from its own row and the rows below, never above."""
 
-WIDE, HIGH, LEFT = 84, 30, 8
+WIDE, HIGH, LEFT = 94, 30, 8
 
 
 def imported(name: str) -> set[str]:

@@ -47,7 +47,9 @@ def picked() -> HTML:
         ("Method", *campaign.TASKS),
         rows,
         "RMS error of the tip in mm after the first second, mean over the seeds, on the arm with "
-        "friction, lag and noise. The baseline plans for a goal at rest: it cannot follow the tag.",
+        "friction, lag and noise. The baseline plans for a goal at rest: it cannot follow the tag. "
+        "In the column tag the error is counted from the target that the controllers received, "
+        "not from the tag itself.",
     )
 
 

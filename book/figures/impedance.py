@@ -206,8 +206,8 @@ def wall() -> HTML:
     )  # fmt: skip
     told = ", ".join(f"{name} {force:.3g} N" for name, force in ends.items())
     return figure(
-        "Four controllers are sent 3 cm into a stiff wall. Force as the arm's own torque sensors "
-        "tell it.",
+        "Four controllers send the ideal arm 3 cm into a stiff wall. Force as the arm's own torque "
+        "sensors report it.",
         f"Force on the wall over four seconds. At rest: {told}.",
     )
 

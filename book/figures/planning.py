@@ -114,7 +114,9 @@ def syllabi() -> HTML:
     return table(
         ("You have", "Notebooks", "Hours, core", "Hours, all", "Hours for the chapters",
          "Hours per week, all and chapters"), rows,
-        "Three syllabi, in hours that the authors estimate; discussions in class are not counted",
+        "Three syllabi, in hours that the authors estimate. The chapters are those of the "
+        "notebooks, and the one on the model where 04 or 05 needs it; discussions in class are not "
+        "counted",
     )  # fmt: skip
 
 

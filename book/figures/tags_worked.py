@@ -378,7 +378,7 @@ def aims() -> HTML:
     ax.legend(fontsize="small")
     return figure(
         f"A tag at 0.1 m/s on a circle of {1e3 * RADIUS:.0f} mm, ten readings a second: how "
-        f"far the point aimed at, {AHEAD:g} s ahead of the picture, is from the tag then.",
+        f"far the point aimed at is from the tag {AHEAD:g} s after the picture.",
         f"Four curves over the noise of a reading, which rises from 0.02 to 3 mm. A belief that "
         f"the tag stays errs by {stays[0]:.2g} to {stays[-1]:.2g} mm, one that it goes straight on "
         f"by {straight[0]:.2g} to {straight[-1]:.2g} mm, one that it goes on bending by "

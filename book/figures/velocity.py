@@ -51,7 +51,7 @@ def _error(log: lk.Log) -> np.ndarray:
 
 def damping() -> HTML:
     """The D term slows a velocity-commanded joint, and beyond one it breaks the loop."""
-    _, ax = plt.subplots(figsize=(6.0, 3.4))
+    _, (ax, below) = plt.subplots(2, 1, figsize=(6.0, 5.0), height_ratios=(3, 2))
     told, rates = [], []
     for k, kd in enumerate((0.0, 0.5, 0.9)):
         log = step_run(2.0, kd)
@@ -71,7 +71,10 @@ def damping() -> HTML:
     wild = step_run(2.0, 1.1)
     e = _error(wild)
     ax.plot(wild.t, e, "C4:", linewidth=1.2, label="Kd = 1.1")
-    swings = [np.abs(np.diff(log.command[:, 0])) for log in (wild, step_run(2.0, 0.9))]
+    calm = step_run(2.0, 0.9)
+    for log, name, style in ((calm, "Kd = 0.9", f"C2{STYLES[2]}"), (wild, "Kd = 1.1", "C4:")):
+        below.plot(log.t[:40], log.command[:40, 0], style, marker=".", label=name)
+    swings = [np.abs(np.diff(log.command[:, 0])) for log in (wild, calm)]
     grows, fades = (float(x[8] / x[2]) for x in swings)  # later a limit holds the wild one
     claim(
         "a sequence that grows if $K_d > 1$",
@@ -80,10 +83,13 @@ def damping() -> HTML:
         fades=fades,
     )
     ax.set(xlabel="time [s]", ylabel="error of s0 [rad]")
+    below.set(xlabel="time [s]", ylabel="command to s0 [rad/s]", ylim=(0.0, None))
     ax.legend()
+    below.legend()
     return figure(
-        "A joint that starts 0.1 rad away, Kp = 2 1/s, ideal arm, 200 Hz. More Kd means slower, "
-        "and above 1 the command changes its sign at every tick and grows.",
+        "A joint that starts 0.1 rad away, Kp = 2 1/s, ideal arm, 200 Hz. More Kd means slower. "
+        "The error with Kd = 1.1 looks harmless; the command (below, its first 40 ticks) swings "
+        "about its mean from tick to tick, further each time, until a limit of the motor holds it.",
         f"Error of joint s0 over two seconds. Measured decay: {'; '.join(told)}. With Kd = 1.1 the "
         "error leaves the exponential; after 0.1 s the command jumps by "
         f"{swings[0][20]:.2g} rad/s at every tick.",

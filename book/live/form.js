@@ -72,6 +72,6 @@ export class Form {
     this.walldial = wall;
     return h("details", { open: this.config.open }, h("summary", {}, "The arm and its surroundings"),
       this.fieldset("Arm", h("div", { class: "lk-dials" }, Object.values(this.armdials).map((d) => d.element))),
-      this.fieldset("Wall before the tip", h("label", { class: "lk-check" }, there, "present"), wall.element));
+      this.fieldset("Wall in front of the tip", h("label", { class: "lk-check" }, there, "present"), wall.element));
   }
 }

@@ -224,7 +224,7 @@ def damped_inverse(J, damping):
 
     Args:
         J: Jacobian, rows (v, w), shape (6, 7).
-        damping: What stands before |dq|^2, at least 0; 0 is the pseudo-inverse.
+        damping: The factor of |dq|^2, at least 0; 0 is the pseudo-inverse.
 
     Returns:
         The matrix that turns a twist (v, w) into joint speeds, shape (7, 6).
