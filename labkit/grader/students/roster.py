@@ -48,7 +48,7 @@ class Roster:
     def identifies(self, one: LmsUser) -> bool:
         """Whether a file is named by what one student alone is listed with, such as a login.
 
-        A person's name is no such thing, nor is an account that anybody can open.
+        A person's name and an account that anybody can open do not count.
         """
         students = self.whose(one) if one.system == "files" else ()
         return len(students) == 1 and one.number.casefold() in _identifiers(students[0])
