@@ -107,9 +107,13 @@ def show(caption: str) -> None:
     figure, caption = plt.gcf(), as_drawn(caption)
     if get_ipython() is not None:
         display(figure, metadata={"image/png": {"alt": caption}})
-    kept = caption.replace(" %", "\N{NO-BREAK SPACE}%")
-    print(fill(kept, 79))  # the browser would break words
+    print(_folded(caption))
     plt.close(figure)
+
+
+def _folded(caption: str) -> str:
+    """A caption in lines, where a browser would break it within words."""
+    return fill(caption.replace(" %", "\N{NO-BREAK SPACE}%"), 79)
 
 
 def answers(call: str, expected: Any, given: Any) -> Any:
@@ -168,11 +172,15 @@ def dials(
 
     by = as_drawn("")
 
-    def drawn() -> dict[str, Any]:
+    def drawn() -> tuple[dict[str, Any], dict[str, Any]]:
         figure, told = draw(**{name: slider.value for name, slider in sliders.items()})
-        caption.value = by + told
         plt.close(figure)
-        return {"obj": figure, "metadata": {"image/png": {"alt": caption.value}}}
+        picture = {"obj": figure, "metadata": {"image/png": {"alt": by + told}}}
+        return picture, {"obj": {"text/plain": _folded(by + told)}, "raw": True}
+
+    def redraw(_: Any) -> None:
+        for place, now in zip(places, drawn(), strict=True):
+            place.update(**now)
 
     sliders, rows, spans = {}, [], []
     for name, (a, b, start, *unit) in ranges.items():
@@ -184,14 +192,12 @@ def dials(
         ends = ipywidgets.Label(" ".join([f"{a:g} to {b:g}", *unit]))
         rows.append(ipywidgets.HBox([sliders[name], ends]))
         spans.append(words)
-    caption = ipywidgets.HTML()
     words = f"Dials: {', '.join(spans)}"
     display(in_its_place(f"{words}; run the cell to turn them."), raw=True)
-    _display(ipywidgets.VBox([*rows, caption]), words)
-    first = drawn()
-    figure = display(first.pop("obj"), display_id=True, **first)
+    _display(ipywidgets.VBox(rows), words)
+    places = [display(one.pop("obj"), display_id=True, **one) for one in drawn()]
     for slider in sliders.values():
-        slider.observe(lambda change: figure.update(**drawn()), "value")
+        slider.observe(redraw, "value")
     return sliders
 
 

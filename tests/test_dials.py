@@ -46,6 +46,8 @@ def test_a_slider_redraws_with_the_caption_as_alt_text(shown):
     sliders["kp"].value = 7.0
     captions = [x["metadata"]["image/png"]["alt"] for x in shown if "metadata" in x]
     assert captions == ["kp is 4", "kp is 7"]
+    below = [x["text/plain"] for x in shown if "text/plain" in x]
+    assert below[-2:] == ["kp is 4", "kp is 7"], "which stay in the notebook without its kernel"
     assert plt.get_fignums() == others
 
 
@@ -71,7 +73,7 @@ def test_boxes_are_words_where_no_widget_can_be_shown(shown, widgets):
     lk.plotting.progress("pushing", 10.0)
     words = [x["text/plain"] for x in shown if "text/plain" in x]
     told = "Dials: kd from 0 to 2 N m s/rad"
-    assert words == [f"{told}; run the cell to turn them.", told, "pushing …"]
+    assert words == [f"{told}; run the cell to turn them.", told, "", "pushing …"]
     assert widgets[0].children[1].value == "0 to 2 N m s/rad"
     assert 'class="lk-saved"' in shown[0]["text/html"]
     assert "application/vnd.jupyter.widget-view+json" in shown[1]

@@ -22,7 +22,7 @@ WEAK = 2.0
 """A pull smaller than this, in [N], has no direction."""
 
 _SAYS = {
-    1: "pulls the arm away from its target; check the sign of the error",
+    1: "pulls the arm away from its target; check the signs of its spring and its damper",
     2: "pulls along the error as the tool's axes have it; are the error and the Jacobian in the "
     "same axes?",
     3: "pulls towards its target, but the arm's weight pulls it elsewhere; does it add gravity?",

@@ -17,6 +17,9 @@ from ..errors import LabkitError
 PATIENCE = 1.0
 """A law that has not returned after this long, in [s], is ended."""
 
+GIVES_UP = 4.0
+"""One that still has not returned after this long, in [s], needs a new kernel."""
+
 SLOW, CALLS = 1.0, 40
 """A law is judged by calls that took this long in all, in [s], and at least by this number."""
 
@@ -102,9 +105,14 @@ class Watch:
                 looks = looks + 1 if self._within and self._calls == call else 0
                 call = self._calls
                 if looks and looks % round(PATIENCE / _LOOK) == 0:
-                    self._say(
-                        f"{self._name} has not returned for {PATIENCE:g} s; it is being ended"
+                    since = _LOOK * looks
+                    way_out = (
+                        "it is being ended"
+                        if since < GIVES_UP
+                        else "it cannot be ended, perhaps because it has an `except:` without a "
+                        "name; choose Kernel, Restart Kernel"
                     )
+                    self._say(f"{self._name} has not returned for {since:.0f} s; {way_out}")
                     ctypes.pythonapi.PyThreadState_SetAsyncExc(
                         ctypes.c_ulong(thread.ident or 0), ctypes.py_object(_Ended)
                     )

@@ -4,6 +4,7 @@ import re
 import sys
 import threading
 import time
+from contextlib import suppress
 
 import numpy as np
 import pytest
@@ -361,6 +362,27 @@ def test_a_bad_law_stops_with_its_sentence_and_the_arm_rests(live, law, words):
     np.testing.assert_array_equal(session.arm.truth().dq, 0.0)
 
 
+def test_a_law_that_nothing_can_end_asks_for_a_new_kernel(monkeypatch):
+    """A loop around a bare `except:` outlives whatever is thrown into it, and is told so."""
+    monkeypatch.setattr("labkit.replay.watch.PATIENCE", 0.1)
+    monkeypatch.setattr("labkit.replay.watch.GIVES_UP", 0.3)
+    said, told = [], threading.Event()
+    watch = Watch(0.005, lambda words: (said.append(words), "Restart" in words and told.set()))
+
+    def law():
+        watch.begins("law")
+        while not told.is_set():
+            with suppress(BaseException):  # as a bare `except: pass` does
+                time.sleep(0.01)
+
+    thread = threading.Thread(target=law)
+    thread.start()
+    watch.over(thread)
+    thread.join(60.0)
+    assert "it is being ended" in said[0]
+    assert "cannot be ended" in said[-1] and "choose Kernel, Restart Kernel" in said[-1]
+
+
 def test_two_laws_pause_step_and_reset(live):
     """The arm waits, advances by a step, changes its law and goes back to where it began."""
     session, frames = live({"springs": springy, "still": lk.control.hold(READY)})
@@ -508,7 +530,10 @@ def impedance(state, target, sign=1.0, gravity=1.0, tool=False):
 @pytest.mark.parametrize(
     ("mistake", "words"),
     [
-        ({"sign": -1.0}, "law pulls the arm away from its target; check the sign of the error"),
+        (
+            {"sign": -1.0},
+            "law pulls the arm away from its target; check the signs of its spring and its damper",
+        ),
         ({"tool": True}, "law pulls along the error as the tool's axes have it"),
         ({"gravity": 0.0}, "law pulls towards its target, but .* does it add gravity"),
     ],
