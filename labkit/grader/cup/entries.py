@@ -123,7 +123,7 @@ def play(course: Course, today: date, final: bool) -> Iterator[Entry | Failure]:
     handles = Arms.of(course.root).handles
     limits = LIMITS.scaled(slowness())
     for student in students(course, CUP):
-        data, _, why = Submission.of(course, CUP, student).read(limits.notebook)
+        data, _, why = Submission.of(course, CUP, student).read()
         handle = handles.get(student, student)
         new = Entry(student, handle, digest(data), str(today), final, why=why)
         past = of_student(course, student)

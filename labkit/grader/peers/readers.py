@@ -18,7 +18,6 @@ from ...course.notebook import read_cells
 from ...errors import LabkitError
 from ..clean import clean_text
 from ..pseudonyms import pseudonyms
-from ..sandbox.limits import Limits
 from ..students.class_list import Student
 from ..students.roster import Roster, read_roster
 from ..submission import Submission, students
@@ -166,7 +165,7 @@ def _sheet_texts(course: Course, name: str, student: str) -> tuple[dict[str, str
     submission = Submission.of(course, name, student)
     if not submission.folder.exists():
         return {}, "handed in no review"
-    data, _, wrong = submission.read(Limits().notebook)
+    data, _, wrong = submission.read()
     if wrong:
         return {}, wrong
     try:
