@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import json
 from collections import Counter
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Sequence
 from contextlib import closing, suppress
 from dataclasses import dataclass, replace
 from datetime import date
@@ -19,7 +19,7 @@ import numpy as np
 
 from ...control import Command, State
 from ...course.authoring.layout import CUP, Course
-from ...course.baxter_cup import MARKS, CupRun, cup_run
+from ...course.baxter_cup import CupRun, cup_run, marks
 from ...course.judges import Close
 from ...course.own_arm import Arms
 from ...course.question import Question
@@ -96,12 +96,6 @@ class Entry:
     def beaten(self) -> int:
         """The number of published marks that it beats."""
         return sum(self.score < mark for mark in marks().values())
-
-
-def marks() -> Mapping[str, float]:
-    """The published marks, in [mm], the lowest first."""
-    means = {name: float(np.mean(scores)) for name, scores in MARKS.items()}
-    return dict(sorted(means.items(), key=lambda pair: pair[1]))
 
 
 def seeds(course: Course, final: bool) -> tuple[int, ...]:
