@@ -64,6 +64,12 @@ class CupRun:
     log: Log
 
 
+def marks() -> dict[str, float]:
+    """The published marks, in [mm], the lowest first."""
+    means = {name: float(np.mean(scores)) for name, scores in MARKS.items()}
+    return dict(sorted(means.items(), key=lambda pair: pair[1]))
+
+
 def cup(make: Callable[[Model], Controller], workspace: bool = False) -> tuple[CupRun, ...]:
     """Run a controller on the public seeds and print its scores beside the published marks.
 
@@ -77,10 +83,10 @@ def cup(make: Callable[[Model], Controller], workspace: bool = False) -> tuple[C
     """
     runs = tuple(cup_run(make, seed, workspace) for seed in PUBLIC_SEEDS)
     mine = float(np.mean([one.score for one in runs]))
-    marks = {name: float(np.mean(scores)) for name, scores in MARKS.items()}
-    for name, mark in sorted((marks | {"yours": mine}).items(), key=lambda pair: pair[1]):
+    published = marks()
+    for name, mark in sorted((published | {"yours": mine}).items(), key=lambda pair: pair[1]):
         print(f"{mark:8.1f} mm  {name}")
-    print(f"{sum(mine < mark for mark in marks.values())} of {len(marks)} marks beaten")
+    print(f"{sum(mine < mark for mark in published.values())} of {len(published)} marks beaten")
     return runs
 
 

@@ -7,7 +7,6 @@ import time
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
-from typing import IO
 
 from ..errors import LabkitError
 
@@ -44,16 +43,12 @@ def locked(file: Path, busy: str) -> Iterator[None]:
     file.parent.mkdir(parents=True, exist_ok=True)
     with open(file, "w") as mine:
         until = time.monotonic() + PATIENCE
-        while not _taken(mine):
-            if time.monotonic() > until:
-                raise LabkitError(busy)
+        while True:
+            try:
+                fcntl.flock(mine, fcntl.LOCK_EX | fcntl.LOCK_NB)
+                break
+            except OSError:
+                if time.monotonic() > until:
+                    raise LabkitError(busy) from None
             time.sleep(0.1)
         yield
-
-
-def _taken(file: IO[str]) -> bool:
-    try:
-        fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
-    except OSError:
-        return False
-    return True

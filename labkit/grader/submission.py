@@ -15,6 +15,9 @@ from ..errors import LabkitError
 from .clean import clean_line, some
 from .each import Failure
 
+NOTEBOOK = 200
+"""The largest notebook that is read, in [MiB]; pictures in it are dropped unread."""
+
 
 @dataclass(frozen=True)
 class Submission:
@@ -35,12 +38,8 @@ class Submission:
         """Where nbgrader keeps it."""
         return cls(student, assignment, course.submitted / student / assignment)
 
-    def read(self, most: int) -> tuple[bytes, str, str]:
-        """The notebook's bytes, a note, and why there are none; at least one is empty.
-
-        Args:
-            most: The largest size, in [MiB].
-        """
+    def read(self) -> tuple[bytes, str, str]:
+        """The notebook's bytes, a note, and why there are none; at least one is empty."""
         if self.folder.is_symlink() or self.folder.parent.is_symlink():
             return b"", "", "the folder is a link; hand in the file itself"
         found = sorted(x for x in self.folder.glob("*.ipynb") if not x.name.startswith("."))
@@ -53,7 +52,7 @@ class Submission:
         path = named[0]
         note = "" if path.stem == self.assignment else f"the file is called {path.name[:80]}"
         try:
-            return read_file(path, most), note, ""
+            return read_file(path), note, ""
         except LabkitError as error:
             return b"", "", str(error)
 
@@ -112,7 +111,7 @@ def _folders(course: Course, name: str) -> list[str]:
     return sorted(p.name for p in course.submitted.glob("*") if os.path.lexists(p / name))
 
 
-def read_file(path: Path, most: int) -> bytes:
+def read_file(path: Path, most: int = NOTEBOOK) -> bytes:
     """A file that somebody else may have put there.
 
     Links are not followed: they could lead to somebody else's file.

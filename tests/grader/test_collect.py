@@ -8,6 +8,7 @@ import struct
 import subprocess
 import tempfile
 import zipfile
+from functools import partial
 from pathlib import Path
 
 import pytest
@@ -38,7 +39,6 @@ from labkit.grader.defence.mark import await_mark, give_mark
 from labkit.grader.grading.results import Results
 from labkit.grader.marks.table import marks_of
 from labkit.grader.nbgrader.gradebook import open_gradebook, record
-from labkit.grader.sandbox.limits import Limits
 from labkit.grader.students.class_list import read_list
 from labkit.grader.students.collect import collect
 from labkit.grader.students.enrol import enrol, import_list
@@ -49,6 +49,7 @@ from labkit.grader.students.roster import FILE as ROSTER
 from labkit.grader.students.roster import read_roster, save_roster
 from labkit.grader.students.settle import settle
 from labkit.grader.students.worksheet import keep_numbers
+from labkit.grader.submission import read_file
 
 NOBODY = 64990
 """A user number that this machine does not know."""
@@ -452,7 +453,7 @@ def test_a_secret_that_is_a_link_is_not_followed(bare, tmp_path):
 
 def test_collect_waits_for_nothing_and_follows_nobody(bare, tmp_path, monkeypatch):
     """A pipe, a link or a huge file costs its own student, in words."""
-    monkeypatch.setattr("labkit.grader.students.exchange.Limits", lambda: Limits(notebook=1))
+    monkeypatch.setattr("labkit.grader.students.exchange.read_file", partial(read_file, most=1))
     folders = [handed_in(tmp_path / "in", who, "x") for who in ("ada", "bob", "carl")]
     pipe, link, huge = (folder / f"{NAME}.ipynb" for folder in folders)
     pipe.unlink()
@@ -551,7 +552,7 @@ def test_an_entry_that_lies_is_named(bare, tmp_path, changes, words):
 
 def test_a_bomb_is_not_unpacked(bare, tmp_path, monkeypatch):
     """However small it says it is, and however small it is packed."""
-    monkeypatch.setattr("labkit.grader.students.platforms.Limits", lambda: Limits(notebook=1))
+    monkeypatch.setattr("labkit.grader.students.platforms.NOTEBOOK", 1)
     path = tmp_path / "1.zip"
     with zipfile.ZipFile(path, "w", zipfile.ZIP_DEFLATED) as archive:
         archive.writestr(ADA, b" " * 2**22)

@@ -47,7 +47,7 @@ def test_what_is_not_a_plain_file_is_refused_in_a_sentence(kind, course, monkeyp
             raise PermissionError
 
         monkeypatch.setattr(os, "open", refuse)
-    data, _, why = submission.read(1)
+    data, _, why = submission.read()
     assert not data
     assert "is not a file" in why or "is a link or cannot be opened" in why
 

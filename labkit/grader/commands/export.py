@@ -6,7 +6,7 @@ import sys
 from dataclasses import replace
 from datetime import UTC, datetime
 from pathlib import Path
-from typing import TYPE_CHECKING, Literal
+from typing import TYPE_CHECKING
 
 import click
 
@@ -20,6 +20,7 @@ from .pages import nobody, tell, to_file, write
 
 if TYPE_CHECKING:
     from ..marks.mark import Mark
+    from ..terms.concepts import Form
 
 TABLES = ("nbgrader", "questions", "canvas", "moodle", "moodle-worksheet")
 """Layouts of marks."""
@@ -27,8 +28,6 @@ NAMED = ("canvas", "moodle")
 """Layouts with a column that a platform knows by its name."""
 QUIZZES = ("paper", "moodle-quiz", "canvas-quiz")
 """Layouts of the concept test."""
-Form = Literal["a", "b"]
-"""Of the concept test."""
 
 
 @verb("01_paths --to marks.csv")

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import json
 from collections import Counter
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Sequence
 from contextlib import closing, suppress
 from dataclasses import dataclass, replace
 from datetime import date
@@ -19,7 +19,7 @@ import numpy as np
 
 from ...control import Command, State
 from ...course.authoring.layout import CUP, Course
-from ...course.baxter_cup import MARKS, CupRun, cup_run
+from ...course.baxter_cup import CupRun, cup_run, marks
 from ...course.judges import Close
 from ...course.own_arm import Arms
 from ...course.question import Question
@@ -98,12 +98,6 @@ class Entry:
         return sum(self.score < mark for mark in marks().values())
 
 
-def marks() -> Mapping[str, float]:
-    """The published marks, in [mm], the lowest first."""
-    means = {name: float(np.mean(scores)) for name, scores in MARKS.items()}
-    return dict(sorted(means.items(), key=lambda pair: pair[1]))
-
-
 def seeds(course: Course, final: bool) -> tuple[int, ...]:
     """The seeds of the board or of the final, by HMAC under the term's secret."""
     draw = partial(rank, seed_of(course), "final" if final else "board")
@@ -123,7 +117,7 @@ def play(course: Course, today: date, final: bool) -> Iterator[Entry | Failure]:
     handles = Arms.of(course.root).handles
     limits = LIMITS.scaled(slowness())
     for student in students(course, CUP):
-        data, _, why = Submission.of(course, CUP, student).read(limits.notebook)
+        data, _, why = Submission.of(course, CUP, student).read()
         handle = handles.get(student, student)
         new = Entry(student, handle, digest(data), str(today), final, why=why)
         past = of_student(course, student)

@@ -5,12 +5,13 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 
 from ...course.authoring.layout import CUP, Course
+from ...course.baxter_cup import marks
 from ...course.own_arm import Arms
 from ..nbgrader.gradebook import open_gradebook
 from ..nbgrader.unreleased import enter
 from ..pages import render_page
 from ..rules import read_rules
-from .entries import Entry, marks
+from .entries import Entry
 
 BONUS = "marks_beaten"
 """What the gradebook calls it."""

@@ -174,7 +174,7 @@ def _ask(
 
     None if no mistake changes what the checks say.
     """
-    data, _, why = Submission.of(course, one.assignment, student).read(limits.notebook)
+    data, _, why = Submission.of(course, one.assignment, student).read()
     if why:
         raise LabkitError(f"{one.assignment}: {why}")
     cells = parse(data, sandbox, limits)

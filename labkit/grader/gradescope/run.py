@@ -69,7 +69,7 @@ def _grade(bundle: Bundle, place: Path, results: Path) -> None:
     """Grade what was handed in, and report after each question."""
     student, says = _student(place / "submission_metadata.json", bundle)
     submission = Submission(student, bundle.data["assignment"], place / "submission")
-    data, note, why = submission.read(LIMITS.notebook)
+    data, note, why = submission.read()
     verdicts: dict[str, Verdict] = {}
 
     def reached(verdict: Verdict) -> None:

@@ -247,7 +247,7 @@ def still_good(
         before = results.get(submission.student)
         if before is None or (options.isolated and before.isolation.startswith("none")):
             continue
-        data, _, _ = submission.read(options.limits.notebook)
+        data, _, _ = submission.read()
         if before.hashes == hashes(data, bundle.of_student(submission.student)):
             return before
     return None

@@ -10,7 +10,6 @@ from ...course.authoring.bundle import Bundle
 from ...course.authoring.layout import CUP, DEFENCE, Course
 from ...errors import LabkitError
 from ..each import Failure, for_student
-from ..sandbox.limits import Limits
 from ..submission import Submission, digest, is_name, misnamed, plain_name, students
 from .results import Result, Results
 
@@ -83,7 +82,7 @@ def _counts(
     if result is None:
         raise LabkitError(f"handed in and not graded; {remedy}")
     if is_handed_in:
-        data, _, _ = Submission.of(course, assignment, student).read(Limits().notebook)
+        data, _, _ = Submission.of(course, assignment, student).read()
         if digest(data) != result.hashes["submission"]:
             raise LabkitError(f"handed in again and not graded since; {remedy}")
         graded = {q.verdict.name: q.verdict.points for q in result.questions}

@@ -90,7 +90,7 @@ def _grade(task: Task, limits: Limits) -> Result:
     arms = Arms.of(task.course.root).text()
     bundle = _bundle(task.course, task.submission.assignment, task.bundle_hash, arms)
     student = task.submission.student
-    data, note, why = task.submission.read(limits.notebook)
+    data, note, why = task.submission.read()
 
     def once(sandbox: Sandbox) -> Result:
         if why:

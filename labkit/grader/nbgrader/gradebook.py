@@ -264,12 +264,10 @@ def _write_scores(
     submission: Any, result: Result, scores: Mapping[str, float | None], changed: Set[str]
 ) -> Iterator[str]:
     """Write automatic scores; marks given by hand stay, and are looked at again where need be."""
+    missing = 0.0 if result.rejected else None
     for notebook in submission.notebooks:
         for grade in notebook.grades:
-            score, given = (
-                scores.get(grade.name, 0.0 if result.rejected else None),
-                grade.manual_score,
-            )
+            score, given = scores.get(grade.name, missing), grade.manual_score
             if given is None:
                 grade.needs_manual_grade = score is None
             elif grade.name in changed:

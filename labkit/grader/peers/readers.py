@@ -8,7 +8,7 @@ against it.
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
@@ -18,7 +18,6 @@ from ...course.notebook import read_cells
 from ...errors import LabkitError
 from ..clean import clean_text
 from ..pseudonyms import pseudonyms
-from ..sandbox.limits import Limits
 from ..students.class_list import Student
 from ..students.roster import Roster, read_roster
 from ..submission import Submission, students
@@ -166,7 +165,7 @@ def _sheet_texts(course: Course, name: str, student: str) -> tuple[dict[str, str
     submission = Submission.of(course, name, student)
     if not submission.folder.exists():
         return {}, "handed in no review"
-    data, _, wrong = submission.read(Limits().notebook)
+    data, _, wrong = submission.read()
     if wrong:
         return {}, wrong
     try:
@@ -178,13 +177,11 @@ def _sheet_texts(course: Course, name: str, student: str) -> tuple[dict[str, str
 
 def _review(rows: Iterable[str], said: Mapping[str, str], me: Sequence[Student]) -> Review | None:
     """A review, or None if a row has no level."""
-    forms = {row: _FORM.search(clean_text(said[row])) for row in rows}
-    if not all(forms.values()):
-        return None
-    comments = {row: without_names(form[2].strip(), me, "reader") for row, form in _of(forms)}
-    levels = {row: int(form[1]) for row, form in _of(forms)}
-    return Review(levels, {row: text[:LONGEST_COMMENT] for row, text in comments.items()})
-
-
-def _of(forms: Mapping[str, re.Match[str] | None]) -> Iterator[tuple[str, re.Match[str]]]:
-    return ((row, form) for row, form in forms.items() if form is not None)
+    levels, comments = dict[str, int](), dict[str, str]()
+    for row in rows:
+        form = _FORM.search(clean_text(said[row]))
+        if form is None:
+            return None
+        levels[row] = int(form[1])
+        comments[row] = without_names(form[2].strip(), me, "reader")[:LONGEST_COMMENT]
+    return Review(levels, comments)

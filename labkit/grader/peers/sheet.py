@@ -24,7 +24,6 @@ from ..clean import clean_text
 from ..each import Failure, for_student
 from ..nbgrader.autograded_notebook import as_typed
 from ..pseudonyms import pseudonyms
-from ..sandbox.limits import Limits
 from ..students.class_list import Student
 from ..students.roster import read_roster
 from ..submission import Submission
@@ -103,7 +102,7 @@ def _report(
     released: Iterable[Mapping[str, Any]],
 ) -> list[dict[str, Any]]:
     """What a team wrote: the cells that are not the release's, and the headings between them."""
-    data, _, wrong = Submission.of(course, assignment, author).read(Limits().notebook)
+    data, _, wrong = Submission.of(course, assignment, author).read()
     if wrong:
         raise LabkitError(f"{wrong}; nobody can read this report")
     known = {m["source"].strip(): m["kind"] for m in released}

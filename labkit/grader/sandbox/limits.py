@@ -39,7 +39,6 @@ class Limits:
         files: In its own temporary folder, and for one file.
         output: Characters of text from the cells, in all.
         processes: At once.
-        notebook: The largest file that is read; pictures in it are dropped unread.
     """
 
     parse: float = 15.0
@@ -54,7 +53,6 @@ class Limits:
     files: int = 64
     output: int = 100_000
     processes: int = 32
-    notebook: int = 200
 
     @property
     def worker(self) -> float:

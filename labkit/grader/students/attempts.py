@@ -36,7 +36,6 @@ from ...errors import LabkitError
 from ..atomic import write
 from ..clean import safe_name
 from ..rules import read_rules
-from ..sandbox.limits import Limits
 from ..submission import digest, read_file
 from ..timestamp import TIMESTAMP, read_stamp, read_time
 from .exchange import SECRET, read_secret
@@ -214,7 +213,7 @@ def adopt(course: Course, student: str, assignment: str, now: str) -> dict[str, 
     for path in sorted(folder.glob("*.ipynb")):
         if path.is_symlink() or not path.is_file():
             raise LabkitError(f"{path.relative_to(course.root)} is not a file; move it away")
-        data = read_file(path, Limits().notebook)
+        data = read_file(path)
         if path.name == f"{assignment}.ipynb" and chosen is not None:
             known = digest(data) == chosen.attempt.sha256
         else:

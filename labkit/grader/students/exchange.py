@@ -18,7 +18,6 @@ from pathlib import Path
 from ...course.authoring.layout import Course
 from ..clean import clean_line
 from ..each import Failure, for_student
-from ..sandbox.limits import Limits
 from ..submission import read_file
 from ..timestamp import TIMESTAMP, read_time
 from .exchange_times import Times
@@ -81,7 +80,7 @@ def in_exchange(folder: Path, assignment: str, *, unverified: bool) -> Iterator[
                 clean_line(notebook.name),
                 (Named(who, clean_line(notebook.name)),),
                 when,
-                partial(read_file, notebook, Limits().notebook),
+                partial(read_file, notebook),
                 exact=True,
                 secret=partial(read_secret, path),
             )

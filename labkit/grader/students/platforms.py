@@ -43,8 +43,7 @@ from pathlib import Path
 
 from ...errors import LabkitError
 from ..clean import clean_line
-from ..sandbox.limits import Limits
-from ..submission import check_size, read_file
+from ..submission import NOTEBOOK, check_size, read_file
 
 _MOODLE = re.compile(
     r"(?P<name>[^_/]*)_(?P<number>0|[1-9][0-9]{0,18})_assignsubmission_"
@@ -236,14 +235,13 @@ def _when(entry: zipfile.ZipInfo, made: datetime) -> datetime:
 
 def _read(archive: zipfile.ZipFile, entry: zipfile.ZipInfo) -> bytes:
     """Unpack an entry in memory, no further than is allowed, whatever it says of its size."""
-    most = Limits().notebook
-    check_size(entry.file_size, most)
+    check_size(entry.file_size, NOTEBOOK)
     try:
         with archive.open(entry) as file:
-            data = file.read(most * 2**20 + 1)
+            data = file.read(NOTEBOOK * 2**20 + 1)
     except _DAMAGED as error:
         raise LabkitError(f"damaged: {clean_line(str(error))}") from None
-    check_size(len(data), most)
+    check_size(len(data), NOTEBOOK)
     return data
 
 
@@ -288,5 +286,5 @@ def in_folder(folder: Path, read: Reader) -> Iterator[File]:
             path = Path(top, name)
             label = str(path.relative_to(folder))
             when = datetime.fromtimestamp(int(path.lstat().st_mtime), UTC)
-            load = partial(read_file, path, Limits().notebook)
+            load = partial(read_file, path)
             yield File(clean_line(label)[-120:], read(label), when, load)
