@@ -139,4 +139,11 @@ class AtTip:
         return float(np.max(off / (self.atol + self.rtol * scale)))
 
 
+def as_expected(known: Any, expected: Any) -> Any:
+    """What a mistake gives on a call, in the form of what is expected there."""
+    if isinstance(expected, TipTorque) and type(known) is JointTorque:
+        return replace(expected, value=known.value)
+    return known
+
+
 Judge = Close | Within | Response | Gains | AtTip | Form | Measured | Found | Telling

@@ -12,12 +12,11 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from ..control import JointTorque
 from ..errors import Diverged, LabkitError
 from ..log import Log
 from ..shapes import Array
 from .advice import full_description
-from .equivalence import Judge, TipTorque
+from .equivalence import Judge, as_expected
 from .judges import AtMost, Close, numbers
 from .question import Call, Case, Choice, Loop, Mistake, Question, Raised, Test, Tuned
 from .reply import NoAnswer
@@ -184,17 +183,10 @@ def recognise(question: Question, answers: list[Any]) -> Mistake | None:
     """The known mistake that gives just these answers on the public calls, if there is one."""
     for mistake in question.mistakes:
         if answers and len(answers) == len(mistake.answers):
-            known = map(_as_expected, question.calls, mistake.answers)
+            known = map(as_expected, mistake.answers, (call.expected for call in question.calls))
             if all(map(_same, repeat(question.judge), answers, known)):
                 return mistake
     return None
-
-
-def _as_expected(call: Call | Choice, known: Any) -> Any:
-    """What a mistake gives on a call, in the form of what is expected there."""
-    if isinstance(call, Call) and isinstance(call.expected, TipTorque):
-        return replace(call.expected, value=known.value) if type(known) is JointTorque else known
-    return known
 
 
 def fingerprint(question: Question, function: Callable[..., Any]) -> tuple[Any, ...]:
