@@ -57,7 +57,9 @@ class Close:
             a = b = np.empty(0)
         try:
             if np.isnan(b).any():
-                return np.allclose(a, b, alike.rtol, alike.atol, equal_nan=True)
+                return a.shape == b.shape and np.allclose(
+                    a, b, alike.rtol, alike.atol, equal_nan=True
+                )
             return alike(answer, other) is None
         except (LabkitError, TypeError, ValueError):
             return False

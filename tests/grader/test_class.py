@@ -158,7 +158,12 @@ def test_a_run_that_is_stopped_leaves_nothing_running_and_loses_nothing(
     words = [sys.executable, "-m", "labkit", "grade", NAME, "--jobs", "1"]
     environment = dict(os.environ, PYTHONPATH=str(ROOT))
     with subprocess.Popen(
-        [*words, "--course", str(course.root)], env=environment, stdout=subprocess.PIPE, text=True
+        [*words, "--course", str(course.root)],
+        env=environment,
+        stdout=subprocess.PIPE,
+        text=True,
+        # a shell lets what it starts in the background ignore it
+        preexec_fn=lambda: signal.signal(signal.SIGINT, signal.SIG_DFL),
     ) as run:
         if processes == 7:  # it is at the second submission
             endless = add(add(copy.deepcopy(solved), "while True: pass"), "while True: pass")

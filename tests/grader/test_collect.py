@@ -346,13 +346,16 @@ def test_marks_go_with_the_work(course, tmp_path):
 def test_what_cannot_be_moved_is_named(bare, tmp_path):
     """A mark under the old name, or other work under the new one, wants a look."""
     take(bare, zipped(tmp_path / "1.zip", [("hoppergrace_7_99_x.ipynb", "moodle's")]))
-    (bare.submitted / "grace" / NAME).mkdir(parents=True)
+    other = bare.submitted / "grace" / NAME / f"{NAME}.ipynb"
+    other.parent.mkdir(parents=True)
+    other.write_text("another")
     (bare.results / NAME).mkdir(parents=True)
     (bare.results / NAME / "hoppergrace-7.json").write_text("{}")
     roster(bare, "grace,Grace,Hopper,,7,,")
     (said,) = troubles(bare, tmp_path / "1.zip")
     assert f"submitted/hoppergrace-7/{NAME} and results/{NAME}/hoppergrace-7.json" in said
-    assert counting(bare)["hoppergrace-7"] == counting(bare)["grace"] == "moodle's"
+    assert counting(bare)["hoppergrace-7"] == "moodle's"
+    assert kept(bare, "grace") == {"another", "moodle's"}
 
 
 # The exchange

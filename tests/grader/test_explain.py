@@ -81,8 +81,9 @@ def test_a_mark_that_was_kept_after_a_test_changed_is_told_as_kept(course, solve
     assert "kept; --lower lets it fall" in capsys.readouterr().out
     assert main(["explain", "ada", "witness", *words[1:]]) == 0
     said = " ".join(capsys.readouterr().out.split())
-    assert "the mark was kept. Now the answer earns 0 of 2" in said and "ATTENTION" not in said
-    assert f"type: labkit grade {NAME} --student ada --lower" in said
+    assert "has changed since this mark was made: now the answer earns 0 of 2" in said
+    assert f"type: labkit grade {NAME} --student ada, and with --lower" in said
+    assert "ATTENTION" not in said and "The hidden case that decided" not in said
 
 
 @pytest.mark.slow

@@ -13,6 +13,7 @@ import pytest
 from made import NAME, changed, graded, handed_in, notebook_of, result_of
 
 from labkit.__main__ import main
+from labkit.errors import LabkitError
 from labkit.grader.grading.batch import common_failures
 from labkit.grader.grading.changes import Change, summary
 from labkit.grader.grading.results import OTHER_NOTEBOOK, Results
@@ -169,6 +170,8 @@ def test_a_mark_falls_by_the_share_of_what_both_releases_ask(course):
     rejected = result_of(course, "ada", rejected="the file is empty")
     assert rejected.falls_from(full) and not full.falls_from(rejected)
     assert not result_of(course, "ada", share=0.5, data=b"another").falls_from(full)
+    unread = result_of(course, "ada", rejected="it cannot be opened", data=b"")
+    assert unread.falls_from(full), "what nobody could read is not another submission"
 
 
 def test_a_fall_in_per_cent_alone_is_listed(course):
@@ -190,6 +193,11 @@ def test_nbgraders_own_button_lowers_no_mark_of_an_unchanged_submission(marked, 
     monkeypatch.chdir(marked.root)
     assert autograde._grade({"assignment": NAME, "student": "ada"}).score == full.score
     assert Results(marked, NAME).get("ada").score == full.score
+    new = changed(none, 0, {"name": "new"})
+    monkeypatch.setattr(autograde, "grade_aside", lambda *_: iter([new]))
+    autograde._known.clear()
+    with pytest.raises(LabkitError, match=f"--lower lets it fall.*type: labkit grade {NAME}"):
+        autograde._grade({"assignment": NAME, "student": "ada"})
 
 
 def test_tables_of_a_class_that_is_whole_say_nothing(marked, capsys):

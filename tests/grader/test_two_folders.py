@@ -92,6 +92,28 @@ def test_files_named_by_two_identifiers_of_one_student_are_two_attempts(bare, tm
     assert kept(bare, "ada") == {"first", "second"}
 
 
+@pytest.mark.parametrize("other", ["Ada Lovelace", "ada-on-github", "lovelace"])
+def test_a_name_or_an_account_that_anybody_can_take_is_not_joined(bare, tmp_path, other):
+    """Beside a file named by her number, what may be another person's stays apart and is told."""
+    ada = Student("ada", "Ada", "Lovelace", "lovelace@mail.org", "", "4711", github="ada-on-github")
+    save_roster(bare, Roster((ada,)))
+    for who, text in (("4711", "hers"), (other, "whose?")):
+        (tmp_path / "files" / who).mkdir(parents=True)
+        (tmp_path / "files" / who / "x.ipynb").write_text(text)
+    said = take(bare, tmp_path / "files", named="{student}/*.ipynb")
+    assert counting(bare)["ada"] == "hers" and kept(bare, "ada") == {"hers"}
+    assert any("kept apart" in str(one) for one in said)
+
+
+def test_an_empty_folder_is_no_work(bare, tmp_path):
+    """What was collected goes to the student although a folder without a file is there."""
+    take(bare, from_moodle(tmp_path / "1.zip", [(("Ada Lovelace", 42), "x.ipynb", "hers")]))
+    (bare.submitted / "ada" / NAME).mkdir(parents=True)
+    (tmp_path / "list.csv").write_text("name,login\nAda Lovelace,ada\n")
+    assert import_list(bare, tmp_path / "list.csv")[1] == []
+    assert counting(bare) == {"ada": "hers"}
+
+
 def test_two_students_of_the_roster_are_never_joined(bare, tmp_path):
     """A worksheet that gives one's number to another leaves both as they are, and says so."""
     save_roster(bare, Roster((Student("li1", "Li", "Wei"), Student("li2", "Bo", "Li", "li2@x"))))

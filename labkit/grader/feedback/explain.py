@@ -108,9 +108,10 @@ def _by_the_grader(
     yield from (wrapped(f"Note: {note}.") for note in before.notes)
     yield from map(wrapped, summary(shown))
     hidden = {test.name for test in shown.tests if test.hidden}
+    same_release = bundle.of_student(student).data["hash"] == result.hashes["bundle"]
     if shown.outcome is Outcome.NOT_ATTEMPTED:
         pass  # no case decided it
-    elif hidden:
+    elif hidden and same_release:
         yield "\nThe hidden case that decided; do not show it before the term ends:"
         yield from (wrapped(f"  {of_test(test)}") for test in now.tests if test.name in hidden)
     elif shown.outcome is Outcome.NOT_COUNTED:
@@ -118,13 +119,13 @@ def _by_the_grader(
     elif not shown.right:
         yield "\nThe tests that the student has seen decided this mark; no hidden case did."
     if (shown.right, shown.earned) != (now.right, now.earned):
-        if bundle.of_student(student).data["hash"] == result.hashes["bundle"]:
+        if same_release:
             yield "\nATTENTION: this time it came out otherwise:"
         else:
             yield "\n" + wrapped(
-                "The release has changed since this mark was made, and the mark was kept. Now "
-                f"the answer earns {now.earned:g} of {now.points:g}; if that is to count, type: "
-                f"labkit grade {result.assignment} --student {student} --lower"
+                f"The release has changed since this mark was made: now the answer earns "
+                f"{now.earned:g} of {now.points:g}. If that is to count, type: labkit grade "
+                f"{result.assignment} --student {student}, and with --lower if the mark is kept"
             )
         yield from map(wrapped, summary(now))
     if line.comment:

@@ -27,6 +27,7 @@ from ..clean import clean_data, clean_line
 
 _LABKIT = Path(labkit.__file__).parent
 OTHER_NOTEBOOK = "this looks like the notebook of another assignment"
+_NOTHING = hashlib.sha256(b"").hexdigest()
 _OF_A_WORKER = ("grading", "sandbox", "atomic.py", "clean.py", "each.py", "submission.py")
 """Parts of the grader that a worker loads."""
 
@@ -195,16 +196,19 @@ class Result:
         """Whether the same submission had more before, of the questions that both releases ask.
 
         A release can change what a question is worth, so the share of each question is compared,
-        times its points now; with the same points that is the mark.
+        times its points now; with the same points that is the mark.  A file that could not be read
+        is not taken for another submission.
         """
-        if before.hashes["submission"] != self.hashes["submission"]:
+        unread = bool(self.rejected) and self.hashes["submission"] == _NOTHING
+        if before.hashes["submission"] != self.hashes["submission"] and not unread:
             return False
         if self.rejected:
             return before.score > 0.0
         mine, theirs = ({q.verdict.name: q.verdict for q in x.questions} for x in (self, before))
         both = [name for name in mine if name in theirs and theirs[name].points]
         was = sum(theirs[x].earned / theirs[x].points * mine[x].points for x in both)
-        return sum(mine[x].earned for x in both) < was - 1e-6
+        rounded = 0.01 * sum(theirs[x].points != mine[x].points for x in both)
+        return sum(mine[x].earned for x in both) < was - rounded - 1e-6
 
     @property
     def unanswered(self) -> str:

@@ -147,7 +147,9 @@ def places(
         folder, students = before.get(key, ""), roster.whose(one)
         if folder in roster:
             found[key] = Place(folder)
-        elif len(students) == 1 and claims[_claim(one, folder, roster)] == 1:
+        elif roster.identifies(one) or (
+            len(students) == 1 and claims[_claim(one, folder, roster)] == 1
+        ):
             found[key] = Place(students[0].id)
         else:
             folder = folder or _apart(one, owners)
@@ -157,12 +159,7 @@ def places(
 
 
 def _claim(one: LmsUser, folder: str, roster: Roster) -> tuple[str, ...]:
-    """Which student of the roster a person of a platform is, or claims to be by name.
-
-    One student may hand in files under several names, if only this student can be meant by each.
-    """
-    if roster.identifies(one):
-        return one.key
+    """Which student of the roster a person of a platform is, or claims to be by name."""
     return (one.system, *([folder] if folder in roster else [s.id for s in roster.whose(one)]))
 
 

@@ -48,7 +48,7 @@ class Roster:
     def identifies(self, one: LmsUser) -> bool:
         """Whether a file is named by what one student alone is listed with, such as a login.
 
-        A person's name and an account that anybody can open do not count.
+        A person's name, and whatever anybody can choose for themselves, do not count.
         """
         students = self.whose(one) if one.system == "files" else ()
         return len(students) == 1 and one.number.casefold() in _identifiers(students[0])
@@ -69,8 +69,9 @@ class Roster:
         for student in self.students:
             login, email = student.login.casefold(), student.email.casefold()
             keys = {("moodle", same_name(student.name)), ("canvas", student.lms_user_id)}
-            more = (student.github.casefold(), " ".join(same_name(student.name)))
-            keys |= {("files", name) for name in (*_identifiers(student), *more)}
+            chosen = (email.partition("@")[0], student.github.casefold())
+            names = (*_identifiers(student), *chosen, " ".join(same_name(student.name)))
+            keys |= {("files", name) for name in names}
             for key in keys | {("exchange", login), ("exchange", email)}:
                 if key[1]:
                     found[key] = (*found.get(key, ()), student)
@@ -79,9 +80,8 @@ class Roster:
 
 def _identifiers(student: Student) -> tuple[str, ...]:
     """What a school calls a student by, and nobody else."""
-    email = student.email.casefold()
-    numbers = (student.id, student.login, student.id_number, student.lms_user_id)
-    return (*(x.casefold() for x in numbers), email, email.partition("@")[0])
+    known = (student.id, student.login, student.id_number, student.lms_user_id, student.email)
+    return tuple(x.casefold() for x in known)
 
 
 def same_name(name: str) -> tuple[str, ...]:

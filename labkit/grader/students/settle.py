@@ -64,6 +64,8 @@ def bring(course: Course, moves: Iterable[Move]) -> list[str]:
         for base in () if both else (*_WORK, *_MADE_OF_IT):
             source = course.root / base / move.old / move.assignment
             target = course.root / base / move.new / move.assignment
+            if target.is_dir() and not any(target.iterdir()):
+                target.rmdir()
             if source.exists() and not target.exists():
                 target.parent.mkdir(parents=True, exist_ok=True)
                 source.rename(target)
@@ -87,7 +89,7 @@ def bring(course: Course, moves: Iterable[Move]) -> list[str]:
 def _work(course: Course, move: Move, student: str) -> list[Path]:
     """What was handed in and is in one of the two folders."""
     folders = [course.root / base / student / move.assignment for base in _WORK]
-    return [path for path in folders if path.exists()]
+    return [path for path in folders if any(x.is_file() for x in path.rglob("*"))]
 
 
 def _bring_marks(course: Course, moves: Sequence[Move]) -> None:

@@ -73,7 +73,7 @@ class Released:
         if self.outdated:
             lines.append(
                 f"graded with another release: {how_many(self.outdated, 'submission')}; "
-                f"type: labkit grade {self.name}"
+                f"type: labkit grade {self.name}, and with --lower if a mark is then kept"
             )
         return "\n  ".join(lines)
 
@@ -108,6 +108,7 @@ def release(course: Course, name: str, seed: int) -> Released:
     outdated = sum(
         result.hashes["bundle"] != bundle.of_student(result.student).data["hash"]
         for result in Results(course, name)
+        if not result.rejected
     )
     return Released(name, course.release / name, len(questions), points, hidden, by_hand, outdated)
 
