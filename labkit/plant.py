@@ -168,7 +168,7 @@ EVIDENCE = {
     ),
     "armature": Evidence(
         "kg m²",
-        "not published; without rotors the wrist's w2 is unstable at 200 Hz",
+        "not published; without rotors the report's torque gains make w2 unstable at 200 Hz",
         True,
         tuple(0.5 * _ROTORS),
         tuple(2.0 * _ROTORS),

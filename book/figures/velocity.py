@@ -91,7 +91,7 @@ def damping() -> HTML:
         "The error with Kd = 1.1 looks harmless; the command (below, its first 40 ticks) swings "
         "about its mean from tick to tick, further each time, until a limit of the motor holds it.",
         f"Error of joint s0 over two seconds. Measured decay: {'; '.join(told)}. With Kd = 1.1 the "
-        "error leaves the exponential; after 0.1 s the command jumps by "
+        "error leaves the exponential; from 0.1 to 1.5 s the command jumps by "
         f"{swings[0][20]:.2g} rad/s at every tick.",
     )
 

@@ -86,7 +86,9 @@ def cup(make: Callable[[Model], Controller], workspace: bool = False) -> tuple[C
     published = marks()
     for name, mark in sorted((published | {"yours": mine}).items(), key=lambda pair: pair[1]):
         print(f"{mark:8.1f} mm  {name}")
-    print(f"{sum(mine < mark for mark in published.values())} of {len(published)} marks beaten")
+    print(
+        f"{sum(mine < mark for mark in published.values())} of {len(published)} benchmarks beaten"
+    )
     return runs
 
 

@@ -109,8 +109,8 @@ class Watch:
                     way_out = (
                         "it is being ended"
                         if since < GIVES_UP
-                        else "it cannot be ended, perhaps because it has an `except:` without a "
-                        "name; choose Kernel, Restart Kernel"
+                        else "it could not be ended so far: perhaps a bare `except:` in it catches "
+                        "everything. If it goes on, choose Kernel, Restart Kernel"
                     )
                     self._say(f"{self._name} has not returned for {since:.0f} s; {way_out}")
                     ctypes.pythonapi.PyThreadState_SetAsyncExc(

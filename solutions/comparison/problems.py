@@ -938,7 +938,7 @@ VERDICTS = Problem(
             "every claim undecided",
             "Of all claims that are tried here you say undecided. This is right only where the "
             "interval of the differences, pair by pair, holds 0; the intervals of the two rows, each for "
-            "itself, decide nothing. Where it does not hold 0, say which way.",
+            "itself, decide nothing. Where it leaves out 0, say which error is larger.",
             mistakes.never_decided,
             "Undecided is a result, not a way out.",
         ),

@@ -1254,7 +1254,7 @@ CHOOSE_GAINS = Problem(
         Wrong(
             "the same gains in every joint",
             "The last wrist joint has a fortieth of the shoulder's inertia, so gains that are mild at the "
-            "shoulder are fierce at the wrist. Take each joint's own inertia, not one number for all.",
+            "shoulder are fierce at the wrist. Scale the gains with each joint's own inertia, not with one number for all.",
             mistakes.same_for_every_joint,
             "N m/rad means something only beside kg m².",
         ),

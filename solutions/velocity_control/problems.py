@@ -403,8 +403,8 @@ DAMPED_INVERSE = Problem(
         Wrong(
             "no damping",
             "This gives the plain pseudo-inverse, np.linalg.pinv(J), which asks for speeds that no "
-            "joint has when the elbow is nearly straight. Let the damping change every singular "
-            "value; as a limit below which one is left out, it changes nothing here.",
+            "joint has when the elbow is nearly straight. Add the damping times the "
+            "identity to J Jᵀ; as a cut-off for small singular values it changes nothing here.",
             mistakes.undamped,
             "Where no exact inverse exists, its formula does not help.",
         ),
@@ -603,7 +603,7 @@ WORKSPACE_VELOCITY_PD = Problem(
         Wrong(
             "no feed-forward",
             "The target's twist is missing, so the tip stays behind by about the target's speed "
-            "over kp. What is added to the correction is target.twist itself, not its rate.",
+            "over kp. What is added to the correction is target.twist itself, not target.dtwist.",
             mistakes.no_twist,
             "Feedback waits for an error; feed-forward does not.",
         ),

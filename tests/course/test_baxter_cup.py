@@ -69,7 +69,7 @@ def test_the_students_guide_enters_the_cup(monkeypatch, capsys):
     exec(cell.partition("lk.replay")[0], names)
     (run,) = names["runs"]
     said = capsys.readouterr().out
-    assert f"{run.score:8.1f} mm  yours" in said and "of 4 marks beaten" in said
+    assert f"{run.score:8.1f} mm  yours" in said and "of 4 benchmarks beaten" in said
     still = cup_run(lambda model: lambda state, target: lk.JointVelocity(np.zeros(7)), 1)
     assert run.score < still.score < np.inf
 
@@ -96,4 +96,4 @@ def test_an_arm_that_runs_away_beats_no_mark(monkeypatch, capsys):
     runs = play(lambda model: None)
     assert {one.score for one in runs} == {np.inf} and runs[0].log == stopped.log
     said = capsys.readouterr().out
-    assert "inf mm  yours" in said and "0 of 4 marks beaten" in said
+    assert "inf mm  yours" in said and "0 of 4 benchmarks beaten" in said
