@@ -85,7 +85,6 @@ def damping() -> HTML:
     ax.set(xlabel="time [s]", ylabel="error of s0 [rad]")
     below.set(xlabel="time [s]", ylabel="command to s0 [rad/s]", ylim=(0.0, None))
     ax.legend()
-    below.legend()
     return figure(
         "A joint that starts 0.1 rad away, Kp = 2 1/s, ideal arm, 200 Hz. More Kd means slower. "
         "The error with Kd = 1.1 looks harmless; the command (below, its first 40 ticks) swings "
