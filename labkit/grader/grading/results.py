@@ -192,6 +192,11 @@ class Result:
         came = f"{self.score:g} of {self.points:g}"
         return f"{self.student}: {f'rejected; {self.rejected}' if self.rejected else came}"
 
+    @property
+    def asked(self) -> dict[str, float]:
+        """The points of each question that it answers."""
+        return {question.verdict.name: question.verdict.points for question in self.questions}
+
     def falls_from(self, before: Result) -> bool:
         """Whether the same submission had more before, of the questions that both releases ask.
 

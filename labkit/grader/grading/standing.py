@@ -85,11 +85,10 @@ def _counts(
         data, _, _ = Submission.of(course, assignment, student).read()
         if digest(data) != result.hashes["submission"]:
             raise LabkitError(f"handed in again and not graded since; {remedy}")
-        graded = {q.verdict.name: q.verdict.points for q in result.questions}
-        if released is not None and not result.rejected and graded != released:
+        if released is not None and not result.rejected and result.asked != released:
             raise LabkitError(
-                f"{_changed(graded, released)}; type: labkit grade {assignment}, and with --lower "
-                "if a mark is then kept"
+                f"{_changed(result.asked, released)}; type: labkit grade {assignment}, and with "
+                "--lower if a mark is then kept"
             )
     return result
 

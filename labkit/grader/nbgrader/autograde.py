@@ -110,11 +110,6 @@ def _check(course: Course, assignment: str, student: str) -> None:
         raise LabkitError(f"there is a link or a special file, {_foreign(folder)[0]}; remove it")
 
 
-def _asked(result: Result) -> dict[str, float]:
-    """What a result is the answer to: the points of each question."""
-    return {question.verdict.name: question.verdict.points for question in result.questions}
-
-
 _known: dict[tuple[str, str], Result] = {}
 
 
@@ -135,7 +130,7 @@ def _grade(about: dict[str, Any]) -> Result:
             if isinstance(kept, Failure):
                 raise LabkitError(str(kept))
         result = kept.result
-        if _asked(result) != _asked(graded):
+        if result.asked != graded.asked:
             raise LabkitError(f"{result.student}: {kept.says}; type: labkit grade {key[0]} --lower")
         _known[key] = result
     return result
