@@ -3,17 +3,19 @@
 from __future__ import annotations
 
 import time
-from contextlib import suppress
+from collections.abc import Iterator
+from contextlib import contextmanager, suppress
 from typing import Any, Protocol, runtime_checkable
 
 import numpy as np
 
 from .arm import Arm
+from .baxter import as_robot
 from .control import Command, JointPosition, JointTorque, State
-from .errors import ArmLost, LabkitError
+from .errors import ArmLost, LabkitError, TypeMismatch
 from .plant import Plant
 from .robot import Robot
-from .shapes import Array, as_array, as_number
+from .shapes import Array, as_array, as_number, shown
 from .world import whole_steps
 
 SILENCE = 0.2
@@ -96,7 +98,7 @@ class Real:
 
     def __init__(self, arm: RealArm, rate: Any) -> None:
         """Drive ``arm`` at ``rate`` [Hz]."""
-        self._arm, self.robot = arm, arm.robot
+        self._arm, self.robot = arm, as_robot(arm.robot)
         self.plant = getattr(arm, "plant", Plant(name="real"))
         self.period = 1.0 / as_number(rate, "rate", above=0.0)
         self._shape, self._saturated, self._lost = self.robot.zeros.shape, False, False
@@ -111,7 +113,9 @@ class Real:
         return self._at(0.0)
 
     def _at(self, t: float) -> float:
-        self._now = float(self._asked(self._arm.wait, t))
+        now = self._asked(self._arm.wait, t)
+        with self._useful():
+            self._now = as_number(now, "the time from its wait")
         return self._now
 
     def advance(self, k: int) -> tuple[int, float, bool]:
@@ -121,18 +125,14 @@ class Real:
 
     def observe(self) -> tuple[State, State, Array]:
         """The state twice, for nobody knows a truer one, and the torque."""
-        t, *joints = self._asked(self._arm.state)
+        answer = self._asked(self._arm.state)
         torque = self._asked(getattr, self._arm, "torque", self.robot.zeros)
-        names = "q", "dq", "tau_ext", "torque"
-        try:
-            numbers = [
-                as_array(x, self._shape, f"its {name}")
-                for x, name in zip((*joints, torque), names, strict=True)
-            ]
-            t = as_number(t, "the time of its state")
-        except (LabkitError, ValueError) as error:
-            what = f"the arm's answer at t = {self._now:.3f} s cannot be used: {error}"
-            raise ArmLost(f"{what}; {self._rest()}") from error
+        with self._useful():
+            if not isinstance(answer, State):
+                raise TypeMismatch(f"its state is {shown(answer)}, expected lk.State(t, q, dq)")
+            named = zip((*answer[1:], torque), ("q", "dq", "tau_ext", "torque"), strict=True)
+            numbers = [as_array(x, self._shape, f"its {name}") for x, name in named]
+            t = as_number(answer.t, "the time of its state")
         if t != self._latest:
             self._latest, self._since = t, self._now
         elif self._now - self._since > SILENCE:
@@ -172,13 +172,19 @@ class Real:
                 f"the arm stopped answering at t = {self._now:.3f} s ({what}); {self._rest()}"
             ) from error
 
+    @contextmanager
+    def _useful(self) -> Iterator[None]:
+        """Where an answer is read: one that cannot be loses the arm."""
+        try:
+            yield
+        except LabkitError as error:
+            what = f"the arm's answer at t = {self._now:.3f} s cannot be used: {error}"
+            raise ArmLost(f"{what}; {self._rest()}") from error
+
     def _rest(self) -> str:
         """Stop it, if it hears; what became of it."""
         self._lost = True
         with suppress(Exception):
             self._arm.stop()
-            return "it was stopped; the log up to here is in error.log"
-        return (
-            "it could not be told to stop and must come to rest by itself: go and look; the log up "
-            "to here is in error.log"
-        )
+            return "it was told to stop"
+        return "it could not be told to stop and must come to rest by itself: go and look"

@@ -91,19 +91,23 @@ class Unreachable(LabkitError, ValueError):
 
 
 class ControllerError(LabkitError):
-    """A controller or a target returned something that the loop cannot use."""
+    """A controller or a target gave the loop nothing to use; `log` keeps the run up to then."""
+
+    log: object = None
 
 
 class Diverged(ControllerError):
-    """The closed loop ran away; the log up to that moment is kept as `log`."""
-
-    log: object = None
+    """The closed loop ran away."""
 
 
 class ArmLost(LabkitError, RuntimeError):
     """A real arm gave no answer, or one that is not a state; `log` keeps the run up to then."""
 
     log: object = None
+
+    def __str__(self) -> str:
+        kept = "" if self.log is None else "; the log up to here is in error.log"
+        return super().__str__() + kept
 
 
 class NothingKept(LabkitError, LookupError):

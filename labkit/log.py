@@ -142,9 +142,13 @@ class Recorder:
     Joining ten short arrays takes 0.4 us, and copying them into a table of NumPy's takes 5.
     """
 
-    def __init__(self, robot: Robot, plant: Plant, first: AnySample) -> None:
-        """Write down what an arm does, with samples like ``first``."""
-        self._robot, self._plant, self._kind = robot, plant, type(first)
+    kind: type = type(None)
+    """Of the run's commands."""
+
+    def __init__(self, robot: Robot, plant: Plant, controller: str, first: AnySample) -> None:
+        """Write down what a ``controller`` has an arm do, with samples like ``first``."""
+        self._robot, self._plant, self._controller = robot, plant, controller
+        self._sample = type(first)
         joints = (robot.n,)
         # q, dq, torque, command, the target's sample, and q, dq, tau_ext as reported
         self._shapes = [joints] * 4 + [part.shape for part in first] + [joints] * 3
@@ -172,7 +176,7 @@ class Recorder:
         """Write down whether a limit cut what the arm did since the latest tick."""
         self._cut.append(saturated)
 
-    def log(self, command_type: type, controller: str) -> Log:
+    def log(self) -> Log:
         """What was written so far, frozen."""
         n = len(self)
         ends = np.cumsum([prod(shape) for shape in self._shapes])
@@ -189,11 +193,11 @@ class Recorder:
             dq=dq,
             tau=tau,
             command=command,
-            target=self._kind(*others[:3]),
+            target=self._sample(*others[:3]),
             measured=State(locked(np.array(self._reported[:n])), *others[3:]),  # type: ignore[arg-type]
             saturated=saturated,
-            command_type=command_type,
-            controller=controller,
+            command_type=self.kind,
+            controller=self._controller,
             plant=self._plant,
             robot=self._robot,
         )

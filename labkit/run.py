@@ -58,8 +58,8 @@ def run(
 
     Raises:
         ControllerError: The controller or the target raised, or returned something that is not a
-            command or not a sample; it says which and when.
-        Diverged: The arm ran away; the error keeps the `log` up to then.
+            command or not a sample; it says which and when, and keeps the `log` up to then.
+        Diverged: The arm ran away; likewise.
         ArmLost: A real arm stopped answering, or answered with NaN; likewise.
         OutOfRange: The rate does not fit the physics step, or no duration is known.
         TypeMismatch: One of the three is not what it should be.
@@ -77,14 +77,32 @@ def run_driven(
     driven: Simulated | Real, target: Target, controller: Controller, duration: float | None
 ) -> Log:
     """`run`, of what is driven already; `live` has a clock of its own."""
-    robot, period = driven.robot, driven.period
-    who, whom = name_of(controller), f"the target {name_of(target)}"
-    last = _ticks(target, duration, period) - 1
+    last = _ticks(target, duration, driven.period) - 1
+    samples = _Samples(target, f"the target {name_of(target)}")
+    recorder = Recorder(driven.robot, driven.plant, name_of(controller), samples.first)
+    try:
+        _loop(driven, target, controller, last, samples, recorder)
+        log = recorder.log()
+        samples.check_all(log)
+    except (ControllerError, ArmLost) as error:
+        error.log = recorder.log() if len(recorder) else None
+        raise
+    return log
+
+
+def _loop(
+    driven: Simulated | Real,
+    target: Target,
+    controller: Controller,
+    last: int,
+    samples: _Samples,
+    recorder: Recorder,
+) -> None:
+    """Go from tick to tick, up to the ``last``, and leave the arm at rest."""
+    robot, who, whom = driven.robot, name_of(controller), samples.name
     lost = driven.lost_ticks(last + 1)
-    samples = _Samples(target, whom)
-    recorder = Recorder(robot, driven.plant, samples.first)
     kind, k, asked = None, 0, who
-    often = max(1, round(0.005 / period))  # every 5 ms: nothing runs far in so short a time
+    often = max(1, round(0.005 / driven.period))  # every 5 ms: nothing runs far in so short a time
     t = driven.begin()
     try:
         while True:
@@ -94,7 +112,7 @@ def run_driven(
             asked = who
             command = controller(seen[1], sample)
             if type(command) is not kind:
-                kind = _settled(command, kind, who, t)
+                recorder.kind = kind = _settled(command, kind, who, t)
             if command.value.shape != robot.zeros.shape:
                 raise ShapeError(kind.__name__, robot.zeros.shape, command.value.shape)
             recorder.keep(t, seen, command, sample)
@@ -111,14 +129,10 @@ def run_driven(
     except KeyboardInterrupt:
         if not len(recorder):
             raise
-    except Diverged as error:
+    except Diverged:
         driven.recover()
-        error.log = recorder.log(kind or type(None), who)
         raise
-    except ArmLost as error:
-        error.log = recorder.log(kind, who) if kind else None
-        raise
-    except (ControllerError, Closed):
+    except (ControllerError, ArmLost, Closed):
         raise
     except Exception as error:
         samples.read(samples.latest, t)  # was it the target that broke the controller?
@@ -127,9 +141,6 @@ def run_driven(
         ) from error
     finally:
         driven.stop()
-    log = recorder.log(kind or type(None), who)
-    samples.check_all(log)
-    return log
 
 
 def _driven(arm: object, rate: Any) -> Simulated | Real:
@@ -138,7 +149,9 @@ def _driven(arm: object, rate: Any) -> Simulated | Real:
         return Simulated(arm, rate)
     if isinstance(arm, RealArm):
         return Real(arm, rate)
-    raise TypeMismatch(f"arm is {shown(arm)}, expected an Arm: run(arm, target, controller)")
+    lacks = [part for part in ("robot", "state", "apply", "stop", "wait") if not hasattr(arm, part)]
+    hint = f"; as a real arm it lacks {', '.join(lacks)}" if len(lacks) < 4 else ""
+    raise TypeMismatch(f"arm is {shown(arm)}, expected an Arm: run(arm, target, controller){hint}")
 
 
 _FLOAT = np.dtype(np.float64)

@@ -17,7 +17,7 @@ from numpy.testing import assert_allclose
 
 import labkit as lk
 from labkit.arm_adapters import SILENCE, RealArm, WallClock
-from labkit.errors import ArmLost, ControllerError, TypeMismatch
+from labkit.errors import ArmLost, ControllerError, TypeMismatch, UnknownName
 
 SERVER = """
 import json, socket, sys, time
@@ -142,7 +142,7 @@ def test_run_drives_an_arm_in_another_process_in_real_time(tmp_path):
     assert log.plant.name == "real"
     log.save(tmp_path / "run.npz")
     back = lk.Log.load(tmp_path / "run.npz")
-    assert lk.metrics.summary(back).max_mm < 100.0
+    assert lk.metrics.summary(back) == lk.metrics.summary(log)
     assert lk.plotting.describe(back).startswith("Tracking by follow on the real left arm")
     assert lk.replay.motion_of(back, "A real arm").data()["side"] == "left"
 
@@ -167,9 +167,9 @@ def test_commands_are_cut_to_the_limits_before_they_are_sent():
     ("harm", "words"),
     [
         ("hang up", "the arm stopped answering at t = .* log up to here is in error"),
-        ("silence", r"the arm stopped answering at t = .* \(TimeoutError: .*; it was stopped"),
-        ("nan", "the arm's answer at t = .* its q holds nan at index 0; .*; it was stopped"),
-        ("frozen", "the arm's state has not changed since t = .* s; it was stopped"),
+        ("silence", r"the arm stopped answering at t = .* \(TimeoutError: .*; it was told to stop"),
+        ("nan", "the arm's answer at t = .* its q holds nan at index 0; .*; it was told to stop"),
+        ("frozen", "the arm's state has not changed since t = .* s; it was told to stop"),
     ],
 )
 def test_an_arm_that_is_lost_comes_to_rest_and_its_log_is_kept(harm, words):
@@ -191,26 +191,78 @@ def test_whatever_a_controller_does_the_arm_is_stopped():
         return follow(state, target)
 
     with remote() as arm:
-        with pytest.raises(ControllerError, match=r"broken failed at t = .*ZeroDivisionError: oh"):
+        with pytest.raises(ControllerError, match=r"broken failed at .*visionError: oh") as caught:
             lk.run(arm, way(), broken, rate=50.0, duration=10.0)
         assert arm.sent[-1] == "stop"
+    assert len(caught.value.log) == 11
+
+
+class Desk(WallClock):
+    """An arm that only seems to be one."""
+
+    robot = other_arm("ur5")
+    count = stops = 0
+
+    def state(self):
+        self.count += 1
+        return lk.State(float(self.count), self.robot.ready, self.robot.zeros)
+
+    def apply(self, command):
+        pass
+
+    def stop(self):
+        self.stops += 1
+
+
+def nonsense(answer):
+    """A method of the arm that returns ``answer``."""
+    return lambda self, *given: answer
+
+
+def refuses(self, *given):
+    raise ConnectionError("no cable")
+
+
+Q = Desk.robot.ready
+NONSENSE = {
+    "no state": (
+        {"state": nonsense(None)},
+        "t = 0.000 s cannot be used: its state is None .*lk.St",
+    ),
+    "a tuple": ({"state": nonsense((0.0, Q, Q))}, r"its state is \(0.0, .*expected lk.State\(t, q"),
+    "six": ({"state": nonsense(lk.State(0.0, Q[1:], Q))}, "its q has shape .*give 6 numbers"),
+    "no time": ({"wait": nonsense(None)}, "the time from its wait is None .*it was told to stop"),
+    "NaN": ({"wait": nonsense(np.nan)}, "the time from its wait is nan; .*it was told to stop"),
+    "dead": ({"state": refuses, "stop": refuses}, "no cable.*could not be told to stop.* and look"),
+}
+
+
+@pytest.mark.parametrize("case", NONSENSE)
+def test_an_arm_that_answers_nonsense_at_once_is_told_to_stop_and_leaves_no_log(case):
+    """The arm is named, not the target or the controller, and no log is promised."""
+    methods, words = NONSENSE[case]
+    desk = type("Odd", (Desk,), methods)()
+    with pytest.raises(ArmLost, match=words) as caught:
+        lk.run(desk, lk.Hold(Q, 0.1), lambda s, x: lk.JointVelocity(desk.robot.zeros))
+    assert caught.value.log is None
+    assert "error.log" not in str(caught.value)
+    assert desk.stops == (case != "dead")
+
+
+def test_the_log_is_kept_when_the_controller_fails_and_the_arm_cannot_be_told_to_stop():
+    def broken(state, target):
+        if state.t > 5.0:
+            raise ZeroDivisionError("oh")
+        return lk.JointVelocity(np.zeros(6))
+
+    desk = type("Deaf", (Desk,), {"stop": refuses})()
+    with pytest.raises(ArmLost, match=r"could not be told to stop.*is in error\.log") as caught:
+        lk.run(desk, lk.Hold(Q, 0.1), broken)
+    assert len(caught.value.log) == 5
 
 
 def test_a_late_loop_leaves_ticks_out():
     """A controller that sleeps through three periods is asked less often, at the times it is."""
-
-    class Desk(WallClock):
-        robot = other_arm("ur5")
-        count = 0
-
-        def state(self):
-            self.count += 1
-            return lk.State(float(self.count), self.robot.ready, self.robot.zeros)
-
-        def apply(self, command):
-            pass
-
-        stop = lambda self: None  # noqa: E731
 
     def slow(state, target):
         time.sleep(0.035)
@@ -227,3 +279,8 @@ def test_a_late_loop_leaves_ticks_out():
 def test_what_has_not_the_methods_of_an_arm_is_refused():
     with pytest.raises(TypeMismatch, match=r"arm is 'left' \(str\), expected an Arm"):
         lk.run("left", way(), follow)
+    desk = type("Half", (), {"robot": "left", "state": nonsense(None), "stop": nonsense(None)})()
+    with pytest.raises(TypeMismatch, match=r"Half.*; as a real arm it lacks apply, wait"):
+        lk.run(desk, way(), follow)
+    with pytest.raises(UnknownName, match="no arm 'up'; there is 'left', 'right'"):
+        lk.run(type("Odd", (Desk,), {"robot": "up"})(), way(), follow)

@@ -283,6 +283,8 @@ def test_a_controller_that_fails_is_named_with_the_time_and_the_way_out(ideal, n
         lk.run(ideal, still(ideal, 0.5), controller, rate=100)
     assert isinstance(caught.value, LabkitError)
     assert len(str(caught.value)) < 400
+    kept = caught.value.log
+    assert kept is None if name == "too few arguments" else len(kept) == 10 + (name == "limit")
     assert_stopped(ideal)
 
 

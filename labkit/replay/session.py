@@ -11,10 +11,11 @@ import time
 from collections.abc import Callable, Mapping
 from contextlib import suppress
 from queue import Empty, SimpleQueue
-from typing import Any
+from typing import Any, cast
 
 from ..arm import Arm
 from ..arm_adapters import Simulated
+from ..errors import Diverged
 from ..log import Log
 from ..run import run_driven
 from .dials import Dial, Dialled
@@ -146,8 +147,8 @@ class Session(Simulated):
         """Put the arm to rest and say why."""
         self._hand.let_go()
         self.arm.recover()
-        if getattr(error, "log", None) is not None:  # of an arm that ran away
-            self.logs.append(error.log)  # type: ignore[attr-defined]
+        if isinstance(error, Diverged):
+            self.logs.append(cast(Log, error.log))
         self.state, self.note = "stopped", sentence(error, self._law.name)
         self._picture()
 
