@@ -84,7 +84,8 @@ class Motors:
         """
         if self._fresh:
             M, g = self._own.mass_matrix(q), self._own.gravity(q)
-            self._braking = BRAKING * (self._own.robot.effort - np.abs(g)) / M.diagonal()
+            spare = np.maximum(self._own.robot.effort - np.abs(g), 0.0)  # too weak: none
+            self._braking = BRAKING * spare / M.diagonal()
         gain = min(self._plant.position_gain or np.inf, 1.0 / self._dt)
         gap = self._wanted - q
         stops = np.sqrt(2.0 * self._braking * np.abs(gap))
