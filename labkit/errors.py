@@ -83,7 +83,8 @@ class UnknownName(LabkitError, KeyError):
         super().__init__(kind, name, self.known)
 
     def __str__(self) -> str:
-        return f"no {self.kind} {self.name!r:.60}; there is {', '.join(map(repr, self.known))}"
+        known = ", ".join(map(repr, self.known)) or "none"
+        return f"no {self.kind} {self.name!r:.60}; there is {known}"
 
 
 class Unreachable(LabkitError, ValueError):

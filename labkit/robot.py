@@ -167,6 +167,7 @@ class Robot:
             if np.linalg.det(axes) < 0.0:
                 axes[:, 0] = -axes[:, 0]
             xx, yy, zz = moments.tolist()
+            zz = min(zz, (xx + yy) * (1.0 - 1e-12))  # MuJoCo refuses a plate's, if it is rounded up
             name, T = escape(body["joint"]), np.array(body["T_parent"])
             lower, upper, speed, effort = (body[k] for k in ("lower", "upper", "speed", "effort"))
             parts.append(

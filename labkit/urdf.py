@@ -11,18 +11,22 @@ from xml.etree import ElementTree
 import numpy as np
 import pinocchio as pin
 
-from .errors import LabkitError, UnknownName
+from .errors import LabkitError, TypeMismatch, UnknownName
 from .quiet import quiet
-from .shapes import as_vector
+from .shapes import as_vector, shown
 
 _Element = ElementTree.Element
 
 
 def read_urdf(file: Any, tip: str, ready: Any, name: str | None) -> dict[str, Any]:
     """What a `Robot` is made of; see `Robot.from_urdf`."""
-    path = Path(file)
+    try:
+        path = Path(file)
+    except TypeError:
+        raise TypeMismatch(f"file is {shown(file)}, expected the path of a URDF file") from None
     root = _parsed(path)
-    name = name or root.get("name") or path.stem
+    name = str(name or root.get("name") or path.stem)
+    root.set("name", name)  # Pinocchio asks for one
     chain = [joint for joint in _chain(root, tip, path.name) if joint.get("type") != "fixed"]
     limits = [_limits(joint, path.name) for joint in chain]
     if len(chain) < 2:
@@ -38,7 +42,10 @@ def read_urdf(file: Any, tip: str, ready: Any, name: str | None) -> dict[str, An
         with quiet():
             model = pin.buildModelFromXML(ElementTree.tostring(root, encoding="unicode"))
     except (ValueError, RuntimeError) as error:
-        raise LabkitError(f"Pinocchio cannot read {path.name}: {error}") from None
+        raise LabkitError(
+            f"Pinocchio cannot read {path.name} ({error}); the command check_urdf {path.name} says "
+            "what is wrong with it"
+        ) from None
     hand = model.frames[model.getFrameId(tip, pin.FrameType.BODY)].placement
     bodies, turn = _bodies(model, limits, path.name)
     q = as_vector(ready, len(bodies), "ready")
@@ -50,11 +57,13 @@ def _parsed(path: Path) -> _Element:
     try:
         root = ElementTree.parse(path).getroot()
     except OSError as error:
-        raise LabkitError(f"{path} cannot be read: {error.strerror}") from None
+        raise LabkitError(f"{path!s:.200} cannot be read: {error.strerror}") from None
     except ElementTree.ParseError as error:
         raise LabkitError(
             f"{path.name} is not XML ({error}); from a .xacro, the command xacro makes a URDF"
         ) from None
+    if any("xacro" in part.tag for part in root.iter()):
+        raise LabkitError(f"{path.name} is a xacro file; the command xacro makes a URDF of it")
     if root.tag != "robot":
         raise LabkitError(f"{path.name} holds a <{root.tag}>, expected the <robot> of a URDF")
     return root
@@ -128,14 +137,21 @@ def _bodies(
     bodies, before = [], pin.SE3.Identity()
     for i, limit in enumerate(limits, start=1):
         axis = pin.getJointJacobian(model, data, i, pin.LOCAL)[3:, i - 1]
+        if not axis.any():
+            raise LabkitError(
+                f"joint {limit['joint']} of {file} has the axis 0 0 0; write the direction about "
+                'which it turns, such as <axis xyz="0 0 1"/>'
+            )
         to_axis = pin.Quaternion.FromTwoVectors(np.array([0.0, 0.0, 1.0]), axis)
         turn = pin.SE3(to_axis.matrix(), np.zeros(3))
         body = turn.actInv(model.inertias[i])
-        if not (body.mass > 0.0 and np.linalg.eigvalsh(body.inertia)[0] > 0.0):
+        a, b, c = np.linalg.eigvalsh(body.inertia)
+        if not (body.mass > 0.0 and a > 0.0 and a + b >= c * (1.0 - 1e-9)):
             raise LabkitError(
                 f"the links that joint {limit['joint']} of {file} moves have a mass of "
-                f"{body.mass:g} kg and no inertia; nothing can move without: write <inertial> "
-                "with a mass and moments greater than 0 into one of them"
+                f"{body.mass:g} kg and moments of inertia of {a:.3g}, {b:.3g} and {c:.3g} kg m^2; "
+                "each must be greater than 0, and none greater than the sum of the other two: "
+                "correct their <inertial>, or write one into a link that has none"
             )
         place = before.inverse() * model.jointPlacements[i] * turn
         bodies.append({

@@ -13,7 +13,7 @@ from numpy.testing import assert_allclose, assert_array_equal
 
 import labkit as lk
 from labkit.baxter import as_robot
-from labkit.errors import JointLimitExceeded, LabkitError, ShapeError, UnknownName
+from labkit.errors import JointLimitExceeded, LabkitError, ShapeError, TypeMismatch, UnknownName
 from labkit.sim import ENGINES
 from labkit.tags.visuals import capsules, link_frames
 from solutions.study.joint_impedance import JointImpedance
@@ -245,6 +245,32 @@ def test_a_continuous_joint_turns_once_either_way(tmp_path):
     assert_allclose(read(tmp_path, unlimited).lower, [-2.0 * np.pi, -1.0])
 
 
+@pytest.mark.parametrize("engine", [*filter(find_spec, ENGINES)])
+def test_a_flat_body_moves_on_each_engine_however_its_moments_are_rounded(tmp_path, engine):
+    """Of a plate the largest moment is the sum of the others, which rounding may overstep."""
+    for angle in np.linspace(0.1, 1.5, 10):
+        c, s = np.cos(angle), np.sin(angle)
+        xx, yy, xy = 0.03 * c * c + 0.07 * s * s, 0.03 * s * s + 0.07 * c * c, 0.04 * c * s
+        flat = f'<inertia ixx="{xx}" iyy="{yy}" izz="0.1" ixy="{xy}" ixz="0" iyz="0"/>'
+        robot = read(tmp_path, re.sub(r"<inertia .*?/>", flat, ONE))
+        with lk.Arm(robot, world=lk.World(engine=engine)) as arm:
+            arm.world.step()
+
+
+@pytest.mark.filterwarnings("error")
+def test_an_arm_too_weak_for_its_weight_sinks(tmp_path):
+    """It asks its motors for all that they have, and no square root of a negative number."""
+    robot = read(tmp_path, ONE.replace('effort="20"', 'effort="2"'))
+    with lk.Arm(robot, q0=robot.ready) as arm:
+        log = lk.run(arm, lk.Hold(robot.ready, 0.2), lk.control.hold(robot.ready))
+    assert log.q[-1][0] > 0.55
+    assert log.tau[-1][0] == -2.0
+
+
+def test_a_robot_without_a_name_is_called_like_its_file(tmp_path):
+    assert read(tmp_path, ONE.replace(' name="one"', "", 1)).name == "one"
+
+
 def test_the_joints_of_a_gripper_stand_still(tmp_path):
     finger = """<link name="finger"/><joint name="close" type="prismatic"><parent link="hand"/>
         <child link="finger"/><mimic joint="turn"/></joint></robot>"""
@@ -265,7 +291,24 @@ BAD = {
     "it mimics": ((ONE.replace("<limit", '<mimic joint="x"/><limit'),), "mimics another joint"),
     "no inertia": (
         (re.sub("<inertial>.*?</inertial>", "", ONE, flags=re.S),),
-        "turn of one.urdf moves .* 0 kg",
+        "turn of one.urdf moves .* 0 kg.*write one into a link that has none",
+    ),
+    "no such body": (
+        (ONE.replace('ixx="0.01"', 'ixx="0.02"'),),
+        r"moments of inertia of 0\.001, 0\.01 and 0\.02 kg m\^2; .* sum of the other two: correct",
+    ),
+    "no axis": (
+        (ONE.replace('xyz="0 1 0"', 'xyz="0 0 0"'),),
+        "turn of one.urdf has the axis 0 0 0",
+    ),
+    "two links of a name": (
+        (ONE.replace('<link name="hand"/>', '<link name="hand"/><link name="hand"/>'),),
+        "the command check_urdf one.urdf says what is wrong",
+    ),
+    "no links": (("<robot/>",), "no link in one.urdf 'hand'; there is none"),
+    "xacro": (
+        ('<robot xmlns:xacro="http://ros.org/wiki/xacro"><xacro:include filename="x"/></robot>',),
+        "one.urdf is a xacro file; the command xacro makes a URDF",
     ),
     "no limits": ((re.sub("<limit[^>]*>", "", ONE),), "joint turn of one.urdf needs limits"),
     "no effort": ((ONE.replace('effort="20"', ""),), "0 N m; write"),
@@ -289,6 +332,10 @@ def test_what_an_arm_here_cannot_have_is_a_sentence(tmp_path, case):
 def test_bad_arguments_are_sentences(tmp_path):
     with pytest.raises(LabkitError, match=r"no\.urdf cannot be read: No such file"):
         lk.Robot.from_urdf(tmp_path / "no.urdf", tip="hand", ready=[0.0])
+    with pytest.raises(LabkitError, match=r"^<robot.{100,250}$"):
+        lk.Robot.from_urdf(ONE.replace("\n", ""), tip="hand", ready=[0.0])
+    with pytest.raises(TypeMismatch, match=r"file is None .*, expected the path of a URDF file"):
+        lk.Robot.from_urdf(None, tip="hand", ready=[0.0])
     with pytest.raises(ShapeError, match=r"ready .*give 2 numbers, not 3"):
         read(tmp_path, ONE, ready=[0.0, 0.0, 0.0])
     with pytest.raises(JointLimitExceeded, match="ready: joint turn at 3"):
