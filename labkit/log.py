@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 import json
+import zlib
 from dataclasses import asdict, dataclass
 from math import prod
 from pathlib import Path
 from typing import Any
-from zipfile import BadZipFile
+from zipfile import BadZipFile, is_zipfile
 
 import numpy as np
 
@@ -71,6 +72,9 @@ class Log:
         Args:
             path: Where to; a name without ".npz" at its end gets it.
             single: Keep the numbers in single precision: half the size, good to a micrometre.
+
+        Raises:
+            LabkitError: The file cannot be written.
         """
         columns = {name: getattr(self, name) for name in _ROWS}
         for name in ("target", "measured"):
@@ -88,7 +92,12 @@ class Log:
             columns = {
                 x: a if a.dtype == bool else a.astype(np.float32) for x, a in columns.items()
             }
-        np.savez_compressed(path, about=np.array(json.dumps(about)), **columns)
+        try:
+            np.savez_compressed(path, about=np.array(json.dumps(about)), **columns)
+        except OSError as error:
+            raise LabkitError(
+                f"the log cannot be written to {path}: {error.strerror}; save it somewhere else"
+            ) from None
 
     @classmethod
     def load(cls, path: Any) -> Log:
@@ -98,20 +107,28 @@ class Log:
             LabkitError: The file cannot be read, holds no log, or holds that of another labkit.
         """
         path = Path(path)
-        if not path.exists() and not path.suffix:
-            path = path.with_suffix(".npz")  # as `save` called it
+        if not path.exists() and path.suffix != ".npz":
+            path = path.with_name(f"{path.name}.npz")  # as `save` called it
         if not path.exists():
             raise LabkitError(f"there is no file {path}; log.save(...) writes one")
         try:
+            if not is_zipfile(path):
+                raise ValueError("it is not a .npz file, or not a whole one")
             with np.load(path) as file:
                 about = json.loads(str(file["about"]))
                 columns: dict[str, Any] = {x: file[x] for x in file.files if x != "about"}
             check_stamp(stamp() | about, str(path), "run it again")  # the first ones have no number
             return cls(**_read(about, columns))
-        except (OSError, EOFError, ValueError, KeyError, TypeError, BadZipFile) as error:
-            raise LabkitError(f"{path} is not a log that labkit saved: {error}") from None
+        except _UNREADABLE as error:
+            raise LabkitError(
+                f"{path} is not a log that labkit saved, or is damaged: {error}; take the file "
+                "that log.save(...) wrote, or run it again"
+            ) from None
 
 
+_UNREADABLE = (
+    OSError, EOFError, ValueError, KeyError, TypeError, RuntimeError, BadZipFile, zlib.error,
+)  # fmt: skip
 _ROWS = ("t", "q", "dq", "tau", "command", "saturated")
 
 

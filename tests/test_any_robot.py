@@ -2,6 +2,7 @@
 
 import pickle
 import re
+from contextlib import suppress
 from importlib.util import find_spec
 
 import numpy as np
@@ -166,8 +167,29 @@ def test_a_file_that_is_no_log_is_a_sentence(tmp_path, harm):
     with pytest.raises(LabkitError, match=r"there is no file .*run\.npz; log\.save"):
         lk.Log.load(path)
     path.write_bytes(harm)
-    with pytest.raises(LabkitError, match=r"run\.npz is not a log that labkit saved"):
+    with pytest.raises(LabkitError, match=r"not a log.* it is not a \.npz file.* run it again"):
         lk.Log.load(path)
+
+
+def test_a_damaged_log_is_a_sentence_or_a_log_wherever_the_damage_is(tmp_path, random):
+    path, q = tmp_path / "run.npz", lk.robot("left").ready
+    with lk.Arm(q0=q) as arm:
+        lk.run(arm, lk.Hold(q, 0.05), lk.control.hold(q)).save(path)
+    good = path.read_bytes()
+    for at in random.integers(0, len(good), 200):
+        path.write_bytes(good[:at] + bytes([good[at] ^ 0x55]) + good[at + 1 :])
+        with suppress(LabkitError):
+            assert len(lk.Log.load(path)) == 11
+
+
+def test_a_log_is_found_by_the_name_it_was_saved_by(tmp_path):
+    q = lk.robot("left").ready
+    with lk.Arm(q0=q) as arm:
+        log = lk.run(arm, lk.Hold(q, 0.05), lk.control.hold(q))
+    log.save(tmp_path / "kp=2.5")
+    assert len(lk.Log.load(tmp_path / "kp=2.5")) == len(log)
+    with pytest.raises(LabkitError, match=r"cannot be written to .*: No such file .*; save it"):
+        log.save(tmp_path / "nowhere" / "run.npz")
 
 
 def test_a_robot_is_a_value_that_travels(robot):
