@@ -365,6 +365,7 @@ def test_a_controller_that_wants_joints_and_gets_points_is_told_so(ideal):
     ("given", "words"),
     [
         ({"rate": 300.0}, "rate is 300 Hz.*whole number; try 333.333 Hz"),
+        ({"rate": 999.0}, r"its period is 1\.001 physics steps"),
         ({"rate": 5000.0}, "rate is 5000 Hz.*try 1000 Hz"),
         ({"rate": 0.0}, "rate is 0, it must be greater than 0"),
         ({"rate": -200.0}, "rate is -200, it must be greater than 0"),
