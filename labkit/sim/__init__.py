@@ -33,8 +33,8 @@ def chosen(name: str | None = None) -> str:
     if find_spec(name) is None:
         others = ", ".join(installed()) or "none"
         raise LabkitError(
-            f"the engine {ENGINES[name]} is not installed here: pip install {name}; "
-            f"installed: {others}"
+            f"the engine {ENGINES[name]} is not installed here: pip install {name}, which needs a "
+            f"compiler where there is no wheel of it; or take one that is installed: {others}"
         )
     return name
 
