@@ -149,7 +149,7 @@ def _bodies(
         if not (body.mass > 0.0 and a > 0.0 and a + b >= c * (1.0 - 1e-9)):
             raise LabkitError(
                 f"the links that joint {limit['joint']} of {file} moves have a mass of "
-                f"{body.mass:g} kg and moments of inertia of {a:.3g}, {b:.3g} and {c:.3g} kg m^2; "
+                f"{body.mass:g} kg and moments of inertia of {a:.6g}, {b:.6g} and {c:.6g} kg m^2; "
                 "each must be greater than 0, and none greater than the sum of the other two: "
                 "correct their <inertial>, or write one into a link that has none"
             )

@@ -316,8 +316,8 @@ BAD = {
         "turn of one.urdf moves .* 0 kg.*write one into a link that has none",
     ),
     "no such body": (
-        (ONE.replace('ixx="0.01"', 'ixx="0.02"'),),
-        r"moments of inertia of 0\.001, 0\.01 and 0\.02 kg m\^2; .* sum of the other two: correct",
+        (ONE.replace('ixx="0.01"', 'ixx="0.0110001"'),),
+        r"moments of inertia of 0\.001, 0\.01 and 0\.0110001 kg m\^2; .* sum of the other two: correct",
     ),
     "no axis": (
         (ONE.replace('xyz="0 1 0"', 'xyz="0 0 0"'),),
