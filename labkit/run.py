@@ -81,7 +81,7 @@ def run_driven(
     samples = _Samples(target, f"the target {name_of(target)}")
     recorder = Recorder(driven.robot, driven.plant, name_of(controller), samples.first)
     try:
-        _loop(driven, target, controller, last, samples, recorder)
+        _loop(driven, controller, last, samples, recorder)
         log = recorder.log()
         samples.check_all(log)
     except (ControllerError, ArmLost) as error:
@@ -92,14 +92,13 @@ def run_driven(
 
 def _loop(
     driven: Simulated | Real,
-    target: Target,
     controller: Controller,
     last: int,
     samples: _Samples,
     recorder: Recorder,
 ) -> None:
     """Go from tick to tick, up to the ``last``, and leave the arm at rest."""
-    robot, who, whom = driven.robot, name_of(controller), samples.name
+    robot, who, whom, target = driven.robot, name_of(controller), samples.name, samples.target
     lost = driven.lost_ticks(last + 1)
     kind, k, asked = None, 0, who
     often = max(1, round(0.005 / driven.period))  # every 5 ms: nothing runs far in so short a time
@@ -162,7 +161,7 @@ class _Samples:
 
     def __init__(self, target: Target, name: str) -> None:
         """Take the first sample, which settles what the others must be."""
-        self.name = name
+        self.target, self.name = target, name
         try:
             sample: Any = target(0.0)
         except Exception as error:
