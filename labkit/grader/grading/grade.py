@@ -37,7 +37,6 @@ from .results import (
     OwnCell,
     Result,
     engine,
-    versions,
 )
 
 ADDED = (
@@ -166,7 +165,6 @@ def _ungraded(student: str, bundle: Bundle, level: str, data: bytes) -> Result:
         bundle.data["seed"],
         hashes(data, bundle),
         isolation=level,
-        versions=versions(),
     )
 
 
