@@ -160,8 +160,10 @@ def test_a_mark_falls_by_the_share_of_what_both_releases_ask(course):
     assert half.falls_from(full) and not full.falls_from(half)
     cheaper = changed(full, 0, {"points": 1.0, "earned": 1.0})
     dearer = changed(full, 0, {"points": 9.0, "earned": 9.0})
-    new = changed(full, 0, {"name": "new", "earned": 0.0})
-    for one in (cheaper, dearer, new, replace(full, questions=full.questions[1:])):
+    points = full.questions[0].verdict.points
+    left = full.points - points
+    fewer = replace(full, questions=full.questions[1:], score=left, points=left)
+    for one in (cheaper, dearer, fewer):
         assert not one.falls_from(full) and not full.falls_from(one)
     assert changed(dearer, 0, {"earned": 8.0}).falls_from(full)
     for asked in ({"name": "late"}, {"points": 0.0, "earned": 0.0}):
@@ -172,6 +174,19 @@ def test_a_mark_falls_by_the_share_of_what_both_releases_ask(course):
     assert not result_of(course, "ada", share=0.5, data=b"another").falls_from(full)
     unread = result_of(course, "ada", rejected="it cannot be opened", data=b"")
     assert unread.falls_from(full), "what nobody could read is not another submission"
+
+
+def test_a_question_that_is_renamed_takes_no_points_with_it_unasked(course):
+    """What was earned by the old name counts in the share of the whole; --diff names it."""
+    full, half = result_of(course, "ada"), result_of(course, "ada", share=0.5)
+    points = full.questions[0].verdict.points
+    new = replace(changed(full, 0, {"name": "new", "earned": 0.0}), score=full.score - points)
+    assert new.falls_from(full) and not full.falls_from(new)
+    renamed = changed(half, 0, {"name": "new"})
+    assert not renamed.falls_from(half) and not half.falls_from(renamed)
+    name = full.questions[0].verdict.name
+    assert str(Change(full, new)).endswith(f"({name} {points:g} -> not asked)")
+    assert next(summary([Change(full, new)])) == str(Change(full, new))
 
 
 def test_a_fall_in_per_cent_alone_is_listed(course):

@@ -46,6 +46,8 @@ class Change:
             for v in (q.verdict for q in self.after.questions)
             if v.earned != each.get(v.name, 0.0)
         ]
+        gone = [name for name in each if name not in self.after.asked]
+        parts += [f"{name} {each[name]:g} -> not asked" for name in gone if each[name]]
         says = f" ({'; '.join(parts)})" if parts else ""
         was, now = self.before, self.after
         some = f"{was.score:g} -> {now.score:g}, {self.by:+g}"

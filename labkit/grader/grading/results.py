@@ -193,8 +193,9 @@ class Result:
         """Whether the same submission had more before, of the questions that both releases ask.
 
         A release can change what a question is worth, so the share of each question is compared,
-        times its points now; with the same points that is the mark.  A file that could not be read
-        is not taken for another submission.
+        times its points now; with the same points that is the mark.  A question that earned
+        something and is not asked any more may only be called otherwise now; the share of the whole
+        is then compared, too.  A file that could not be read is not taken for another submission.
         """
         unread = bool(self.rejected) and self.hashes["submission"] == _NOTHING
         if before.hashes["submission"] != self.hashes["submission"] and not unread:
@@ -205,7 +206,12 @@ class Result:
         both = [name for name in mine if name in theirs and theirs[name].points]
         was = sum(theirs[x].earned / theirs[x].points * mine[x].points for x in both)
         rounded = 0.01 * sum(theirs[x].points != mine[x].points for x in both)
-        return sum(mine[x].earned for x in both) < was - rounded - 1e-6
+        if sum(mine[x].earned for x in both) < was - rounded - 1e-6:
+            return True
+        earned, points = (sum(getattr(v, x) for v in theirs.values()) for x in ("earned", "points"))
+        gone = any(v.earned for name, v in theirs.items() if name not in mine)
+        share = earned / points * self.points if gone else 0.0
+        return self.score < share - 0.01 * len(mine)
 
     @property
     def unanswered(self) -> str:
