@@ -8,18 +8,19 @@ import json
 import re
 import shutil
 from dataclasses import replace
+from functools import partial
 
 import pytest
 from made import NAME, changed, graded, handed_in, notebook_of, result_of
 
 from labkit.__main__ import main
 from labkit.errors import LabkitError
-from labkit.grader.grading.batch import common_failures
+from labkit.grader.grading.batch import GradeOptions, common_failures, keep
 from labkit.grader.grading.changes import Change, summary
 from labkit.grader.grading.results import OTHER_NOTEBOOK, Results
 from labkit.grader.marks.export import LAYOUTS
 from labkit.grader.nbgrader import autograde
-from labkit.grader.nbgrader.gradebook import open_gradebook
+from labkit.grader.nbgrader.gradebook import open_gradebook, recorded
 from labkit.grader.students.identity import remember
 from labkit.grader.students.platforms import LmsUser
 
@@ -77,6 +78,11 @@ def recorded_otherwise(course):
 def damaged(course):
     path = Results(course, NAME).path("ada")
     path.write_text(path.read_text()[:200])
+
+
+def older(course):
+    path = Results(course, NAME).path("ada")
+    path.write_text(json.dumps(json.loads(path.read_text()) | {"format": 1}))
 
 
 def handed_in_again(course):
@@ -187,6 +193,25 @@ def test_a_question_that_is_renamed_takes_no_points_with_it_unasked(course):
     name = full.questions[0].verdict.name
     assert str(Change(full, new)).endswith(f"({name} {points:g} -> not asked)")
     assert next(summary([Change(full, new)])) == str(Change(full, new))
+
+
+@pytest.mark.parametrize("fault", [damaged, older])
+def test_a_mark_does_not_fall_because_its_result_cannot_be_read(marked, fault):
+    """The gradebook has the mark: a lower one needs --lower, and the old file stays until then."""
+    fault(marked)
+    results, lower = Results(marked, NAME), result_of(marked, "ada", share=0.5)
+    before = results.path("ada").read_bytes()
+    options = GradeOptions(recorded=partial(recorded, marked, NAME))
+    says = f"has 22 for what earns 11 now; .* type: labkit grade {NAME} --student ada --lower$"
+    with pytest.raises(LabkitError, match=says):
+        keep(results, lower, options)
+    with pytest.raises(LabkitError, match=r"has \d+ for what earns 0 now"):
+        keep(results, result_of(marked, "ada", rejected="the file is empty"), options)
+    assert results.path("ada").read_bytes() == before
+    assert keep(results, lower, replace(options, lower=True)).result == lower
+    fault(marked)
+    full = result_of(marked, "ada")
+    assert keep(results, full, options).result == full == results.get("ada")
 
 
 def test_a_fall_in_per_cent_alone_is_listed(course):

@@ -88,6 +88,19 @@ def _record(course: Course, book: Any, source: Any, result: Result) -> list[str]
     return notes
 
 
+def recorded(course: Course, assignment: str, student: str) -> dict[str, float]:
+    """What a student's questions earned by the machine, as it was recorded last."""
+    from nbgrader.api import MissingEntry
+
+    with open_gradebook(course) as book:
+        try:
+            submission = book.find_submission(assignment, student)
+        except MissingEntry:
+            return {}
+        grades = [grade for notebook in submission.notebooks for grade in notebook.grades]
+        return {question_of(g.name): float(g.auto_score) for g in grades if g.auto_score}
+
+
 def _changed(path: Path, notebook: Any) -> set[str]:
     """Cells marked by hand that say something else than when they were last recorded."""
     try:
