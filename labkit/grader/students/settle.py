@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+import shutil
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
 from ...course.authoring.layout import Course
+from ..each import Failure
 from ..grading.results import Results
 from ..nbgrader.gradebook import open_gradebook
 from .attempts import FOLDER
@@ -27,19 +29,20 @@ class Move:
     new: str
 
 
-def settle(course: Course, roster: Roster) -> list[str]:
+def settle(course: Course, roster: Roster) -> list[Failure]:
     """Bring all work to those whom the roster has come to know since it was collected.
 
     Returns:
-        What a person should look at, a sentence each.
+        Which folders stayed, and why.
     """
-    left: list[str] = []
+    left: list[Failure] = []
     collected = all_lms_users(course)
     for assignment, people in collected.items():
         found = places(people.values(), assignment, collected, roster)
-        moved = {folder: found[one.key].folder for folder, one in people.items()}
-        left += bring(course, [Move(assignment, old, new) for old, new in moved.items()])
-        remember(course, assignment, {moved[x]: who for x, who in people.items() if moved[x] != x})
+        moves = [Move(assignment, old, found[one.key].folder) for old, one in people.items()]
+        left += bring(course, moves)
+        gone = [x for x in moves if x.old != x.new and not _work(course, x.old, assignment)]
+        remember(course, assignment, {x.new: people[x.old] for x in gone})
     return left
 
 
@@ -49,46 +52,48 @@ def strangers(course: Course, roster: Roster) -> list[str]:
     return sorted(name for name in found if name not in roster)
 
 
-def bring(course: Course, moves: Iterable[Move]) -> list[str]:
+def bring(course: Course, moves: Iterable[Move]) -> list[Failure]:
     """Take work from one folder to another, and then its marks, also those by hand.
 
     Where both folders have work nothing moves: the two may be of two people, as who they are may be
     known by a name alone.
 
     Returns:
-        What stayed where it was, a sentence each.
+        Which folders stayed, and why.
     """
     moves = [move for move in moves if move.old and move.old != move.new]
     for move in moves:
-        both = _work(course, move, move.old) and _work(course, move, move.new)
+        both = all(_work(course, who, move.assignment) for who in (move.old, move.new))
         for base in () if both else (*_WORK, *_MADE_OF_IT):
             source = course.root / base / move.old / move.assignment
             target = course.root / base / move.new / move.assignment
-            if target.is_dir() and not any(target.iterdir()):
-                target.rmdir()
+            if target.is_dir() and all(path.is_dir() for path in target.rglob("*")):
+                shutil.rmtree(target)  # nothing but folders
             if source.exists() and not target.exists():
                 target.parent.mkdir(parents=True, exist_ok=True)
                 source.rename(target)
                 if not any(source.parent.iterdir()):
                     source.parent.rmdir()
-    _bring_marks(course, [move for move in moves if not _work(course, move, move.old)])
-    said: list[str] = []
+    _bring_marks(course, [x for x in moves if not _work(course, x.old, x.assignment)])
+    said: list[Failure] = []
     for move in moves:
         result = Results(course, move.assignment).path(move.old)
-        left = [*_work(course, move, move.old), *[result] * result.exists()]
+        left = [*_work(course, move.old, move.assignment), *[result] * result.exists()]
         if left:
             names = " and ".join(str(path.relative_to(course.root)) for path in left)
-            said.append(
+            says = (
                 f"{names}: left there, as the same student has work in {move.new} too; to keep "
                 "both, collect the same downloads again, which brings each file to its student; "
-                "then move what was left away"
+                f"then give {move.new} again what {move.old} was given by hand in formgrader, and "
+                "move what was left away"
             )
+            said.append(Failure(move.old, says))
     return said
 
 
-def _work(course: Course, move: Move, student: str) -> list[Path]:
-    """What was handed in and is in one of the two folders."""
-    folders = [course.root / base / student / move.assignment for base in _WORK]
+def _work(course: Course, student: str, assignment: str) -> list[Path]:
+    """Folders of what a student handed in, where they hold a file."""
+    folders = [course.root / base / student / assignment for base in _WORK]
     return [path for path in folders if any(x.is_file() for x in path.rglob("*"))]
 
 
