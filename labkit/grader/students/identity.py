@@ -36,7 +36,7 @@ _TOLD_APART = {
     "exchange": "you import a list with each student's login",
     "files": "the file is named by the student's login, address or number, and collected again",
 }
-"""How those whom a platform calls alike are told apart."""
+"""What distinguishes people whom a platform calls alike."""
 _READ_GREEDILY = re.compile(r"([^_/]*)_([0-9]+)_assignsubmission_file")
 
 
