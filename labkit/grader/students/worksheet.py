@@ -16,7 +16,7 @@ from .attempts import Attempt, Counted, attempts, counts, install, keep
 from .class_list import Entry, Student
 from .identity import lms_users, remember
 from .platforms import LmsUser
-from .settle import Move, bring
+from .settle import bring
 
 
 def keep_numbers(
@@ -29,7 +29,8 @@ def keep_numbers(
     """
     mine = {s.id: LmsUser("moodle", e.participant, s.name) for e, s in rows if e.participant}
     before = {one.key: folder for folder, one in lms_users(course, assignment).items()}
-    left = bring(course, (Move(assignment, before.get(x.key, ""), id) for id, x in mine.items()))
+    moves = {before[x.key]: id for id, x in mine.items() if x.key in before}
+    left = bring(course, assignment, moves)
     remember(course, assignment, mine)
     return left
 
