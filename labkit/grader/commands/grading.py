@@ -41,14 +41,10 @@ jobs = click.option(
 @click.option("--diff", is_flag=True, help="Change no mark; list the marks that would change.")
 @click.option("--watch", is_flag=True, help="Keep grading new hand-ins until you press Ctrl-C.")
 @click.option(
-    "--lower",
-    is_flag=True,
-    help="After a test has changed, also record marks that become lower.",
+    "--lower", is_flag=True, help="After a test has changed, also record marks that become lower."
 )
 @click.option(
-    "--dask",
-    metavar="ADDRESS",
-    help="Address of a Dask scheduler whose workers share this folder.",
+    "--dask", metavar="ADDRESS", help="Address of a Dask scheduler whose workers share this folder."
 )
 @click.option(
     "--unsafe-no-isolation",

@@ -68,11 +68,10 @@ def changes(
     """
     bundle, now = Bundle.of(course, assignment), Results(course, assignment)
     _refuse_unreleased(course, assignment)
-    aside = now.aside
     todo: list[Submission] = []
     for student in students:
         submission = Submission.of(course, assignment, student)
-        done = still_good((aside, now), submission, bundle, options)
+        done = still_good((now.aside, now), submission, bundle, options)
         if done is None:
             todo.append(submission)
         else:
@@ -81,11 +80,12 @@ def changes(
         if isinstance(result, Failure):
             yield result
         else:
-            kept = for_student(result.student, partial(aside.keep, result))
-            if isinstance(kept, Failure):  # a name that is too long, a full disk
-                yield kept
-            else:
-                yield Change(now.get(result.student), result)
+            yield for_student(result.student, partial(_kept_aside, now, result))
+
+
+def _kept_aside(now: Results, result: Result) -> Change:
+    now.aside.keep(result)
+    return Change(now.get(result.student), result)
 
 
 def _refuse_unreleased(course: Course, assignment: str) -> None:
