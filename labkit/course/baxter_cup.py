@@ -27,7 +27,7 @@ from ..trajectory import AnySample, Chain, PosePath, Target, Trajectory
 from ..world import World
 
 PUBLIC_SEEDS = (1, 2, 3)
-MARKS = {
+BENCHMARKS = {
     "feed-forward only": (56.27, 61.89, 58.7),
     "joint impedance": (72.36, 56.67, 70.24),
     "joint torque": (25.19, 20.17, 25.62),
@@ -64,14 +64,14 @@ class CupRun:
     log: Log
 
 
-def marks() -> dict[str, float]:
-    """The published marks, in [mm], the lowest first."""
-    means = {name: float(np.mean(scores)) for name, scores in MARKS.items()}
+def benchmarks() -> dict[str, float]:
+    """The published benchmarks, in [mm], the lowest first."""
+    means = {name: float(np.mean(scores)) for name, scores in BENCHMARKS.items()}
     return dict(sorted(means.items(), key=lambda pair: pair[1]))
 
 
 def cup(make: Callable[[Model], Controller], workspace: bool = False) -> tuple[CupRun, ...]:
-    """Run a controller on the public seeds and print its scores beside the published marks.
+    """Run a controller on the public seeds and print its scores beside the benchmarks.
 
     Args:
         make: A function of the model that returns a fresh controller, a function of state and
@@ -83,11 +83,11 @@ def cup(make: Callable[[Model], Controller], workspace: bool = False) -> tuple[C
     """
     runs = tuple(cup_run(make, seed, workspace) for seed in PUBLIC_SEEDS)
     mine = float(np.mean([one.score for one in runs]))
-    published = marks()
-    for name, mark in sorted((published | {"yours": mine}).items(), key=lambda pair: pair[1]):
-        print(f"{mark:8.1f} mm  {name}")
+    published = benchmarks()
+    for name, score in sorted((published | {"yours": mine}).items(), key=lambda pair: pair[1]):
+        print(f"{score:8.1f} mm  {name}")
     print(
-        f"{sum(mine < mark for mark in published.values())} of {len(published)} benchmarks beaten"
+        f"{sum(mine < score for score in published.values())} of {len(published)} benchmarks beaten"
     )
     return runs
 

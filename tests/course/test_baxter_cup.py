@@ -1,4 +1,4 @@
-"""The Baxter Cup: the same draw for everybody, a tag known by old pictures, marks that were run."""
+"""The Baxter Cup: one draw for everybody, a tag known by old pictures, benchmarks that were run."""
 
 from __future__ import annotations
 
@@ -12,8 +12,8 @@ import labkit as lk
 from labkit.course import cup as play
 from labkit.course.baxter_cup import (
     AGE,
+    BENCHMARKS,
     BOX,
-    MARKS,
     PICTURES,
     PUBLIC_SEEDS,
     _sampled_and_delayed,
@@ -61,7 +61,7 @@ def test_of_the_tag_only_the_last_picture_is_known():
 
 @pytest.mark.slow
 def test_the_students_guide_enters_the_cup(monkeypatch, capsys):
-    """The guide's own cell runs; its score stands among the marks; a still arm scores worse."""
+    """The guide's own cell runs; its score stands among theirs; a still arm scores worse."""
     monkeypatch.setattr("labkit.course.baxter_cup.PUBLIC_SEEDS", PUBLIC_SEEDS[:1])
     text = (ROOT / "book/student_guide.md").read_text().partition("## The Baxter Cup")[2]
     (cell,) = re.findall(r"```python\n(.*?)```", text, re.DOTALL)
@@ -75,16 +75,16 @@ def test_the_students_guide_enters_the_cup(monkeypatch, capsys):
 
 
 @pytest.mark.soak
-@pytest.mark.parametrize("name", MARKS)
-def test_the_published_marks_are_what_the_laws_score(name):
+@pytest.mark.parametrize("name", BENCHMARKS)
+def test_the_benchmarks_are_what_the_laws_score(name):
     """On every public seed, to what two engines may differ by."""
     from solutions.study.cup import score
 
     found = [score(name, seed) for seed in PUBLIC_SEEDS]
-    np.testing.assert_allclose(found, MARKS[name], atol=0.1)
+    np.testing.assert_allclose(found, BENCHMARKS[name], atol=0.1)
 
 
-def test_an_arm_that_runs_away_beats_no_mark(monkeypatch, capsys):
+def test_an_arm_that_runs_away_beats_no_benchmark(monkeypatch, capsys):
     """Its score is infinite, and its log is kept."""
     stopped = Diverged("the arm ran away")
     stopped.log = "the log up to then"

@@ -12,7 +12,7 @@ from handmade import hand_in
 from labkit import Sample, State
 from labkit.__main__ import main
 from labkit.course.authoring.layout import CUP, DEFENCE
-from labkit.course.baxter_cup import MARKS, PUBLIC_SEEDS
+from labkit.course.baxter_cup import BENCHMARKS, PUBLIC_SEEDS
 from labkit.grader.cup import entries as cup
 from labkit.grader.cup.entries import A_DAY, SEEDS, Entry, entries, latest, play, seeds
 from labkit.grader.cup.table import as_text, give_bonus, page
@@ -166,7 +166,7 @@ def test_a_handle_has_three_runs_a_day_and_each_begins_anew(course, instant):
     assert [x.student for x in play(course, TOMORROW, final=False)] == ["ada"]
 
 
-def test_the_final_has_other_seeds_and_its_marks_beaten_are_extra_credit(
+def test_the_final_has_other_seeds_and_benchmarks_beaten_are_extra_credit(
     course, instant, tmp_path, capsys
 ):
     """Board, final and public seeds differ, as terms do; the bonus reaches the term's table."""
@@ -184,13 +184,13 @@ def test_the_final_has_other_seeds_and_its_marks_beaten_are_extra_credit(
     }
     slow = replace(entry, student="bob", handle="bob", scores=(50.0,) * SEEDS)
     give_bonus(course, [entry, slow])
-    assert entry.beaten == len(MARKS)
+    assert entry.beaten == len(BENCHMARKS)
     bonus = list(marks_of(course, CUP))
     assert {x.student: (x.score, x.points) for x in bonus} == {"ada": (4.0, 0.0), "bob": (2.0, 0.0)}
     table = of_term({CUP: bonus, "01_paths": [replace(x, points=10.0, raw=5.0) for x in bonus]},
                     {CUP: 0.5, "01_paths": 1.0})  # fmt: skip
     assert [row[-1] for row in table[3:]] == [52.0, 51.0]
-    assert "mark: joint torque" in "\n".join(as_text([slow]))
+    assert "benchmark: joint torque" in "\n".join(as_text([slow]))
 
 
 def test_other_verbs_name_the_cups_own(course, capsys):

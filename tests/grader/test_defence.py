@@ -121,7 +121,9 @@ def test_what_cannot_be_asked_or_marked_is_a_sentence(course, solved, capsys):
     hand_in(course, NAME, "bob", solved)
     Results(course, NAME).keep(result_of(course, "bob", share=0.5, data=raw(solved)))
     save_roster(course, Roster((Student("Ada-Lovelace", "Ada", "Lovelace"),)))
+    nothing = "and no mark to enter; --absent-zero of labkit export counts the missing defence as 0"
     for words, sentence in [
+        (["Ada-Lovelace"], f"handed in nothing, so there is nothing to ask about {nothing}"),
         (["zoe"], "there is no student 'zoe'"),
         (["bbo"], "name of the student's folder; did you mean bob?"),
         (["ada-lovelce"], "name of the student's folder; did you mean Ada-Lovelace?"),

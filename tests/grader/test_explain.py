@@ -71,8 +71,8 @@ def test_a_mark_that_was_kept_after_a_test_changed_is_told_as_kept(course, solve
     words = [NAME, "--course", str(course.root)]
     hand_in(course, NAME, "ada", solved)
     assert main(["grade", *words]) == 0
-    path = course.bundle / f"{NAME}.json"
-    data = json.loads(path.read_text())
+    path, kept = course.bundle / f"{NAME}.json", course.results / NAME / "ada.json"
+    data, first = json.loads(path.read_text()), json.loads(kept.read_text())
     (witness,) = [question for question in data["questions"] if question["name"] == "witness"]
     hidden = witness["tests"]["items"][0]["cases"]["items"][-1]
     hidden["expected"] = [[0.0, 0.1]]  # so that the right answer is wrong
@@ -81,9 +81,15 @@ def test_a_mark_that_was_kept_after_a_test_changed_is_told_as_kept(course, solve
     assert "kept; --lower lets it fall" in capsys.readouterr().out
     assert main(["explain", "ada", "witness", *words[1:]]) == 0
     said = " ".join(capsys.readouterr().out.split())
-    assert "has changed since this mark was made: now the answer earns 0 of 2" in said
+    earns = "has changed: now the answer earns 0 of 2"
+    assert f"Since this mark was made the release {earns}" in said
     assert f"type: labkit grade {NAME} --student ada, and with --lower" in said
     assert "ATTENTION" not in said and "The hidden case that decided" not in said
+    other = first["hashes"] | {"engine": "0" * 64, "bundle": "0" * 64}
+    kept.write_text(json.dumps(first | {"hashes": other}))
+    assert main(["explain", "ada", "witness", *words[1:]]) == 0
+    said = " ".join(capsys.readouterr().out.split())
+    assert f"Since this mark was made labkit {earns}" in said and "ATTENTION" not in said
 
 
 @pytest.mark.slow

@@ -8,18 +8,19 @@ import json
 import re
 import shutil
 from dataclasses import replace
+from functools import partial
 
 import pytest
 from made import NAME, changed, graded, handed_in, notebook_of, result_of
 
 from labkit.__main__ import main
 from labkit.errors import LabkitError
-from labkit.grader.grading.batch import common_failures
+from labkit.grader.grading.batch import GradeOptions, common_failures, keep
 from labkit.grader.grading.changes import Change, summary
 from labkit.grader.grading.results import OTHER_NOTEBOOK, Results
 from labkit.grader.marks.export import LAYOUTS
 from labkit.grader.nbgrader import autograde
-from labkit.grader.nbgrader.gradebook import open_gradebook
+from labkit.grader.nbgrader.gradebook import open_gradebook, recorded
 from labkit.grader.students.identity import remember
 from labkit.grader.students.platforms import LmsUser
 
@@ -77,6 +78,11 @@ def recorded_otherwise(course):
 def damaged(course):
     path = Results(course, NAME).path("ada")
     path.write_text(path.read_text()[:200])
+
+
+def older(course):
+    path = Results(course, NAME).path("ada")
+    path.write_text(json.dumps(json.loads(path.read_text()) | {"format": 1}))
 
 
 def handed_in_again(course):
@@ -160,8 +166,10 @@ def test_a_mark_falls_by_the_share_of_what_both_releases_ask(course):
     assert half.falls_from(full) and not full.falls_from(half)
     cheaper = changed(full, 0, {"points": 1.0, "earned": 1.0})
     dearer = changed(full, 0, {"points": 9.0, "earned": 9.0})
-    new = changed(full, 0, {"name": "new", "earned": 0.0})
-    for one in (cheaper, dearer, new, replace(full, questions=full.questions[1:])):
+    points = full.questions[0].verdict.points
+    left = full.points - points
+    fewer = replace(full, questions=full.questions[1:], score=left, points=left)
+    for one in (cheaper, dearer, fewer):
         assert not one.falls_from(full) and not full.falls_from(one)
     assert changed(dearer, 0, {"earned": 8.0}).falls_from(full)
     for asked in ({"name": "late"}, {"points": 0.0, "earned": 0.0}):
@@ -172,6 +180,38 @@ def test_a_mark_falls_by_the_share_of_what_both_releases_ask(course):
     assert not result_of(course, "ada", share=0.5, data=b"another").falls_from(full)
     unread = result_of(course, "ada", rejected="it cannot be opened", data=b"")
     assert unread.falls_from(full), "what nobody could read is not another submission"
+
+
+def test_a_question_that_is_renamed_takes_no_points_with_it_unasked(course):
+    """What was earned by the old name counts in the share of the whole; --diff names it."""
+    full, half = result_of(course, "ada"), result_of(course, "ada", share=0.5)
+    points = full.questions[0].verdict.points
+    new = replace(changed(full, 0, {"name": "new", "earned": 0.0}), score=full.score - points)
+    assert new.falls_from(full) and not full.falls_from(new)
+    renamed = changed(half, 0, {"name": "new"})
+    assert not renamed.falls_from(half) and not half.falls_from(renamed)
+    name = full.questions[0].verdict.name
+    assert str(Change(full, new)).endswith(f"({name} {points:g} -> not asked)")
+    assert next(summary([Change(full, new)])) == str(Change(full, new))
+
+
+@pytest.mark.parametrize("fault", [damaged, older])
+def test_a_mark_does_not_fall_because_its_result_cannot_be_read(marked, fault):
+    """The gradebook has the mark: a lower one needs --lower, and the old file stays until then."""
+    fault(marked)
+    results, lower = Results(marked, NAME), result_of(marked, "ada", share=0.5)
+    before = results.path("ada").read_bytes()
+    options = GradeOptions(recorded=partial(recorded, marked, NAME))
+    says = f"has 22 for what earns 11 now; .* type: labkit grade {NAME} --student ada --lower$"
+    with pytest.raises(LabkitError, match=says):
+        keep(results, lower, options)
+    with pytest.raises(LabkitError, match=r"has \d+ for what earns 0 now"):
+        keep(results, result_of(marked, "ada", rejected="the file is empty"), options)
+    assert results.path("ada").read_bytes() == before
+    assert keep(results, lower, replace(options, lower=True)).result == lower
+    fault(marked)
+    full = result_of(marked, "ada")
+    assert keep(results, full, options).result == full == results.get("ada")
 
 
 def test_a_fall_in_per_cent_alone_is_listed(course):

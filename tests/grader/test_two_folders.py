@@ -10,6 +10,7 @@ from downloaded import NAME, bare_course, counting, from_moodle, kept
 from labkit.grader.students.class_list import Student
 from labkit.grader.students.collect import collect
 from labkit.grader.students.enrol import import_list
+from labkit.grader.students.identity import lms_users
 from labkit.grader.students.roster import Roster, save_roster
 from labkit.grader.terms.forget import left_by_hand
 
@@ -45,7 +46,10 @@ def test_two_folders_of_one_student_are_named_and_collecting_again_keeps_both(
     _, (said,) = import_list(bare, tmp_path / "list.csv")
     assert "Ada-Lovelace-42/01_paths: left there, as the same student has work in ada too" in said
     assert counting(bare) == {"Ada-Lovelace-42": "1", "ada": "2"}
+    known = {folder: one.key for folder, one in lms_users(bare, NAME).items()}
+    assert known == {"Ada-Lovelace-42": ("moodle", "42"), "ada": ("files", "ada")}
     take(bare, tmp_path / "1.zip")
+    assert lms_users(bare, NAME)["ada"].key == ("moodle", "42")
     assert counting(bare)["ada"] == expected
     assert kept(bare, "ada") == {"1", "2"}
     (_, said), _ = import_list(bare, tmp_path / "list.csv")
@@ -102,13 +106,14 @@ def test_a_name_or_an_account_that_anybody_can_take_is_not_joined(bare, tmp_path
         (tmp_path / "files" / who / "x.ipynb").write_text(text)
     said = take(bare, tmp_path / "files", named="{student}/*.ipynb")
     assert counting(bare)["ada"] == "hers" and kept(bare, "ada") == {"hers"}
-    assert any("kept apart" in str(one) for one in said)
+    (doubt,) = [str(one) for one in said if "kept apart" in str(one)]
+    assert "until the file is named by the student's login" in doubt
 
 
 def test_an_empty_folder_is_no_work(bare, tmp_path):
     """What was collected goes to the student although a folder without a file is there."""
     take(bare, from_moodle(tmp_path / "1.zip", [(("Ada Lovelace", 42), "x.ipynb", "hers")]))
-    (bare.submitted / "ada" / NAME).mkdir(parents=True)
+    (bare.submitted / "ada" / NAME / "figures").mkdir(parents=True)
     (tmp_path / "list.csv").write_text("name,login\nAda Lovelace,ada\n")
     assert import_list(bare, tmp_path / "list.csv")[1] == []
     assert counting(bare) == {"ada": "hers"}
@@ -134,6 +139,19 @@ def test_a_folder_of_nobody_in_the_roster_is_named(bare, tmp_path):
     (_, said), _ = import_list(bare, tmp_path / "list.csv")
     assert said.startswith("work of nobody who is known to be in the roster: Ada-King-2; where")
     assert "perhaps theirs too" not in " ".join(left_by_hand(bare, "ada"))
+
+
+def test_a_folder_is_named_though_a_sentence_has_its_name(bare, tmp_path):
+    """A time that nobody can read, 01/03/2026, says nothing of the folder 03."""
+    save_roster(bare, Roster((Student("ada", "Ada", "Lovelace", login="ada"),)))
+    take(bare, from_moodle(tmp_path / "1.zip", [(("Ada Lovelace", 42), "x.ipynb", "hers")]))
+    (bare.submitted / "03" / NAME).mkdir(parents=True)
+    worksheet = tmp_path / "worksheet.csv"
+    heads = "Identifier,Full name,Username,Last modified (submission)"
+    worksheet.write_text(f"{heads}\nParticipant 42,Ada Lovelace,ada,01/03/2026 10:00\n")
+    said, (left,) = import_list(bare, worksheet, NAME)
+    assert "01/03/2026" in left
+    assert any(x.startswith("work of nobody who is known to be in the roster: 03;") for x in said)
 
 
 def test_without_a_list_forget_names_who_is_called_alike(bare, tmp_path):

@@ -214,7 +214,7 @@ def seen(course: Path, ended: Ended, name: str = NAME) -> dict[str, Any]:
     for path in (course / "results" / name).glob("*.json"):
         data = _result(path)
         if data.get("student") in HONEST:
-            left = {"seconds", "isolation", "hashes", "versions"}
+            left = {"seconds", "isolation", "hashes"}
             found[f"{data['student']}'s result"] = {k: v for k, v in data.items() if k not in left}
     for who in HONEST:
         for place, suffix in (("feedback", "html"), ("autograded", "ipynb")):

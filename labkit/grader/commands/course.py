@@ -102,10 +102,7 @@ def release(course: Course, names: tuple[str, ...], seed: int | None) -> int:
 @verb("00_warmup 01_paths --to week1.zip")
 @names
 @click.option(
-    "--to",
-    type=PATH,
-    metavar="FILE",
-    help="The zip to write; dist/baxter-lab.zip by default.",
+    "--to", type=PATH, metavar="FILE", help="The zip to write; dist/baxter-lab.zip by default."
 )
 @click.option(
     "--book",

@@ -41,14 +41,10 @@ jobs = click.option(
 @click.option("--diff", is_flag=True, help="Change no mark; list the marks that would change.")
 @click.option("--watch", is_flag=True, help="Keep grading new hand-ins until you press Ctrl-C.")
 @click.option(
-    "--lower",
-    is_flag=True,
-    help="After a test has changed, also record marks that become lower.",
+    "--lower", is_flag=True, help="After a test has changed, also record marks that become lower."
 )
 @click.option(
-    "--dask",
-    metavar="ADDRESS",
-    help="Address of a Dask scheduler whose workers share this folder.",
+    "--dask", metavar="ADDRESS", help="Address of a Dask scheduler whose workers share this folder."
 )
 @click.option(
     "--unsafe-no-isolation",
@@ -69,12 +65,16 @@ def grade(course: Course, assignment: str, student: str | None, as_json: bool, *
     from ..grading.changes import changes, summary
     from ..grading.results import Results
     from ..lock import exclusive_run
-    from ..nbgrader.gradebook import record
+    from ..nbgrader.gradebook import record, recorded
     from ..submission import misnamed
 
     diff, watching = how.pop("diff"), how.pop("watch")
     said = sys.stderr if as_json else sys.stdout
-    options = GradeOptions(**how, tell=partial(print, file=sys.stderr, flush=True))
+    options = GradeOptions(
+        **how,
+        tell=partial(print, file=sys.stderr, flush=True),
+        recorded=partial(recorded, course, assignment),
+    )
     not_watched = {"--student": student, "--again": options.again, "--diff": diff}
     if watching and any(not_watched.values()):
         given = " and ".join(name for name, value in not_watched.items() if value)
@@ -85,8 +85,8 @@ def grade(course: Course, assignment: str, student: str | None, as_json: bool, *
             for one in failures.sift(watch(course, assignment, options), "not graded"):
                 print(_line(one, as_json), flush=True)
                 tell((f"ATTENTION: {x}" for x in _other_notebooks([one.result])), said)
-                recorded = record(course, assignment, [one.result])
-                tell(failures.sift(recorded, "not in the gradebook"), said)
+                written = record(course, assignment, [one.result])
+                tell(failures.sift(written, "not in the gradebook"), said)
         who = _handed_in(course, assignment, student, failures)
         if diff:
             with exclusive_run(Results(course, assignment).folder):
@@ -99,8 +99,7 @@ def grade(course: Course, assignment: str, student: str | None, as_json: bool, *
         for number, one in enumerate(done, start=1):
             graded.append(one.result)
             print(_line(one, as_json, f"[{number}/{len(who)}] "), flush=True)
-        recorded = record(course, assignment, graded)
-        tell(failures.sift(recorded, "not in the gradebook"), said)
+        tell(failures.sift(record(course, assignment, graded), "not in the gradebook"), said)
         everybody = graded if student else list(Results(course, assignment))
         tell((f"ATTENTION: {says}" for says in common_failures(everybody)), said)
         failures.add("ATTENTION", _other_notebooks(graded))

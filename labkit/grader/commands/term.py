@@ -21,15 +21,9 @@ from .pages import tell
 )
 @names
 @click.option(
-    "--seed",
-    type=SEED,
-    help="new: seed of the hidden cases; drawn at random by default.",
+    "--seed", type=SEED, help="new: seed of the hidden cases; drawn at random by default."
 )
-@click.option(
-    "--student",
-    metavar="S",
-    help="forget: everything of one student, in all terms.",
-)
+@click.option("--student", metavar="S", help="forget: everything of one student, in all terms.")
 @click.option(
     "--older",
     type=click.FloatRange(0),
@@ -67,15 +61,7 @@ def term(
     """  # noqa: D301
     from ..terms.forget import entries_of, forget, left_by_hand, places_of, unknown
     from ..terms.older import relocate
-    from ..terms.term import (
-        about,
-        archives,
-        new_term,
-        old_rules,
-        refuse_running,
-        restore,
-        running,
-    )
+    from ..terms.term import about, archives, new_term, old_rules, refuse_running, restore, running
 
     if action == "new":
         if not yes:

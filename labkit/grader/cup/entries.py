@@ -19,7 +19,7 @@ import numpy as np
 
 from ...control import Command, State
 from ...course.authoring.layout import CUP, Course
-from ...course.baxter_cup import CupRun, cup_run, marks
+from ...course.baxter_cup import CupRun, benchmarks, cup_run
 from ...course.judges import Close
 from ...course.own_arm import Arms
 from ...course.question import Question
@@ -94,8 +94,8 @@ class Entry:
 
     @property
     def beaten(self) -> int:
-        """The number of published marks that it beats."""
-        return sum(self.score < mark for mark in marks().values())
+        """The number of published benchmarks that it beats."""
+        return sum(self.score < score for score in benchmarks().values())
 
 
 def seeds(course: Course, final: bool) -> tuple[int, ...]:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 
 from ...course.authoring.layout import CUP, Course
-from ...course.baxter_cup import marks
+from ...course.baxter_cup import benchmarks
 from ...course.own_arm import Arms
 from ..nbgrader.gradebook import open_gradebook
 from ..nbgrader.unreleased import enter
@@ -13,20 +13,20 @@ from ..pages import render_page
 from ..rules import read_rules
 from .entries import Entry
 
-BONUS = "marks_beaten"
+BONUS = "benchmarks_beaten"
 """What the gradebook calls it."""
 
 
 def lines(found: Sequence[Entry]) -> Iterator[tuple[float, str, Entry | None]]:
-    """Entries and published marks: score in [mm], name, and the entry; the best first."""
-    everyone = [(mark, f"mark: {name}", None) for name, mark in marks().items()]
+    """Entries and published benchmarks: score in [mm], name, and the entry; the best first."""
+    everyone = [(score, f"benchmark: {name}", None) for name, score in benchmarks().items()]
     yield from sorted(
         [*everyone, *((x.score, x.handle, x) for x in found)], key=lambda line: line[:2]
     )
 
 
 def as_text(found: Sequence[Entry]) -> Iterator[str]:
-    """A line for each entry and mark."""
+    """A line for each entry and benchmark."""
     for score, name, entry in lines(found):
         said = f"; {entry.why}" if entry and entry.why else ""
         yield f"{score:8.1f} mm  {name}{said}"
@@ -40,12 +40,12 @@ def page(course: Course, found: Sequence[Entry], final: bool) -> str:
         course=read_rules(course).name,
         title="The Baxter Cup: " + ("the final" if final else "the board"),
         lines=list(lines(found)),
-        most=len(marks()),
+        most=len(benchmarks()),
     )
 
 
 def give_bonus(course: Course, found: Sequence[Entry]) -> None:
-    """Write the number of marks that an entry beats as extra credit of all who have its handle."""
+    """Write how many benchmarks an entry beats as extra credit of all who have its handle."""
     handles = Arms.of(course.root).handles
     with open_gradebook(course) as book:
         for entry in found:

@@ -156,7 +156,10 @@ def accepted(course: Course, student: str) -> tuple[list[Accepted], list[str]]:
                 if question.name in answers and edits(answers[question.name].source)
             ]
     if not worked and student in roster:
-        raise LabkitError(f"{student} has handed in nothing, so there is nothing to ask about")
+        raise LabkitError(
+            f"{student} has handed in nothing, so there is nothing to ask about and no mark to "
+            "enter; --absent-zero of labkit export counts the missing defence as 0"
+        )
     if not worked:
         folders = [path.name for path in course.submitted.glob("*") if is_name(path.name)]
         raise LabkitError(

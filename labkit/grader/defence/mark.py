@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import Any
 
 from nbgrader.api import MissingEntry
 
@@ -49,14 +48,10 @@ def give_mark(course: Course, student: str, points: Sequence[int]) -> None:
             raise LabkitError(
                 f"no page was printed for {student}; type: labkit defence {student}"
             ) from None
-        for grade in _grades(submission):
+        for grade in (x for notebook in submission.notebooks for x in notebook.grades):
             grade.manual_score = float(points[LINES.index(grade.name)])
             grade.needs_manual_grade = False
         book.db.commit()
-
-
-def _grades(submission: Any) -> list[Any]:
-    return [grade for notebook in submission.notebooks for grade in notebook.grades]
 
 
 def _text(number: int, one: Asked) -> str:

@@ -108,25 +108,29 @@ def _by_the_grader(
     yield from (wrapped(f"Note: {note}.") for note in before.notes)
     yield from map(wrapped, summary(shown))
     hidden = {test.name for test in shown.tests if test.hidden}
-    same_release = bundle.of_student(student).data["hash"] == result.hashes["bundle"]
+    now_hash = bundle.of_student(student).data["hash"]
+    changed = "the release" * (now_hash != result.hashes["bundle"])
+    changed = changed or "labkit" * (again.hashes["engine"] != result.hashes["engine"])
+    as_before = (shown.right, shown.earned) == (now.right, now.earned)
     if shown.outcome is Outcome.NOT_ATTEMPTED:
         pass  # no case decided it
-    elif hidden and same_release:
-        yield "\nThe hidden case that decided; do not show it before the term ends:"
-        yield from (wrapped(f"  {of_test(test)}") for test in now.tests if test.name in hidden)
+    elif hidden:
+        if not changed or (as_before and changed == "labkit"):
+            yield "\nThe hidden case that decided; do not show it before the term ends:"
+            yield from (wrapped(f"  {of_test(test)}") for test in now.tests if test.name in hidden)
     elif shown.outcome is Outcome.NOT_COUNTED:
         pass  # the tool that it uses did
     elif not shown.right:
         yield "\nThe tests that the student has seen decided this mark; no hidden case did."
-    if (shown.right, shown.earned) != (now.right, now.earned):
-        if same_release:
-            yield "\nATTENTION: this time it came out otherwise:"
-        else:
-            yield "\n" + wrapped(
-                f"The release has changed since this mark was made: now the answer earns "
+    if not as_before:
+        says = "ATTENTION: this time it came out otherwise:"
+        if changed:
+            says = (
+                f"Since this mark was made {changed} has changed: now the answer earns "
                 f"{now.earned:g} of {now.points:g}. If that is to count, type: labkit grade "
                 f"{result.assignment} --student {student}, and with --lower if the mark is kept"
             )
+        yield "\n" + wrapped(says)
         yield from map(wrapped, summary(now))
     if line.comment:
         yield f"\nComment: {line.comment}"

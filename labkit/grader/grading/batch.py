@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
+import shlex
 import time
 from collections import Counter
-from collections.abc import Callable, Iterable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from concurrent.futures import FIRST_COMPLETED, Executor, wait
 from dataclasses import dataclass, field
 from functools import partial
@@ -13,6 +14,7 @@ from pathlib import Path
 from ...course.authoring.bundle import Bundle
 from ...course.authoring.layout import Course
 from ...course.verdict import Outcome
+from ...errors import LabkitError
 from ..each import Failure, for_student
 from ..lock import exclusive_run
 from ..sandbox.limits import Limits
@@ -45,6 +47,7 @@ class GradeOptions:
         lower: Whether the mark of an unchanged submission may fall.
         limits: What a submission may use, on a quick machine.
         tell: Called every `EVERY` seconds with a sentence on how far it is.
+        recorded: What the gradebook has for a student's questions; asked where a result is damaged.
     """
 
     jobs: int = 1
@@ -54,6 +57,7 @@ class GradeOptions:
     lower: bool = False
     limits: Limits = field(default_factory=Limits)
     tell: Callable[[str], object] = lambda _: None
+    recorded: Callable[[str], Mapping[str, float]] = lambda _: {}
 
 
 @dataclass(frozen=True)
@@ -97,7 +101,7 @@ def grade_class(
             if before is not None:
                 yield GradedSubmission(before, "as before")
             elif aside is not None:
-                yield for_student(student, partial(keep, results, aside, options.lower))
+                yield for_student(student, partial(keep, results, aside, options))
             else:
                 todo.append(submission)
         yield from _kept(results, grade_aside(course, bundle, todo, options), options)
@@ -194,20 +198,39 @@ def _kept(
         if isinstance(result, Failure):
             yield result
         else:
-            yield for_student(result.student, partial(keep, results, result, options.lower))
+            yield for_student(result.student, partial(keep, results, result, options))
 
 
-def keep(results: Results, result: Result, lower: bool = False) -> GradedSubmission:
-    """Store a result, unless it would lower the mark of an unchanged submission unasked."""
+def keep(results: Results, result: Result, options: GradeOptions) -> GradedSubmission:
+    """Store a result, unless it would lower the mark of an unchanged submission unasked.
+
+    Raises:
+        LabkitError: The result before cannot be read, and the gradebook has a higher mark.
+    """
     before = results.get(result.student)
-    if before is not None and not lower and result.falls_from(before):
+    if before is not None and not options.lower and result.falls_from(before):
         now = f"{result.score:g} of {result.points:g}"
         return GradedSubmission(before, f"kept; --lower lets it fall to {now}")
+    if before is None and not options.lower and results.path(result.student).exists():
+        _refuse_to_lower(result, options.recorded(result.student))
     results.keep(result)
     if before is None or (before.score, before.points) == (result.score, result.points):
         return GradedSubmission(result)
     full = f" of {before.points:g}" if before.points != result.points else ""
     return GradedSubmission(result, f"was {before.score:g}{full}")
+
+
+def _refuse_to_lower(result: Result, recorded: Mapping[str, float]) -> None:
+    """Compare with the gradebook; which submission its marks are of, nobody knows."""
+    now = {q.verdict.name: q.verdict.earned for q in result.questions}
+    both = [name for name in recorded if name in now or result.rejected]
+    had, has = sum(recorded[x] for x in both), sum(now.get(x, 0.0) for x in both)
+    if had > has + 0.01:
+        raise LabkitError(
+            f"the result before cannot be read, and the gradebook has {had:g} for what earns "
+            f"{has:g} now; if that is to count, type: labkit grade {result.assignment} --student "
+            f"{shlex.quote(result.student)} --lower"
+        )
 
 
 def common_failures(results: Sequence[Result]) -> Iterator[str]:

@@ -46,6 +46,8 @@ class Change:
             for v in (q.verdict for q in self.after.questions)
             if v.earned != each.get(v.name, 0.0)
         ]
+        gone = [name for name in each if name not in self.after.asked]
+        parts += [f"{name} {each[name]:g} -> not asked" for name in gone if each[name]]
         says = f" ({'; '.join(parts)})" if parts else ""
         was, now = self.before, self.after
         some = f"{was.score:g} -> {now.score:g}, {self.by:+g}"
@@ -66,11 +68,10 @@ def changes(
     """
     bundle, now = Bundle.of(course, assignment), Results(course, assignment)
     _refuse_unreleased(course, assignment)
-    aside = now.aside
     todo: list[Submission] = []
     for student in students:
         submission = Submission.of(course, assignment, student)
-        done = still_good((aside, now), submission, bundle, options)
+        done = still_good((now.aside, now), submission, bundle, options)
         if done is None:
             todo.append(submission)
         else:
@@ -79,11 +80,12 @@ def changes(
         if isinstance(result, Failure):
             yield result
         else:
-            kept = for_student(result.student, partial(aside.keep, result))
-            if isinstance(kept, Failure):  # a name that is too long, a full disk
-                yield kept
-            else:
-                yield Change(now.get(result.student), result)
+            yield for_student(result.student, partial(_kept_aside, now, result))
+
+
+def _kept_aside(now: Results, result: Result) -> Change:
+    now.aside.keep(result)
+    return Change(now.get(result.student), result)
 
 
 def _refuse_unreleased(course: Course, assignment: str) -> None:

@@ -29,16 +29,7 @@ from ..sandbox.session import RemoteFunction, Session
 from ..submission import digest
 from . import public_evidence
 from .plan import Plan, plan
-from .results import (
-    OTHER_NOTEBOOK,
-    Answer,
-    FailedCell,
-    Hashes,
-    OwnCell,
-    Result,
-    engine,
-    versions,
-)
+from .results import OTHER_NOTEBOOK, Answer, FailedCell, Hashes, OwnCell, Result, engine
 
 ADDED = (
     "this question came after the notebook was handed in, which does not have it; it counts 0 "
@@ -166,7 +157,6 @@ def _ungraded(student: str, bundle: Bundle, level: str, data: bytes) -> Result:
         bundle.data["seed"],
         hashes(data, bundle),
         isolation=level,
-        versions=versions(),
     )
 
 

@@ -5,12 +5,10 @@ from __future__ import annotations
 import copy
 import hashlib
 import json
-import platform
 import shutil
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass, field, fields
+from dataclasses import dataclass, field
 from functools import cache
-from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
 from typing import TypedDict
 
@@ -21,7 +19,6 @@ from ...course.serialize import read_record, record_data
 from ...course.verdict import Points, Verdict
 from ...errors import LabkitError
 from ...formats import check_stamp, stamp
-from ...sim import ENGINES
 from ..atomic import write
 from ..clean import clean_data, clean_line
 
@@ -118,7 +115,6 @@ class Result:
         written: The text of each cell that a person marks, by its name.
         tricks: What may be a way around a withheld tool, for the instructor, sentences.
         isolation: What kept it apart while it ran.
-        versions: Of what graded it.
         seconds: How long it took: in all, and in the student's own code.
         receipt: What `lk.hand_in` printed for this file; empty where it was rejected.
     """
@@ -137,7 +133,6 @@ class Result:
     written: Mapping[str, str] = field(default_factory=dict)
     tricks: tuple[str, ...] = ()
     isolation: str = ""
-    versions: Mapping[str, str] = field(default_factory=dict)
     seconds: Mapping[str, float] = field(default_factory=dict)
     receipt: str = ""
 
@@ -164,9 +159,6 @@ class Result:
         if not isinstance(data, dict):
             raise _damaged(name, "it is not a table")
         check_stamp(data, name, "grade it again")
-        known = {x.name for x in fields(cls)} | stamp().keys()
-        if unknown := data.keys() - known:
-            raise _damaged(name, f"nobody knows the field {min(unknown)!r}")
         try:
             result = read_record(cls, data)
         except LabkitError as error:
@@ -201,8 +193,9 @@ class Result:
         """Whether the same submission had more before, of the questions that both releases ask.
 
         A release can change what a question is worth, so the share of each question is compared,
-        times its points now; with the same points that is the mark.  A file that could not be read
-        is not taken for another submission.
+        times its points now; with the same points that is the mark.  A question that earned
+        something and is not asked any more may only be called otherwise now; the share of the whole
+        is then compared, too.  A file that could not be read is not taken for another submission.
         """
         unread = bool(self.rejected) and self.hashes["submission"] == _NOTHING
         if before.hashes["submission"] != self.hashes["submission"] and not unread:
@@ -213,7 +206,12 @@ class Result:
         both = [name for name in mine if name in theirs and theirs[name].points]
         was = sum(theirs[x].earned / theirs[x].points * mine[x].points for x in both)
         rounded = 0.01 * sum(theirs[x].points != mine[x].points for x in both)
-        return sum(mine[x].earned for x in both) < was - rounded - 1e-6
+        if sum(mine[x].earned for x in both) < was - rounded - 1e-6:
+            return True
+        earned, points = (sum(getattr(v, x) for v in theirs.values()) for x in ("earned", "points"))
+        gone = any(v.earned for name, v in theirs.items() if name not in mine)
+        share = earned / points * self.points if gone else 0.0
+        return self.score < share - 0.01 * len(mine)
 
     @property
     def unanswered(self) -> str:
@@ -319,15 +317,3 @@ def engine_files() -> Iterator[Path]:
         first, *more = path.relative_to(_LABKIT).parts
         if first not in {"replay", "__main__.py", "grader"} or (more and more[0] in _OF_A_WORKER):
             yield path
-
-
-@cache
-def versions() -> Mapping[str, str]:
-    """Of Python and of what marks depend on."""
-    found = {"labkit": labkit.__version__, "python": platform.python_version()}
-    for name in ("numpy", "scipy", *ENGINES, "pin"):
-        try:
-            found[name] = version(name)
-        except PackageNotFoundError:
-            found[name] = "missing"
-    return found

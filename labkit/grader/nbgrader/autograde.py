@@ -27,6 +27,7 @@ from ..grading.results import Result, Results
 from ..lock import exclusive_run
 from ..submission import Submission, is_name, unfit
 from .autograded_notebook import in_release_form, release_source, with_verdicts
+from .gradebook import recorded
 
 
 class FitNames(NotebookExporter):
@@ -122,11 +123,12 @@ def _grade(about: dict[str, Any]) -> Result:
         bundle = Bundle.of(course, about["assignment"])
         submission = Submission.of(course, about["assignment"], about["student"])
         results = Results(course, about["assignment"])
+        options = GradeOptions(recorded=partial(recorded, course, about["assignment"]))
         with exclusive_run(results.folder):
-            (graded,) = grade_aside(course, bundle, [submission], GradeOptions())
+            (graded,) = grade_aside(course, bundle, [submission], options)
             if isinstance(graded, Failure):
                 raise LabkitError(str(graded))
-            kept = for_student(graded.student, partial(keep, results, graded))
+            kept = for_student(graded.student, partial(keep, results, graded, options))
             if isinstance(kept, Failure):
                 raise LabkitError(str(kept))
         result = kept.result

@@ -48,10 +48,7 @@ class Connection:
             raise Disconnected(str(error)) from None
 
     def read(
-        self,
-        seconds: float | None = None,
-        max_bytes: int = MAX_BYTES,
-        max_values: int = MAX_BYTES,
+        self, seconds: float | None = None, max_bytes: int = MAX_BYTES, max_values: int = MAX_BYTES
     ) -> dict[str, Any]:
         """Read one message.
 

@@ -125,8 +125,8 @@ def _take(course: Course, assignment: str, source: Path, files: Sequence[File]) 
             "from no platform need --named, such as --named 'paths-{student}/*.ipynb'"
         )
     roster = read_roster(course)
-    for sentence in settle(course, roster):
-        yield Taken("", "", sentence, fine=False)
+    for left in settle(course, roster):
+        yield Taken("", "", left.why, fine=False)
     known = all_lms_users(course)
     handed_in: list[_HandedIn] = []
     for file in files:

@@ -123,11 +123,10 @@ def import_list(
         tell_gradebook(course, done.roster)
         give_arms(course, done.roster, seed_of(course))
         left = settle(course, done.roster)
-        times = 0
+        times, not_taken = 0, list[str]()
         if assignment:
             left += keep_numbers(course, assignment, done.rows)
             times, not_taken = keep_times(course, assignment, done.rows)
-            left += not_taken
     listed = {student.id for _, student in done.rows}
     absent = [str(student) for student in before.students if student.id not in listed]
     everybody = how_many(len(done.roster.students), "student")
@@ -135,7 +134,8 @@ def import_list(
     if absent:
         still = f"{len(absent)} ({some(absent)})"
         summary.append(f"not in this list, and still in the roster: {still}")
-    others = [x for x in strangers(course, done.roster) if not any(f"/{x}/" in y for y in left)]
+    named = {one.student for one in left}
+    others = [x for x in strangers(course, done.roster) if x not in named]
     if others:
         summary.append(
             f"work of nobody who is known to be in the roster: {', '.join(others)}; where it is a "
@@ -156,7 +156,7 @@ def import_list(
         )
     if not assignment:
         summary += about_namesakes(done.roster, all_lms_users(course))
-    return summary, left
+    return summary, [*dict.fromkeys(one.why for one in left), *not_taken]
 
 
 def _marks(one: Student) -> dict[str, str]:

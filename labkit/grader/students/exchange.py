@@ -10,13 +10,13 @@ from __future__ import annotations
 
 import os
 import pwd
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterable, Iterator
 from datetime import UTC, datetime
 from functools import partial
 from pathlib import Path
 
 from ...course.authoring.layout import Course
-from ..clean import clean_line
+from ..clean import clean_line, some
 from ..each import Failure, for_student
 from ..submission import read_file
 from ..timestamp import TIMESTAMP, read_time
@@ -55,7 +55,8 @@ def in_exchange(folder: Path, assignment: str, *, unverified: bool) -> Iterator[
     unknown = [user for user in owners if person(user) == user and _number(user) is None]
     strangers = [] if unverified else unknown
     if strangers:
-        yield File(_some(strangers), (), datetime.now(UTC), bytes, refused=_STRANGERS)
+        names = some([clean_line(name, 40) for name in strangers])
+        yield File(names, (), datetime.now(UTC), bytes, refused=_STRANGERS)
     times = {
         path: Times.of(path, when)
         for path, (_, _, stated, *_) in mine.items()
@@ -106,11 +107,6 @@ def _not_theirs(user: str, path: Path, owners: set[int]) -> str:
         several = " and ".join(map(_user, sorted(owners)))
         return f"{several} handed in as {clean_line(user)}; possibly an attempt to cheat"
     return ""
-
-
-def _some(names: Sequence[str]) -> str:
-    some = ", ".join(clean_line(name, 40) for name in names[:8])
-    return f"{some} and {len(names) - 8} more" if len(names) > 8 else some
 
 
 def _number(user: str) -> int | None:

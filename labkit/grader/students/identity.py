@@ -30,6 +30,13 @@ from .platforms import LmsUser
 from .roster import Roster
 
 FILE = "course_private/lms.json"
+_TOLD_APART = {
+    "moodle": "you import the assignment's grading worksheet",
+    "canvas": "you import Canvas's own list",
+    "exchange": "you import a list with each student's login",
+    "files": "the file is named by the student's login, address or number, and collected again",
+}
+"""What distinguishes people whom a platform calls alike."""
 _READ_GREEDILY = re.compile(r"([^_/]*)_([0-9]+)_assignsubmission_file")
 
 
@@ -169,7 +176,7 @@ def _doubt(one: LmsUser, students: int) -> str:
             f"{one} is not in the roster, so their work is kept apart; import a list that "
             "has them, labkit students import LIST.csv, and collect again"
         )
-    until = "their work is kept apart until you import the assignment's grading worksheet"
+    until = f"their work is kept apart until {_TOLD_APART[one.system]}"
     if students > 1:
         return f"{one} has the name of {students} students of the roster; {until}"
     return f"{one} has the name of a student, and so has somebody else who handed in; {until}"

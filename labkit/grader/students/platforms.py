@@ -175,11 +175,7 @@ def open_zip(path: Path) -> Iterator[zipfile.ZipFile]:
         yield archive
 
 
-def in_zip(
-    archive: zipfile.ZipFile,
-    made: datetime,
-    read: Reader = readings,
-) -> Iterator[File]:
+def in_zip(archive: zipfile.ZipFile, made: datetime, read: Reader = readings) -> Iterator[File]:
     """The files of a zip.
 
     Args:

@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
-from dataclasses import dataclass, replace
+import shutil
+from collections.abc import Mapping
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
 from ...course.authoring.layout import Course
+from ..each import Failure
 from ..grading.results import Results
 from ..nbgrader.gradebook import open_gradebook
 from .attempts import FOLDER
@@ -18,28 +20,20 @@ _WORK = (FOLDER, "submitted")
 _MADE_OF_IT = ("autograded", "feedback")
 
 
-@dataclass(frozen=True)
-class Move:
-    """The work of one assignment, which goes from one folder to another."""
-
-    assignment: str
-    old: str
-    new: str
-
-
-def settle(course: Course, roster: Roster) -> list[str]:
+def settle(course: Course, roster: Roster) -> list[Failure]:
     """Bring all work to those whom the roster has come to know since it was collected.
 
     Returns:
-        What a person should look at, a sentence each.
+        Which folders stayed, and why.
     """
-    left: list[str] = []
+    left: list[Failure] = []
     collected = all_lms_users(course)
     for assignment, people in collected.items():
         found = places(people.values(), assignment, collected, roster)
-        moved = {folder: found[one.key].folder for folder, one in people.items()}
-        left += bring(course, [Move(assignment, old, new) for old, new in moved.items()])
-        remember(course, assignment, {moved[x]: who for x, who in people.items() if moved[x] != x})
+        moves = {old: found[one.key].folder for old, one in people.items()}
+        left += bring(course, assignment, moves)
+        gone = [x for x in moves.items() if x[0] != x[1] and not _work(course, x[0], assignment)]
+        remember(course, assignment, {new: people[old] for old, new in gone})
     return left
 
 
@@ -49,65 +43,73 @@ def strangers(course: Course, roster: Roster) -> list[str]:
     return sorted(name for name in found if name not in roster)
 
 
-def bring(course: Course, moves: Iterable[Move]) -> list[str]:
+def bring(course: Course, assignment: str, moves: Mapping[str, str]) -> list[Failure]:
     """Take work from one folder to another, and then its marks, also those by hand.
 
     Where both folders have work nothing moves: the two may be of two people, as who they are may be
     known by a name alone.
 
+    Args:
+        course: The course.
+        assignment: Whose work moves.
+        moves: By the folder where it is, the folder where it belongs.
+
     Returns:
-        What stayed where it was, a sentence each.
+        Which folders stayed, and why.
     """
-    moves = [move for move in moves if move.old and move.old != move.new]
-    for move in moves:
-        both = _work(course, move, move.old) and _work(course, move, move.new)
+    moves = {old: new for old, new in moves.items() if old != new}
+    for pair in moves.items():
+        both = all(_work(course, who, assignment) for who in pair)
         for base in () if both else (*_WORK, *_MADE_OF_IT):
-            source = course.root / base / move.old / move.assignment
-            target = course.root / base / move.new / move.assignment
-            if target.is_dir() and not any(target.iterdir()):
-                target.rmdir()
+            source, target = (course.root / base / who / assignment for who in pair)
+            if target.is_dir() and all(path.is_dir() for path in target.rglob("*")):
+                shutil.rmtree(target)  # nothing but folders
             if source.exists() and not target.exists():
                 target.parent.mkdir(parents=True, exist_ok=True)
                 source.rename(target)
                 if not any(source.parent.iterdir()):
                     source.parent.rmdir()
-    _bring_marks(course, [move for move in moves if not _work(course, move, move.old)])
-    said: list[str] = []
-    for move in moves:
-        result = Results(course, move.assignment).path(move.old)
-        left = [*_work(course, move, move.old), *[result] * result.exists()]
+    without = {old: new for old, new in moves.items() if not _work(course, old, assignment)}
+    _bring_marks(course, assignment, without)
+    said: list[Failure] = []
+    for old, new in moves.items():
+        result = Results(course, assignment).path(old)
+        left = [*_work(course, old, assignment), *[result] * result.exists()]
         if left:
             names = " and ".join(str(path.relative_to(course.root)) for path in left)
-            said.append(
-                f"{names}: left there, as the same student has work in {move.new} too; to keep "
+            says = (
+                f"{names}: left there, as the same student has work in {new} too; to keep "
                 "both, collect the same downloads again, which brings each file to its student; "
-                "then move what was left away"
+                f"then give {new} again what {old} was given by hand in formgrader, and move what "
+                "was left away"
             )
+            said.append(Failure(old, says))
     return said
 
 
-def _work(course: Course, move: Move, student: str) -> list[Path]:
-    """What was handed in and is in one of the two folders."""
-    folders = [course.root / base / student / move.assignment for base in _WORK]
+def _work(course: Course, student: str, assignment: str) -> list[Path]:
+    """Folders of what a student handed in, where they hold a file."""
+    folders = [course.root / base / student / assignment for base in _WORK]
     return [path for path in folders if any(x.is_file() for x in path.rglob("*"))]
 
 
-def _bring_marks(course: Course, moves: Sequence[Move]) -> None:
-    for move in moves:
-        results = Results(course, move.assignment)
-        result = results.get(move.old)
-        if result is not None and not results.path(move.new).exists():
-            results.keep(replace(result, student=move.new))
-            results.path(move.old).unlink()
+def _bring_marks(course: Course, assignment: str, moves: Mapping[str, str]) -> None:
+    results = Results(course, assignment)
+    for old, new in moves.items():
+        result = results.get(old)
+        if result is not None and not results.path(new).exists():
+            results.keep(replace(result, student=new))
+            results.path(old).unlink()
     if not moves or not (course.root / "gradebook.db").exists():
         return
     with open_gradebook(course) as book:
-        for assignment, old, new in ((x.assignment, x.old, x.new) for x in moves):
-            there = {one.student.id: one for one in book.assignment_submissions(assignment)}
+        there = {one.student.id: one for one in book.assignment_submissions(assignment)}
+        for old, new in moves.items():
             if old in there and new not in there:
-                there[old].student = book.update_or_create_student(new)
+                there[new] = there.pop(old)
+                there[new].student = book.update_or_create_student(new)
                 book.db.commit()
-        for old, new in {(x.old, x.new) for x in moves}:
+        for old, new in moves.items():
             _bring_the_rest(course, book, old, new)
 
 

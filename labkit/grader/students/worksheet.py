@@ -9,26 +9,28 @@ from zoneinfo import ZoneInfo
 
 from ...course.authoring.layout import Course
 from ..clean import some
+from ..each import Failure
 from ..rules import read_rules
 from ..timestamp import read_time
 from .attempts import Attempt, Counted, attempts, counts, install, keep
 from .class_list import Entry, Student
 from .identity import lms_users, remember
 from .platforms import LmsUser
-from .settle import Move, bring
+from .settle import bring
 
 
 def keep_numbers(
     course: Course, assignment: str, rows: Iterable[tuple[Entry, Student]]
-) -> list[str]:
+) -> list[Failure]:
     """Keep whose each participant's number is, and bring earlier work to its owner.
 
     Returns:
-        What a person should look at, a sentence each.
+        Which folders stayed, and why.
     """
     mine = {s.id: LmsUser("moodle", e.participant, s.name) for e, s in rows if e.participant}
     before = {one.key: folder for folder, one in lms_users(course, assignment).items()}
-    left = bring(course, (Move(assignment, before.get(x.key, ""), id) for id, x in mine.items()))
+    moves = {before[x.key]: id for id, x in mine.items() if x.key in before}
+    left = bring(course, assignment, moves)
     remember(course, assignment, mine)
     return left
 

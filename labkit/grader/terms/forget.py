@@ -9,7 +9,7 @@ from dataclasses import replace
 from functools import partial
 from pathlib import Path
 
-from nbgrader.api import Gradebook, MissingEntry
+from nbgrader.api import Gradebook
 
 from ...course.authoring.layout import Course
 from ...course.own_arm import HANDLES, Arms
@@ -170,11 +170,7 @@ def _entries(term: Course, student: str) -> Iterator[tuple[Path, Callable[[], ob
 
 def _in_gradebook(path: Path, student: str) -> bool:
     with quiet_database(), Gradebook(f"sqlite:///{path}") as book:
-        try:
-            book.find_student(student)
-        except MissingEntry:
-            return False
-    return True
+        return student in {one.id for one in book.students}
 
 
 def _leave_gradebook(path: Path, student: str) -> None:

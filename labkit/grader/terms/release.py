@@ -27,7 +27,7 @@ from ...course.source import look, parsed
 from ...errors import LabkitError
 from ..clean import how_many
 from ..grading.results import Results
-from ..nbgrader.gradebook import migrate
+from ..nbgrader.migrate import migrate
 from ..nbgrader_api import nbgrader_api, reason
 from ..students.arms import lay_arms
 

@@ -32,7 +32,7 @@ MORE = {"feedback": ["--unmarked"], "class-report": ["--names"]}
 """Options of the verbs; attacks leave text that nobody marks."""
 MOST = 2_000_000
 """Bytes of a result file."""
-NOT_SAID = ("source", "own", "motion", "versions", "hashes")
+NOT_SAID = ("source", "own", "motion", "hashes")
 """What of a result is not of the grader's making, or is no text."""
 
 
