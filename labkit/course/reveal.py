@@ -70,6 +70,12 @@ def _reveal(name: str, form: Form, truth: Any) -> None:
         text = f"{name}: commit to a prediction above, then run the cells from there to here again."
         print(wrapped(text))
         return
+    if wrong := " and ".join(place.stand_ins.wrong()):
+        text = (
+            f"{name}: your wrong {wrong} made this run; the truth is shown here once it is right."
+        )
+        print(wrapped(text))
+        return
     if isinstance(form, Curve):
         _overlay(form, said, truth)
     else:

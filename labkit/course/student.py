@@ -31,7 +31,7 @@ from .question import Call, Question
 from .reply import Here
 from .serialize import read_question
 from .source import look
-from .stand_ins import StandIns
+from .stand_ins import STAND_IN, WRONG, StandIns
 from .unfinished import watch
 from .verdict import Outcome, Verdict
 from .withheld import withheld_tools, withhold
@@ -274,23 +274,24 @@ def use(
     """
     if name in _unfinished:
         print(wrapped(f"[stand-in] {_NOT_RUN.format(name=name)}"))
-        return desk().stand_ins.give(name, given, shell())
+        return desk().stand_ins.give(name, STAND_IN, given, shell())
     known, verdict = desk().checked.get(name, (None, None))
     if known is not function or verdict is None:
         verdict, *_ = desk().verdict(name, function)
     wrong = verdict.outcome is Outcome.WRONG
+    if verdict.right:
+        desk().stand_ins.pop(name, None)
+        return yours or function
     if anyway and wrong:
         print(f"[anyway] {name}: yours is not right yet, and drives the arm all the same.")
-    if verdict.right or (anyway and wrong):
-        desk().stand_ins.discard(name)
-        return yours or function
+        return desk().stand_ins.give(name, WRONG, yours or function, shell())
     text = f"[stand-in] {name}: yours is replaced here by a stand-in ({HEADS[verdict.outcome]})."
     if wrong:
         text += " To see what yours does, add anyway=True to this use(...)."
     elif anyway:
         text += " anyway=True takes only a function that runs to its end on every case."
     print(wrapped(text))
-    return desk().stand_ins.give(name, given, shell())
+    return desk().stand_ins.give(name, STAND_IN, given, shell())
 
 
 def _say(says: Message, verdict: Verdict, found: Mismatch | None) -> None:
