@@ -167,7 +167,7 @@ def at_tip():
     M, J = model.mass_matrix(q), model.tip_jacobian(q)
     unfelt = np.linalg.svd(J)[2][-1]
     tau = np.linspace(-20.0, 30.0, 7)
-    return TipTorque(tau, np.linalg.solve(M, J.T).T), M @ unfelt
+    return TipTorque(tau, np.linalg.solve(M, J.T).T, unfelt), M @ unfelt
 
 
 def test_torques_are_judged_by_what_the_tip_does():
@@ -200,3 +200,13 @@ def test_a_question_of_torques_travels():
     again = read_question(json.loads(json.dumps(question_data(question))))
     answer = lk.JointTorque(expected.value + unfelt)
     assert mark(again, lambda x: answer).outcome is Outcome.RIGHT
+
+
+def test_a_known_mistake_is_known_beside_a_damper_that_moves_the_tip():
+    """What a damper behind I - pinv(J) J adds hides no mistake; the answer is still not right."""
+    judge, (expected, _) = AtTip(), at_tip()
+    assert np.abs(expected.accelerates @ expected.elbow).max() > 0.1, "the tip feels it"
+    braked = lk.JointTorque(expected.value - 3.0 * expected.elbow)
+    assert judge(braked, expected) is not None and judge.same(braked, expected)
+    for joint in np.eye(7):
+        assert not judge.same(lk.JointTorque(braked.value + 0.1 * joint), expected)
