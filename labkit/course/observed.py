@@ -106,10 +106,10 @@ def _probed(
             shares.append(says.format(probe.label.split("`")[1], probe.label))
     if shares:
         return shares[0]
-    if stays:
-        return f"Your answer stays the same if {' or if '.join(stays[:3])}; the right one does not."
-    if moves:
-        return f"Your answer changes if {' or if '.join(moves[:3])}; the right one does not."
+    for labels, does, other in ((stays, "stays the same", "changes"), (moves, "changes", "stays")):
+        if labels:
+            when = " or when ".join(labels[:3]).replace(" is ", " is set to ")
+            return f"Your answer {does} when {when}; the right one {other}."
     return ""
 
 

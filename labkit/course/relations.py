@@ -108,7 +108,7 @@ def _relations(
         and all_near(a, [a[0]] * len(a))
         and not all_near(b, [b[0]] * len(b))
     ):
-        yield f"is {float(a[0]):.5g}, whatever it is called with"
+        yield f"is {float(a[0]):.5g}, whatever its arguments are"
     if all_near(a, [-x for x in b]):
         yield "has the other sign"
     if len({x.shape for x in b}) == 1 and b[0].ndim and not joined:

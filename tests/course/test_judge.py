@@ -72,7 +72,7 @@ def test_mistakes_are_alike_within_a_rounding():
 
 def test_a_number_is_told_its_sign_but_no_chance_factor():
     """The other sign of a single number tells something, twice the number does not."""
-    assert says(CLOSE(-4.0, 4.0)).endswith("the same with the other sign")
+    assert says(CLOSE(-4.0, 4.0)).endswith("it has the other sign")
     assert says(CLOSE(8.0, 4.0)) == "expected 4, got 8"
 
 
@@ -99,8 +99,8 @@ def test_parts_are_named():
     judge = Close(parts=("s", "ds", "dds"))
     assert judge((1.0, 2.0, 3.0), (1.0, 2.0, 3.0)) is None
     assert says(judge([1.0, 2.0, 4.0], (1.0, 2.0, 3.0))).startswith("dds")
-    assert "3 things (s, ds, dds), not 2" in says(judge((1.0, 2.0), (1.0, 2.0, 3.0)))
-    assert "3 things" in says(judge(1.0, (1.0, 2.0, 3.0)))
+    assert "3 values (s, ds, dds), not 2" in says(judge((1.0, 2.0), (1.0, 2.0, 3.0)))
+    assert "3 values" in says(judge(1.0, (1.0, 2.0, 3.0)))
 
 
 def test_samples_tables_and_texts():
