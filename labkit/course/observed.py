@@ -116,7 +116,6 @@ def _probed(
 _SHARES = {
     -1.0: "What `{}` adds to your answer has the other sign: if {}, it is right.",
     2.0: "What `{}` adds to your answer is there twice: if {}, it is right.",
-    0.5: "What `{}` adds to your answer is half of what it should be: if {}, it is right.",
 }
 
 
