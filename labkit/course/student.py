@@ -224,32 +224,29 @@ def hint(name: str, level: int = 1) -> None:
     `hint` says so, and where else to ask.  A name that no question has is answered by a sentence.
     """
     if name not in desk().questions:
-        print(
-            wrapped(
-                f"There are no hints for {name!r:.60}. The names are {', '.join(desk().questions)}."
-            )
-        )
+        names = ", ".join(desk().questions)
+        print(wrapped(f"There are no hints for {name!r:.60}. The names are {names}."))
         return
     hints = desk().question(name).hints
-    if not isinstance(level, int) or not 1 <= level <= len(hints):
+    if not hints:
+        text = f"{name} has no hints."
+    elif not isinstance(level, int) or not 1 <= level <= len(hints):
         assignment = read_checks(Path.cwd())["assignment"]
         text = (
             f"{name} has {len(hints)} hints, and no hint {level!r}. If it does not work with all "
             "of them, ask the instructor or a forum. This line in a new cell prints what to send: "
             f"!labkit submit-check --forum {assignment}.ipynb"
         )
-        print(wrapped(text if hints else f"{name} has no hints."))
-        return
-    if level > 1 and level == len(hints) and name not in desk().attempted:
+    elif 1 < level == len(hints) and name not in desk().attempted:
         text = (
             f"Hint {level} of {name} opens after an attempt: write what you believe, run the "
             "check, and ask again."
         )
+    else:
+        print(wrapped(f"{name}, hint {level} of {len(hints)}: {hints[level - 1]}"))
+        text = f'(hint("{name}", {level + 1}) says more)' if level < len(hints) else ""
+    if text:
         print(wrapped(text))
-        return
-    print(wrapped(f"{name}, hint {level} of {len(hints)}: {hints[level - 1]}"))
-    if level < len(hints):
-        print(f'(hint("{name}", {level + 1}) says more)')
 
 
 def use(
