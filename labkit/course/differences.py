@@ -29,7 +29,6 @@ _MEASURES = {
 _CAUSES = {
     -1.0: "has the other sign",
     math.degrees(1.0): "seems to be in degrees; use radians",
-    math.radians(1.0): "seems to be in degrees that were taken for radians",
     1e3: "is a thousand times too large: millimetres for metres?",
     1e-3: "is a thousand times too small",
     2.0: "is twice what is expected",
