@@ -66,7 +66,7 @@ def _reveal(name: str, form: Form, truth: Any) -> None:
     """The prediction beside the truth; without a prediction, no truth."""
     place = desk()
     said, wrong = place.committed.get(name), " and ".join(place.stand_ins.wrong())
-    text = f"your wrong {wrong} made this run; the truth is shown here once it is right"
+    text = f"the experiment uses your wrong {wrong}; the truth is shown here once it is right"
     if said is None:
         text = "commit to a prediction above, then run the cells from there to here again"
     if said is None or wrong:

@@ -128,7 +128,7 @@ def test_a_wrong_answer_that_drives_anyway_is_named_and_tells_no_truth(said):
     wrong, right = (ANSWER.format(k) for k in (3, 2))
     told = said(wrong, anyway, DRAW, guess, truth, right, USE, DRAW, truth)
     assert (told[2], told[7]) == ("With your wrong double: Drawn.", "Drawn.")
-    assert "wrong double made this run" in told[4] and "arm says" not in told[4]
+    assert "uses your wrong double" in told[4] and "arm says" not in told[4]
     assert "The arm says:  2" in told[8]
 
 
