@@ -25,14 +25,14 @@ from .model import Model
 STYLES = ("-", "--", "-.", ":")
 AXES = ("x", "y", "z")
 
-stand_ins: Callable[[], Iterable[str]] = tuple
-"""Gives the names of the answers that captions are to name; a course may set another."""
+drawn_by: Callable[[], Iterable[str]] = tuple
+"""What captions are to name, such as "a stand-in for circle"; a course may set another."""
 
 
 def as_drawn(caption: str) -> str:
-    """A caption that says, where it is so, that a stand-in draws what it tells of."""
-    names = " and ".join(stand_ins())
-    return f"With a stand-in for {names}: {caption}" if names else caption
+    """A caption that says, where it is so, that a stand-in or a wrong answer drew the figure."""
+    names = " and ".join(drawn_by())
+    return f"With {names}: {caption}" if names else caption
 
 
 def tracking(log: Log, model: Model | None = None, *, axes: Any = None) -> Any:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import re
 from collections.abc import Sequence
 
 import numpy as np
@@ -13,7 +14,8 @@ from .question import in_brief
 from .verdict import Difference, Kind, Value
 
 _COMMANDS = [kind.__name__ for kind in COMMANDS]
-
+_NAME = re.compile(r"(?!it |there )\w+(:| is| has| seems) ")
+"""How a sentence begins that begins with a part's name, whose letters stay as they are."""
 
 _MEASURES = {
     "max_mm": ("the largest error of the tip", " mm"),
@@ -25,13 +27,12 @@ _MEASURES = {
 """Measures of a run in words, with their units."""
 
 _CAUSES = {
-    -1.0: "the same with the other sign",
-    math.degrees(1.0): "these look like degrees; use radians",
-    math.radians(1.0): "these look like degrees taken for radians",
-    1e3: "a thousand times too large: millimetres for metres?",
-    1e-3: "a thousand times too small",
-    2.0: "twice what is expected",
-    0.5: "half of what is expected",
+    -1.0: "has the other sign",
+    math.degrees(1.0): "seems to be in degrees; use radians",
+    1e3: "is a thousand times too large: millimetres for metres?",
+    1e-3: "is a thousand times too small",
+    2.0: "is twice what is expected",
+    0.5: "is half of what is expected",
 }
 """The likely cause if all numbers are wrong by the same factor."""
 
@@ -47,8 +48,10 @@ def sentence(d: Difference) -> str:
         text = _farthest(d, np.array(d.expected), np.array(d.found))
     elif got:
         text = f"{d.part or 'it'} is {got} instead of {expected}"
-    says = guess or (f"it {text.strip()}" if d.kind is Kind.RAISED else text)
-    if not (d.kind is Kind.CHANGED or (d.part and says.startswith(d.part))):  # those are names
+    if guess:
+        text = f"{d.part or 'it'} {guess}"
+    says = f"it {text.strip()}" if d.kind is Kind.RAISED else text
+    if not (d.kind is Kind.CHANGED or _NAME.match(says)):
         says = says[:1].upper() + says[1:]
     return says if says.endswith((".", "?", "!", "`")) else f"{says}."
 
@@ -91,7 +94,7 @@ def words(d: Difference) -> tuple[str, str, str, str]:
         case Kind.KEY:
             text = f"the key {d.part!r} is missing"
         case Kind.PARTS:
-            parts = f"{len(d.parts)} things ({', '.join(d.parts)})"
+            parts = f"{len(d.parts)} values ({', '.join(d.parts)})"
             text = f"{of}it should be {parts}, not {_brief(d.found)}"
         case Kind.NOTHING:
             text = "it returned nothing (None); does every branch of it end in a return?"

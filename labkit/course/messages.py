@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 import textwrap
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
@@ -173,7 +174,9 @@ def _helps(verdict: Verdict) -> Iterator[str]:
     if verdict.mistake:
         yield mistake(verdict.mistake)
     elif lead := _lead(verdict):
-        yield sentence(lead)
+        says, call = sentence(lead), next(x.call for x in verdict.tests if x.difference is lead)
+        asked = lead.kind is Kind.NUMBERS and re.fullmatch(r"\w+\([^<(]{1,40}\)", call)
+        yield f"{says[:-1]}, in `{call}`." if asked and says[-1] == "." else says
 
 
 def _lead(verdict: Verdict) -> Difference | None:
@@ -189,7 +192,7 @@ def _unseen(question: Question) -> Iterator[str]:
         yield f"The instructor also tries: {'; '.join(also)}."
     for test in question.tests:
         if not test.cases:
-            yield f"Not tried here, and points hang on it: {test.name}."
+            yield f"Not tried here, although it earns points: {test.name}."
 
 
 def wrapped(line: str) -> str:
@@ -226,7 +229,7 @@ def why(test: TestResult) -> str:
     if test.difference is None:
         return where
     before, expected, got, guess = words(test.difference)
-    text = f"{before}expected {expected}, got {got}{guess and f'; {guess}'}" if got else before
+    text = f"{before}expected {expected}, got {got}{guess and f'; it {guess}'}" if got else before
     return f"{where}{text if text[:1] == ' ' else f': {text}'}" if where else text.strip()
 
 

@@ -15,7 +15,7 @@ import numpy as np
 
 from .judges import factor
 from .marking import Tried
-from .probes import arrays, exchanges, variations
+from .probes import arrays, ask, exchanges, variations
 from .question import Call, Case, Question
 from .relations import Parts, all_near, related, same_form
 from .verdict import Misconception, Outcome, Verdict
@@ -60,7 +60,7 @@ def _exchanged(question: Question, calls: Sequence[Call], function: Function) ->
     changed = [dict(exchanges(call, question.arguments)) for call in calls]
     for label in changed[0]:
         if all(
-            label in one and _right(question, _ask(one[label], function), call.expected)
+            label in one and _right(question, ask(one[label], function), call.expected)
             for one, call in zip(changed, calls, strict=True)
         ):
             return f"Your function is right in every call if {label} before it is called."
@@ -74,13 +74,6 @@ def _right(question: Question, answer: Any, expected: Any) -> bool:
         return False
 
 
-def _ask(call: Call, function: Function) -> Any:
-    try:
-        return call.ask(function)
-    except Exception:
-        return None
-
-
 def _probed(
     question: Question, calls: Sequence[Call], given: list[Parts], function: Function
 ) -> str:
@@ -92,7 +85,7 @@ def _probed(
     for probe in question.probes:
         if monotonic() > until:
             break
-        asked = [_ask(one[probe.label], function) for one in changed]
+        asked = [ask(one[probe.label], function) for one in changed]
         found, right = [arrays(x) for x in asked], [arrays(x) for x in probe.answers]
         if not all(map(same_form, found, right)):
             continue
@@ -106,17 +99,16 @@ def _probed(
             shares.append(says.format(probe.label.split("`")[1], probe.label))
     if shares:
         return shares[0]
-    if stays:
-        return f"Your answer stays the same if {' or if '.join(stays[:3])}; the right one does not."
-    if moves:
-        return f"Your answer changes if {' or if '.join(moves[:3])}; the right one does not."
+    for labels, does, other in ((stays, "stays the same", "changes"), (moves, "changes", "stays")):
+        if labels:
+            when = " or when ".join(labels[:3]).replace(" is ", " is set to ")
+            return f"Your answer {does} when {when}; the right one {other}."
     return ""
 
 
 _SHARES = {
     -1.0: "What `{}` adds to your answer has the other sign: if {}, it is right.",
     2.0: "What `{}` adds to your answer is there twice: if {}, it is right.",
-    0.5: "What `{}` adds to your answer is half of what it should be: if {}, it is right.",
 }
 
 

@@ -44,24 +44,20 @@ def probed(
     found = []
     for label in changed[0]:
         if all(label in one for one in changed):
-            asked = [one[label] for one in changed]
-            answers = _asked(asked, expected)
+            answers = tuple(ask(one[label], expected) for one in changed)
             parts = [arrays(one) for one in answers]
             if all(parts) and all(np.isfinite(x).all() for one in parts for x in one):
                 found.append(Probe(label, answers))
     return tuple(found)
 
 
-def _asked(calls: Sequence[Call], function: Callable[..., Any]) -> tuple[Any, ...]:
+def ask(call: Call, function: Callable[..., Any]) -> Any:
     """What a function answers; None where it does not, for nobody needs to know of such cases."""
-    answers = []
-    with np.errstate(all="ignore"):
-        for call in calls:
-            try:
-                answers.append(call.ask(function))
-            except Exception:
-                answers.append(None)
-    return tuple(answers)
+    try:
+        with np.errstate(all="ignore"):
+            return call.ask(function)
+    except Exception:
+        return None
 
 
 def arrays(answer: Any) -> list[Array]:

@@ -33,12 +33,11 @@ def hand_in(name: str) -> None:
     found = examine(path)
     sources = [cell["source"] for cell in read_cells(path)]
     saved = datetime.fromtimestamp(path.stat().st_mtime, UTC).astimezone()
+    age = max(datetime.now(UTC) - saved, timedelta())
     lines = [
         *_findings(found),
         f"receipt: {receipt(sources)} of {path.name}, saved {saved:%Y-%m-%d %H:%M %Z}",
-        _last_word(
-            path.name, found, max(datetime.now(UTC) - saved, timedelta()), _unsaved(found, sources)
-        ),
+        _last_word(path.name, found, age, _unsaved(found, sources)),
     ]
     print("\n".join(map(wrapped, lines)))
 

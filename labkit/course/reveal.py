@@ -65,10 +65,12 @@ def _write_down(name: str, said: Any) -> None:
 def _reveal(name: str, form: Form, truth: Any) -> None:
     """The prediction beside the truth; without a prediction, no truth."""
     place = desk()
-    said = place.committed.get(name)
+    said, wrong = place.committed.get(name), " and ".join(place.stand_ins.wrong())
+    text = f"the experiment uses your wrong {wrong}; the truth is shown here once it is right"
     if said is None:
-        text = f"{name}: commit to a prediction above, then run the cells from there to here again."
-        print(wrapped(text))
+        text = "commit to a prediction above, then run the cells from there to here again"
+    if said is None or wrong:
+        print(wrapped(f"{name}: {text}."))
         return
     if isinstance(form, Curve):
         _overlay(form, said, truth)

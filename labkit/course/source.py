@@ -24,6 +24,7 @@ Any other, such as ``%%timeit`` or ``%%bash``, leaves no name behind.
 """
 _MAGIC = re.compile(r"\s*%%(\S+)[^\n]*\n?")
 _CHAINS = {ast.Name, ast.Attribute, ast.Call}
+_GROW = {"append", "extend", "insert", "add", "update"}
 _IMPORTS = {ast.Import, ast.ImportFrom}
 _OTHER_MAGIC = re.compile(r"get_ipython\(\)\.run_cell_magic\('([^']*)'")
 
@@ -181,19 +182,21 @@ def _definition(part: list[ast.stmt], lines: list[str]) -> dict[str, Any]:
 
     Returns:
         Names that it ``binds``; names from ``outside``; the dotted names that it ``uses``; names
-        that it ``fills`` by setting items; what names of these that it imports itself ``mean``,
-        "*" for all of a module; whether it is a ``stub``.
+        whose contents it ``fills``; questions that it ``asks`` `use` about; what names of these
+        that it imports itself ``mean``, "*" for all of a module; whether it is a ``stub``.
     """
     scope = symtable.symtable(_text(part, lines), "", "exec")
     binds, outside = _own(scope), set(_from_elsewhere(scope))
     mean: dict[str, str] = {}
-    chains, fills = set[str](), set[str]()
+    chains, fills, asks = set[str](), set[str](), set[str]()
     for node in _used(part):
         kind = type(node)
         if kind in _CHAINS:
             chains.add(dotted(node))
-        elif isinstance(node, ast.Subscript) and isinstance(node.ctx, ast.Store):
-            fills.add(dotted(node.value))
+        if isinstance(node, ast.Call) and dotted(node) == "use" and node.args:
+            asks.add(str(getattr(node.args[0], "value", "")))
+        if filled := _filled(node):
+            fills.add(dotted(filled).partition(".")[0])
         elif kind in _IMPORTS:
             mean |= imported(node)
     uses = {x for x in chains if (root := x.partition(".")[0]) in outside or root in mean}
@@ -201,10 +204,21 @@ def _definition(part: list[ast.stmt], lines: list[str]) -> dict[str, Any]:
         "binds": sorted(binds | (mean.keys() & {"*"})),
         "outside": sorted(outside),
         "uses": sorted(uses),
-        "fills": sorted(fills & outside),
+        "fills": sorted(fills & (binds | outside)),
+        "asks": sorted(asks),
         "mean": mean,
         "stub": is_stub(part[0]),
     }
+
+
+def _filled(node: ast.AST) -> ast.AST | None:
+    """What a node adds to, as `x[k] = 1`, `x.k = 1`, `x += 1` and `x.append(1)` do to x."""
+    if isinstance(node, ast.AugAssign):
+        return node.target
+    if isinstance(node, ast.Subscript | ast.Attribute):
+        stores = isinstance(node.ctx, ast.Store) or getattr(node, "attr", "") in _GROW
+        return node.value if stores else None
+    return None
 
 
 def _used(part: list[ast.stmt]) -> Iterator[ast.AST]:

@@ -1,4 +1,4 @@
-"""Stand-ins, which take the place of answers that are not right, and what is drawn with them."""
+"""What drives in the place of answers that are not right, and what is drawn with it."""
 
 from __future__ import annotations
 
@@ -7,56 +7,63 @@ from typing import Any
 
 from .source import look
 
+STAND_IN, WRONG = "a stand-in for", "your wrong"
 
-class StandIns(set[str]):
-    """The answers that a stand-in replaces for now."""
 
-    def give(self, name: str, given: Callable[..., Any], shell: Any) -> Callable[..., Any]:
-        """The stand-in; from now on captions name it in each cell that draws with it.
+class StandIns(dict[str, str]):
+    """The answers that are not right, and what drives for each now: `STAND_IN` or `WRONG`."""
+
+    ran: Iterable[str] = ()
+
+    def give(
+        self, name: str, kind: str, given: Callable[..., Any], shell: Any
+    ) -> Callable[..., Any]:
+        """What drives; from now on captions name it in each cell that draws with it.
 
         Args:
             name: Of the answer.
-            given: What takes its place.
+            kind: `STAND_IN` or `WRONG`.
+            given: What drives.
             shell: Of the notebook; None where there is none.
         """
-        self.add(name)
+        self[name] = kind
         if shell is not None:
             from .. import plotting  # slow to load
 
-            ran = shell.history_manager.input_hist_raw
-            plotting.stand_ins = lambda: drawn_with(ran, self)
+            self.ran = shell.history_manager.input_hist_raw
+            plotting.drawn_by = lambda: [f"{self[x]} {x}" for x in drawn_with(self.ran, self)]
         return given
+
+    def wrong(self) -> list[str]:
+        """The wrong answers of the student's that the last cell uses."""
+        return [name for name in drawn_with(self.ran, self) if self[name] == WRONG]
 
 
 def drawn_with(cells: Iterable[str], replaced: Collection[str]) -> list[str]:
-    """The answers whose stand-ins the last cell uses, itself or through what others defined.
+    """The answers that are not right and that the last cell uses, itself or through others.
 
     A function that this cell defines, or gets from ``use``, counts only if the rest of it uses it.
 
     Args:
         cells: Their text, in the order in which they ran.
-        replaced: The answers that a stand-in replaces.
+        replaced: The answers that are not right.
     """
     means: dict[str, list[Any]] = {}
     waiting: list[Any] = []
     for cell in map(look, cells):
         for part in cell["definitions"]:
-            means |= {name: [part] for name in part["binds"]}
+            means |= {name: [part] for name in part["binds"] if name not in part["fills"]}
             for name in part["fills"]:
                 means[name] = [*means.get(name, ()), part]
         kept = {*cell["functions"]}
-        waiting = [x for x in cell["definitions"] if not kept & {*x["binds"]} and not _asks(x)]
+        waiting = [x for x in cell["definitions"] if not kept & {*x["binds"]}]
+        waiting = [x for x in waiting if not (x["asks"] and x["binds"])]
     found, seen = set[str](), set[str]()
     while waiting:
         part = waiting.pop()
-        answers = {*part["outside"]}.intersection(replaced) if _asks(part) else set[str]()
+        answers = {*part["asks"], *part["outside"]} & {*replaced} if part["asks"] else set[str]()
         found |= answers
         names = set() if answers else {chain.partition(".")[0] for chain in part["uses"]} - seen
         seen |= names
         waiting += [other for name in names for other in means.get(name, ())]
     return sorted(found)
-
-
-def _asks(part: Any) -> bool:
-    """Whether a statement keeps what ``use`` gives."""
-    return "use" in part["uses"] and bool(part["binds"])

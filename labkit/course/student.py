@@ -31,7 +31,7 @@ from .question import Call, Question
 from .reply import Here
 from .serialize import read_question
 from .source import look
-from .stand_ins import StandIns
+from .stand_ins import STAND_IN, WRONG, StandIns
 from .unfinished import watch
 from .verdict import Outcome, Verdict
 from .withheld import withheld_tools, withhold
@@ -224,32 +224,29 @@ def hint(name: str, level: int = 1) -> None:
     `hint` says so, and where else to ask.  A name that no question has is answered by a sentence.
     """
     if name not in desk().questions:
-        print(
-            wrapped(
-                f"There are no hints for {name!r:.60}. The names are {', '.join(desk().questions)}."
-            )
-        )
+        names = ", ".join(desk().questions)
+        print(wrapped(f"There are no hints for {name!r:.60}. The names are {names}."))
         return
     hints = desk().question(name).hints
-    if not isinstance(level, int) or not 1 <= level <= len(hints):
+    if not hints:
+        text = f"{name} has no hints."
+    elif not isinstance(level, int) or not 1 <= level <= len(hints):
         assignment = read_checks(Path.cwd())["assignment"]
         text = (
             f"{name} has {len(hints)} hints, and no hint {level!r}. If it does not work with all "
             "of them, ask the instructor or a forum. This line in a new cell prints what to send: "
             f"!labkit submit-check --forum {assignment}.ipynb"
         )
-        print(wrapped(text if hints else f"{name} has no hints."))
-        return
-    if level > 1 and level == len(hints) and name not in desk().attempted:
+    elif 1 < level == len(hints) and name not in desk().attempted:
         text = (
             f"Hint {level} of {name} opens after an attempt: write what you believe, run the "
             "check, and ask again."
         )
+    else:
+        print(wrapped(f"{name}, hint {level} of {len(hints)}: {hints[level - 1]}"))
+        text = f'(hint("{name}", {level + 1}) says more)' if level < len(hints) else ""
+    if text:
         print(wrapped(text))
-        return
-    print(wrapped(f"{name}, hint {level} of {len(hints)}: {hints[level - 1]}"))
-    if level < len(hints):
-        print(f'(hint("{name}", {level + 1}) says more)')
 
 
 def use(
@@ -274,23 +271,24 @@ def use(
     """
     if name in _unfinished:
         print(wrapped(f"[stand-in] {_NOT_RUN.format(name=name)}"))
-        return desk().stand_ins.give(name, given, shell())
+        return desk().stand_ins.give(name, STAND_IN, given, shell())
     known, verdict = desk().checked.get(name, (None, None))
     if known is not function or verdict is None:
         verdict, *_ = desk().verdict(name, function)
     wrong = verdict.outcome is Outcome.WRONG
+    if verdict.right:
+        desk().stand_ins.pop(name, None)
+        return yours or function
     if anyway and wrong:
         print(f"[anyway] {name}: yours is not right yet, and drives the arm all the same.")
-    if verdict.right or (anyway and wrong):
-        desk().stand_ins.discard(name)
-        return yours or function
+        return desk().stand_ins.give(name, WRONG, yours or function, shell())
     text = f"[stand-in] {name}: yours is replaced here by a stand-in ({HEADS[verdict.outcome]})."
     if wrong:
         text += " To see what yours does, add anyway=True to this use(...)."
     elif anyway:
         text += " anyway=True takes only a function that runs to its end on every case."
     print(wrapped(text))
-    return desk().stand_ins.give(name, given, shell())
+    return desk().stand_ins.give(name, STAND_IN, given, shell())
 
 
 def _say(says: Message, verdict: Verdict, found: Mismatch | None) -> None:

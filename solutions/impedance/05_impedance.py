@@ -368,8 +368,9 @@ def press(stiffness):
     ax.set_ylabel("force on the wall [N]")
     ax.legend(frameon=False)
     last = pressed(log)[-20:].mean()
+    who = "the tip" if yours else "a stand-in, which does not know K,"
     return figure, (
-        f"With K = {stiffness:.0f} N/m the tip presses with {last:.1f} N; "
+        f"With K = {stiffness:.0f} N/m {who} presses with {last:.1f} N; "
         f"expected are {force:.1f} N."
     )
 
@@ -382,11 +383,10 @@ rammed = meet(stiff, into_the_wall, wall)
 # %%
 met = meet(compliant(K), into_the_wall, wall)
 felt_at_rest = float(pressed(met)[-20:].mean())
-in_a_row = beyond / (1.0 / K[0] + 1.0 / contact_stiffness(wall))
-if yours and abs(felt_at_rest - in_a_row) < 0.2 * in_a_row:
+if yours:
     predict("wall_force", truth=round(felt_at_rest, 1))
 else:
-    print(f"This is {your_law}: the truth is shown here once your law is right.")
+    print("This is a stand-in: the truth is shown here once your law is right.")
 if wall_force is not None:
     print(f"The position mode presses with {np.max(pressed(rammed)):.0f} N.")
 into = lk.replay.motion_of(

@@ -52,7 +52,8 @@ def _at_tip(answer: Callable[..., lk.JointTorque]) -> Callable[..., TipTorque]:
         model: lk.Model = args[-1]
         M, J = model.mass_matrix(state.q), model.tip_jacobian(state.q)
         accelerates = np.asarray(np.linalg.solve(M, J.T).T, dtype=np.float64)
-        return TipTorque(answer(state, *args, **gains).value, accelerates)
+        elbow = np.linalg.svd(J)[2][-1]
+        return TipTorque(answer(state, *args, **gains).value, accelerates, elbow)
 
     return expected
 

@@ -72,7 +72,7 @@ def test_mistakes_are_alike_within_a_rounding():
 
 def test_a_number_is_told_its_sign_but_no_chance_factor():
     """The other sign of a single number tells something, twice the number does not."""
-    assert says(CLOSE(-4.0, 4.0)).endswith("the same with the other sign")
+    assert says(CLOSE(-4.0, 4.0)).endswith("it has the other sign")
     assert says(CLOSE(8.0, 4.0)) == "expected 4, got 8"
 
 
@@ -99,8 +99,8 @@ def test_parts_are_named():
     judge = Close(parts=("s", "ds", "dds"))
     assert judge((1.0, 2.0, 3.0), (1.0, 2.0, 3.0)) is None
     assert says(judge([1.0, 2.0, 4.0], (1.0, 2.0, 3.0))).startswith("dds")
-    assert "3 things (s, ds, dds), not 2" in says(judge((1.0, 2.0), (1.0, 2.0, 3.0)))
-    assert "3 things" in says(judge(1.0, (1.0, 2.0, 3.0)))
+    assert "3 values (s, ds, dds), not 2" in says(judge((1.0, 2.0), (1.0, 2.0, 3.0)))
+    assert "3 values" in says(judge(1.0, (1.0, 2.0, 3.0)))
 
 
 def test_samples_tables_and_texts():
@@ -167,7 +167,7 @@ def at_tip():
     M, J = model.mass_matrix(q), model.tip_jacobian(q)
     unfelt = np.linalg.svd(J)[2][-1]
     tau = np.linspace(-20.0, 30.0, 7)
-    return TipTorque(tau, np.linalg.solve(M, J.T).T), M @ unfelt
+    return TipTorque(tau, np.linalg.solve(M, J.T).T, unfelt), M @ unfelt
 
 
 def test_torques_are_judged_by_what_the_tip_does():
@@ -200,3 +200,13 @@ def test_a_question_of_torques_travels():
     again = read_question(json.loads(json.dumps(question_data(question))))
     answer = lk.JointTorque(expected.value + unfelt)
     assert mark(again, lambda x: answer).outcome is Outcome.RIGHT
+
+
+def test_a_known_mistake_is_known_beside_a_damper_that_moves_the_tip():
+    """What a damper behind I - pinv(J) J adds hides no mistake; the answer is still not right."""
+    judge, (expected, _) = AtTip(), at_tip()
+    assert np.abs(expected.accelerates @ expected.elbow).max() > 0.1, "the tip feels it"
+    braked = lk.JointTorque(expected.value - 3.0 * expected.elbow)
+    assert judge(braked, expected) is not None and judge.same(braked, expected)
+    for joint in np.eye(7):
+        assert not judge.same(lk.JointTorque(braked.value + 0.1 * joint), expected)

@@ -48,10 +48,10 @@ def seen(problem, function):
             lambda state, target, *, kp, kd: law(state, target, kp=kd, kd=kp),
             "`kp` and `kd` are exc",
         ),
-        (lambda state, target, *, kp, kd: kp * (target.position - state.q), "stays the same if"),
+        (lambda state, target, *, kp, kd: kp * (target.position - state.q), "stays the same when"),
         (
             lambda state, target, *, kp, kd: law(state, target, kp=kp, kd=kd) + target.acceleration,
-            "changes if `target.acceleration` is 0",
+            "changes when `target.acceleration` is set to 0",
         ),
         (lambda state, target, *, kp, kd: law(state, target, kp=kp, kd=-kd), "has the other sign:"),
     ],
@@ -75,7 +75,7 @@ def test_an_answer_that_never_changes_is_told_so():
         lambda x, y: x / y,
         (Trial("any", (call(2.0, 3.0), call(5.0, 7.0)), weight=1.0),),
     )
-    says = "In every call your answer is 0.01, whatever it is called with."
+    says = "In every call your answer is 0.01, whatever its arguments are."
     assert seen(ratio, lambda x, y: min(x / y, 0.01)) == says
     assert seen(ratio, lambda x, y: x) != says
 

@@ -9,7 +9,7 @@ from pathlib import Path
 import pytest
 from questions import DOUBLE
 
-from labkit.course import question_data
+from labkit.course import Number, Prediction, question_data
 from labkit.course.checks_file import FILE
 from labkit.course.stand_ins import drawn_with
 from labkit.formats import stamp
@@ -35,7 +35,7 @@ import matplotlib
 matplotlib.use("Agg")
 import matplotlib.pyplot as plt
 import labkit as lk
-from labkit.course import use
+from labkit.course import predict, use
 def given(x): return x
 def triple(x): raise NotImplementedError
 """
@@ -43,13 +43,16 @@ ANSWER = "def double(x): return {} * x"
 USE = 'my_double = use("double", double, given)\nmy_triple = use("triple", triple, given)\n'
 OTHER = 'plt.plot([given(2)])\nlk.plotting.show("Given.")'
 DRAW = 'plt.plot([my_double(2)])\nlk.plotting.show("Drawn.")'
-NAMED, BOTH = "With a stand-in for double: ", "With a stand-in for double and triple: "
+NAMED = "With a stand-in for double: "
+BOTH = "With a stand-in for double and a stand-in for triple: "
 
 
 @pytest.fixture
 def said(tmp_path):
     """Runs cells after `HEAD` in a shell; the last alternative text of each, or what it printed."""
-    questions = [question_data(replace(DOUBLE, name=name)) for name in ("double", "triple")]
+    asked = [replace(DOUBLE, name=name) for name in ("double", "triple")]
+    guess = Prediction("guess", "How far?", Number("m", 0.0, 9.0), 2.0).question()
+    questions = [question_data(question) for question in (*asked, guess)]
     data = {**stamp(), "assignment": "sample", "questions": questions}
     (tmp_path / FILE).write_text(json.dumps(data))
 
@@ -93,13 +96,40 @@ def test_a_figure_without_a_stand_in_says_nothing(said):
 
 
 def test_a_right_answer_is_not_called_a_stand_in(said):
-    """Once `use` takes it, or takes a wrong one anyway; until then the stand-in still draws."""
-    anyway = USE.replace("double, given)", "double, given, anyway=True)")
+    """Once `use` takes it; until then the stand-in still draws."""
     right, wrong = ANSWER.format(2), ANSWER.format(3)
-    told = said(wrong, USE, DRAW, right, DRAW, USE, DRAW, wrong, USE, DRAW, anyway, DRAW)
-    assert [told[k] for k in (2, 4, 6, 9, 11)] == [
-        *[f"{NAMED}Drawn."] * 2, "Drawn.", f"{NAMED}Drawn.", "Drawn."
+    told = said(wrong, USE, DRAW, right, DRAW, USE, DRAW, wrong, USE, DRAW)
+    assert [told[k] for k in (2, 4, 6, 9)] == [
+        *[f"{NAMED}Drawn."] * 2, "Drawn.", f"{NAMED}Drawn."
     ]  # fmt: skip
+
+
+@pytest.mark.parametrize(
+    "keeps",
+    [
+        'double = use("double", double, given)\nkept = [double(1)]',
+        'answer = double\nmine = use("double", answer, given)\nkept = [mine(1)]',
+        'kept = []\nfor k in (1, 2):\n    kept.append(use("double", double, given)(k))',
+        f"{USE}kept = []\nkept += [my_double(1)]\nkept += [2]",
+        f"class Kept: pass\n{USE}a = Kept()\na.run = my_double(1)\nkept = [a.run]",
+    ],
+)
+def test_what_a_stand_in_gave_is_named_however_it_was_kept(said, keeps):
+    """Under the answer's own name, from another one, in a list that grew, in an attribute."""
+    drawn = 'plt.plot(kept)\nlk.plotting.show("Kept.")'
+    *_, kept, other = said(ANSWER.format(3), keeps, drawn, OTHER)
+    assert (kept, other) == (f"{NAMED}Kept.", "Given.")
+
+
+def test_a_wrong_answer_that_drives_anyway_is_named_and_tells_no_truth(said):
+    """Each figure drawn with it says so; a prediction is laid over the truth of a right one."""
+    anyway = USE.replace("double, given)", "double, given, anyway=True)")
+    guess, truth = 'predict("guess", 3.0)', 'predict("guess", truth=my_double(1.0))'
+    wrong, right = (ANSWER.format(k) for k in (3, 2))
+    told = said(wrong, anyway, DRAW, guess, truth, right, USE, DRAW, truth)
+    assert (told[2], told[7]) == ("With your wrong double: Drawn.", "Drawn.")
+    assert "uses your wrong double" in told[4] and "arm says" not in told[4]
+    assert "The arm says:  2" in told[8]
 
 
 def test_an_older_answer_is_replaced_by_a_stand_in_that_is_named(said):

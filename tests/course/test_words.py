@@ -3,9 +3,10 @@
 from dataclasses import replace
 
 import numpy as np
+import pytest
 from questions import CALLS, DOUBLE, HIDDEN, double, square
 
-from labkit.course import Call, Test
+from labkit.course import Call, Close, Test
 from labkit.course.marking import mark, not_counted
 from labkit.course.messages import head, message, summary
 
@@ -59,7 +60,7 @@ def test_wrong_shows_the_call_and_both_numbers():
     """A failure holds the call as typed, what was expected and what came; passed tests are told."""
     assert said(lambda x: abs(2.0 * x) + (x < 0)).splitlines() == [
         "double: not yet right. 3 of 4 points.",
-        "  It is 3 instead of -2.",
+        "  It is 3 instead of -2, in `double(-1.0)`.",
         "  [passed] two (needed before anything counts)",
         "  [passed] three",
         "  [failed] negative",
@@ -105,7 +106,8 @@ def test_the_number_that_is_farthest_off_is_named():
     call = Call((1.0,), expected=np.arange(4.0))
     question = replace(DOUBLE, tests=(Test("a vector", (call,)),), mistakes=())
     words = said(lambda x: np.array([0.0, 1.0, 9.0, 3.5]), question).splitlines()
-    assert words[1] == "  The number at index 2 is farthest off: it is 9 instead of 2."
+    first = " ".join(map(str.strip, words[1:3]))
+    assert first == "The number at index 2 is farthest off: it is 9 instead of 2, in `double(1.0)`."
 
 
 def test_a_withheld_tool_is_an_outcome_of_its_own():
@@ -137,13 +139,13 @@ def test_long_answers_stand_below_each_other():
     at = next(k for k, line in enumerate(lines) if "expected" in line)
     assert "double(<3 x 3 numbers>)" in lines[at - 1]
     assert lines[at].index("[0, 1") == lines[at + 1].index("[0, -1")
-    assert lines[1] == "  The same with the other sign."
+    assert lines[1] == "  It has the other sign."
 
 
 def test_a_test_that_nobody_can_see_is_told():
     """A test without a public case has not passed, whether the rest is right or wrong."""
     question = replace(COMPLETE, tests=(*COMPLETE.tests, Test("elsewhere", ())))
-    assert "Not tried here, and points hang on it: elsewhere." in said(double, question)
+    assert "Not tried here, although it earns points: elsewhere." in said(double, question)
     assert "Not tried here" not in said(double)
     for wrong in (square, lambda x: None, lambda x: 1 / 0):
         assert "  [not tried here] elsewhere" in said(wrong, question).splitlines()
@@ -155,3 +157,20 @@ def test_the_same_failure_is_told_once():
     words = said(lambda x: None)
     assert words.count("t returned nothing (None)") == 1
     assert words.count("[failed]") == 3 and words.count("double(") == 1
+
+
+@pytest.mark.parametrize(
+    ("given", "first"),
+    [
+        ((-1.0, 2.0), "kp has the other sign, in `double(1.0)`."),
+        ((float("inf"), 2.0), "kp is inf; look for a division by zero"),
+        ((1.0, 2.5), "kd is 2.5 instead of 2, in `double(1.0)`."),
+        ((1.0,), "It should be 2 values (kp, kd), not 1."),
+    ],
+)
+def test_a_sentence_says_which_part_it_is_about_and_keeps_its_letters(given, first):
+    """The gain kp is not Kp, and "the other sign" alone would leave open of what."""
+    calls = (Call((1.0,), expected=(1.0, 2.0)),)
+    judge = Close(parts=("kp", "kd"))
+    question = replace(DOUBLE, judge=judge, tests=(Test("two gains", calls),), mistakes=())
+    assert said(lambda x: given, question).splitlines()[1].strip().startswith(first)

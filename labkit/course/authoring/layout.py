@@ -119,8 +119,7 @@ class Course:
             UnknownName: There is no assignment of that name.
             LabkitError: It has a notebook, and no problems.
         """
-        problems: tuple[Problem, ...] = self._listed(name, "problems").PROBLEMS
-        return problems
+        return self._listed(name, "problems")
 
     def predictions(self, name: str) -> tuple[Prediction | Identification, ...]:
         """The predictions of an assignment, from the ``solutions`` package as its problems.
@@ -129,19 +128,16 @@ class Course:
             UnknownName: There is no assignment of that name.
             LabkitError: It has a notebook, and no predictions.
         """
-        predictions: tuple[Prediction | Identification, ...] = self._listed(
-            name, "predictions"
-        ).PREDICTIONS
-        return predictions
+        return self._listed(name, "predictions")
 
-    def _listed(self, name: str, what: str) -> Any:
-        """A module of an assignment's folder."""
+    def _listed(self, name: str, what: str) -> tuple[Any, ...]:
+        """What a module of an assignment's folder lists."""
         self.notebook_source(name)
         if str(self.root) not in sys.path:
             sys.path.insert(0, str(self.root))
         where = f"solutions.{name.partition('_')[2]}.{what}"
         try:
-            return importlib.import_module(where)
+            return tuple(getattr(importlib.import_module(where), what.upper()))
         except ModuleNotFoundError as error:
             if error.name not in (where, where.removesuffix(f".{what}")):
                 raise

@@ -129,15 +129,9 @@ class Remembered:
     run: Loop | Tuned
     memory: Memory
 
-    @property
-    def expected(self) -> Any:
-        """The run's."""
-        return self.run.expected
-
-    @property
-    def hidden(self) -> bool:
-        """The run's."""
-        return self.run.hidden
+    def __getattr__(self, name: str) -> Any:
+        """What else a case has is the run's."""
+        return getattr(self.run, name)
 
     def ask(self, function: Callable[..., Any]) -> dict[str, float]:
         """The measures of the run, for a log takes room; runs that raise are made again."""
@@ -149,10 +143,6 @@ class Remembered:
     def measured(self, answer: dict[str, float]) -> dict[str, float]:
         """What `ask` gave."""
         return answer
-
-    def shown(self, name: str) -> str:
-        """The run in words."""
-        return self.run.shown(name)
 
 
 def remembering(questions: Sequence[Question]) -> list[Question]:
