@@ -46,7 +46,7 @@ export class Panel extends Drawing {
       this.draw3d(robot);
       const { element, alone } = viewer.sight(this.picture);
       stagebox.after(element);
-      alone.click();
+      alone(true);
     }
     else stagebox.append(h("p", { class: "lk-note" }, "This browser draws no 3-D (WebGL is missing). The arm is simulated all the same: push it by the buttons; numbers and curve follow."));
     this.showGains();

@@ -341,6 +341,24 @@ def test_force_and_sentence_are_shown_and_said(page, data):
     assert first["state"] == "ready"
 
 
+def test_the_box_tells_the_truth_where_the_page_takes_the_arm_in_late(page, data):
+    """Made outside of the page, as by a cell that is run again: ticked, and the arm is alone."""
+    hidden = page.evaluate(
+        """(data) => {
+            const host = document.createElement("div"), link = { send() {}, hear() {} };
+            const { picture, sight } = labkitViewer.mount(host, data, undefined, link);
+            const box = [...sight.element.querySelectorAll("label")]
+                .find((label) => label.textContent === "Arm alone").firstChild;
+            const shown = () => [box.checked, picture.body.groups.base.visible];
+            const first = shown();
+            picture.pose("right", data.first.q);
+            return [first, shown(), picture.body.groups.right_w0.visible];
+        }""",
+        json.loads(data),
+    )
+    assert hidden == [[True, False], [True, False], True]
+
+
 def test_without_a_kernel_it_says_so(chromium, data):
     """In a page without a kernel the arm stands still, and says what to do."""
     page = chromium.new_page()

@@ -170,7 +170,7 @@ export class LiveArm {
       this.frames++;
       if (this.held && performance.now() - this.beaten > BEAT) this.beat(); // drawing keeps timers from their turn
     };
-    this.sight.alone.click();
+    this.sight.alone(true);
     if (this.link) picture.grab((picked, event) => this.grip(picked, event), ({ thing }) => !this.things[thing]?.fixed);
   }
 
