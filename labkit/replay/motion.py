@@ -30,9 +30,6 @@ STEPS = {  # how fine each channel is kept
 STILL = 0.005
 """A joint that travels less than this, in [rad], is told to be at rest."""
 
-CRASH = 1000.0
-"""A force above this, in [N], is not told in numbers, since an arm that ran away hit something."""
-
 
 @dataclass(frozen=True, eq=False)
 class Motion:
@@ -51,7 +48,7 @@ class Motion:
         path: Points of the desired path, shape (K, 3), in [m].
         error: How far the tip was from its target, shape (N,), in [m].
         tau: Joint torques, shape (N, n), in [N m].
-        force: What pushes or pulls at the tip, shape (N, 3), in [N], in the robot's base.
+        force: What acts on the tip, shape (N, 3), in [N], in the robot's base; zero where unknown.
         ghosts: Other arms' angles by name, each of shape (N, n), in [rad].
         things: What stands around the arm, by name, as `surroundings.drawn_thing` has it.
     """
@@ -139,9 +136,7 @@ class Motion:
         if self.things:
             words += f"; beside it {_listed(list(self.things))}"
         if self.force is not None:
-            most = np.linalg.norm(self.force, axis=1).max()
-            size = f"up to {most:.0f}" if most < CRASH else f"over {CRASH:.0f}"
-            words += f"; {size} N act on the tip"
+            words += f"; up to {np.linalg.norm(self.force, axis=1).max():.0f} N act on the tip"
         return words + "."
 
     @cached_property

@@ -2,6 +2,7 @@
 
 import base64
 import json
+import re
 from dataclasses import replace
 from html.parser import HTMLParser
 from io import BytesIO
@@ -155,6 +156,25 @@ def test_what_was_met_is_drawn_named_and_felt():
     pictures = [Image.open(BytesIO(show(x).picture())) for x in (motion, motion_of(log, "Alone"))]
     drawn = [(np.array(p)[:, :, :3] == [87, 96, 106]).all(axis=2).sum() for p in pictures]
     assert drawn[0] > 100 > drawn[1]
+
+
+def test_a_joint_at_its_stop_is_no_force_on_the_tip():
+    """A law with a wrong sign throws the arm against its stops; the push on it was 10 N."""
+    model = lk.Model("left")
+    ready = model.robot.ready
+    T = model.pose(ready)
+
+    def wrong(state, target):
+        J, pull = model.tip_jacobian(state.q), 300.0 * (T[:3, 3] - model.pose(state.q)[:3, 3])
+        return lk.JointTorque(model.gravity(state.q) - J[:3].T @ pull - 2.0 * state.dq)
+
+    things = [lk.Push((0.0, 10.0, 0.0), duration=2.0)]
+    plant = lk.Plant(armature=0.05, viscous=0.7)
+    with lk.Arm("left", plant, q0=ready, world=lk.World(things=things)) as arm:
+        log = lk.run(arm, lk.Hold(T, 2.0), wrong)
+    assert np.linalg.norm(lk.metrics.felt_wrench(log)[:, :3], axis=1).max() > 100.0
+    told = re.search(r"up to (\d+) N act on the tip", motion_of(log, "Thrown", force=True).alt)
+    assert 10 <= int(told[1]) < 20
 
 
 def test_a_wall_that_reaches_behind_the_eye_is_left_out_of_the_picture():
