@@ -269,5 +269,5 @@ def _runaway(robot: Robot, dq: Array, who: str, t: float) -> str:
 
 
 def name_of(f: object) -> str:
-    """What a controller or a target is called in logs and sentences."""
-    return getattr(f, "__name__", type(f).__name__)
+    """What a controller or a target is called in logs and sentences; a lambda has no name."""
+    return getattr(f, "__name__", type(f).__name__).replace("<lambda>", "unnamed function")

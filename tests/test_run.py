@@ -288,6 +288,15 @@ def test_a_controller_that_fails_is_named_with_the_time_and_the_way_out(ideal, n
     assert_stopped(ideal)
 
 
+def test_a_lambda_has_a_name_that_can_be_read(ideal):
+    """In the log, and so in legends; in the live view; in an error."""
+    still_ = still(ideal, 0.1)
+    log = lk.run(ideal, still_, lambda s, x: lk.JointVelocity(np.zeros(7)))
+    assert log.controller == "unnamed function"
+    with pytest.raises(ControllerError, match="unnamed function returned None"):
+        lk.run(ideal, still_, lambda s, x: None)
+
+
 ZERO = np.zeros(7)
 TARGETS = {
     "none": (lambda t: None, "the target target returned None"),

@@ -15,7 +15,7 @@ const SIGNS = { zeta: "ζ", lambda2: "λ²", threshold: "damped where σ is belo
 export class Panel extends Drawing {
   constructor(host, config, mujoco, viewer, robot, began) {
     super();
-    Object.assign(this, { host, config, mujoco, viewer, h: viewer.h, began, playing: true, alone: false });
+    Object.assign(this, { host, config, mujoco, viewer, h: viewer.h, began, playing: true, felt: viewer.steady() });
     const plant = config.plant ?? "ideal";
     this.armdials = {};
     this.settings = { ...PRESETS[plant], controller: "workspaceImpedance", path: "circle", shape: "quintic",
@@ -46,7 +46,7 @@ export class Panel extends Drawing {
       this.draw3d(robot);
       const { element, alone } = viewer.sight(this.picture);
       stagebox.after(element);
-      alone.click();
+      alone(true);
     }
     else stagebox.append(h("p", { class: "lk-note" }, "This browser draws no 3-D (WebGL is missing). The arm is simulated all the same: push it by the buttons; numbers and curve follow."));
     this.showGains();
@@ -135,6 +135,8 @@ export class Panel extends Drawing {
     this.numbers.textContent = words.join(" · ");
     this.curves.time(now.t % this.session.lap);
     this.shown?.(now);
+    const hand = now.forces.find((f) => f.name === "hand")?.size ?? 0;
+    if (this.felt(hand)) this.say(`Pulling with ${hand.toFixed(1)} N: ${this.numbers.textContent}`);
     if (!this.host.dataset.ready) {
       this.host.dataset.ready = "1";
       this.host.dataset.firstMotion = String(Math.round(performance.now() - this.began));

@@ -7,6 +7,7 @@ from collections.abc import Mapping
 from functools import cache
 from html import escape
 from pathlib import Path
+from string import Template
 from typing import Any
 
 VIEWER = Path(__file__).parents[1] / "data" / "viewer"
@@ -24,6 +25,12 @@ def recorded_html(data: Mapping[str, Any], description: str, caption: str) -> st
         HTML; see `viewer_scripts`.
     """
     return figure_html(compact(data), description, caption, str(data["alt"]))
+
+
+def filled(page: str, **values: str) -> str:
+    """A page of `data/replay` with its values, which are HTML."""
+    text = (VIEWER.parent / "replay" / page).read_text(encoding="utf-8")
+    return Template(text).substitute(values)
 
 
 @cache
@@ -52,17 +59,11 @@ def figure_html(
         root: Address of the folder with the viewer's files, ending in "/"; None if the page loads
             boot.js already, or brings the viewer with it.
     """
-    picture = (
-        f'<img class="lk-poster" src="{escape(poster)}" alt="{escape(alt)}">'
-        if poster
-        else f'<p class="lk-alt">{escape(alt)}</p>'
-    )
-    more = (
-        ""
-        if description == caption
-        else "<details><summary>Description in words</summary>"
-        f"<p>{escape(description)}</p></details>"
-    )
+    picture = f'<p class="lk-alt">{escape(alt)}</p>'
+    if poster:
+        picture = f'<img class="lk-poster" src="{escape(poster)}" alt="{escape(alt)}">'
+    words = f"<summary>Description in words</summary><p>{escape(description)}</p>"
+    more = "" if description == caption else f"<details>{words}</details>"
     boot = f'\n<script defer src="{escape(root)}boot.js"></script>' if root is not None else ""
     safe = data.replace("<", "\\u003c")  # nothing in it can end the script element
     return (

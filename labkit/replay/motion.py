@@ -30,9 +30,6 @@ STEPS = {  # how fine each channel is kept
 STILL = 0.005
 """A joint that travels less than this, in [rad], is told to be at rest."""
 
-CRASH = 1000.0
-"""A force above this, in [N], is not told in numbers, since an arm that ran away hit something."""
-
 
 @dataclass(frozen=True, eq=False)
 class Motion:
@@ -51,7 +48,7 @@ class Motion:
         path: Points of the desired path, shape (K, 3), in [m].
         error: How far the tip was from its target, shape (N,), in [m].
         tau: Joint torques, shape (N, n), in [N m].
-        force: What pushes or pulls at the tip, shape (N, 3), in [N], in the robot's base.
+        force: What acts on the tip, shape (N, 3), in [N], in the robot's base; zero where unknown.
         ghosts: Other arms' angles by name, each of shape (N, n), in [rad].
         things: What stands around the arm, by name, as `surroundings.drawn_thing` has it.
     """
@@ -91,22 +88,17 @@ class Motion:
         count = max(2, round((self.t[-1] - self.t[0]) * rate) + 1)
         times = np.linspace(self.t[0], self.t[-1], count)
 
-        def even(x: Array | None) -> Array | None:
-            return None if x is None else resampled(x, self.t, times)
+        def even(x: Array, name: str) -> dict[str, Any]:
+            return pack(x if name == "path" else resampled(x, self.t, times), STEPS[name])
 
         channels = {
-            "q": even(self.q),
-            "target": even(self.target_position),
-            "target_quaternion": even(_quaternions(self.target_rotation)),
-            "board": even(self.board_position),
-            "board_quaternion": even(_quaternions(self.board_rotation)),
-            "path": self.path,
-            "error": even(self.error),
-            "tau": even(self.tau),
-            "force": even(self.force),
+            "q": self.q,
+            "target": self.target_position,
+            "target_quaternion": _quaternions(self.target_rotation),
+            "board": self.board_position,
+            "board_quaternion": _quaternions(self.board_rotation),
+            **{name: getattr(self, name) for name in ("path", "error", "tau", "force")},
         }
-        packed = {k: pack(v, STEPS[k]) for k, v in channels.items() if v is not None}
-        ghosts = {k: pack(resampled(q, self.t, times), STEPS["q"]) for k, q in self.ghosts.items()}
         return {
             "kind": "motion",
             "title": self.title,
@@ -116,8 +108,8 @@ class Motion:
             **({} if self.robot.name in SIDES else {"robot": drawn(self.robot)}),
             "start": round(float(times[0]), 6),
             "period": round(float(times[1] - times[0]), 9),
-            **packed,
-            "ghosts": ghosts,
+            **{name: even(x, name) for name, x in channels.items() if x is not None},
+            "ghosts": {name: even(q, "q") for name, q in self.ghosts.items()},
             **({"things": dict(self.things)} if self.things else {}),
         }
 
@@ -139,9 +131,7 @@ class Motion:
         if self.things:
             words += f"; beside it {_listed(list(self.things))}"
         if self.force is not None:
-            most = np.linalg.norm(self.force, axis=1).max()
-            size = f"up to {most:.0f}" if most < CRASH else f"over {CRASH:.0f}"
-            words += f"; {size} N act on the tip"
+            words += f"; up to {np.linalg.norm(self.force, axis=1).max():.0f} N act on the tip"
         return words + "."
 
     @cached_property
@@ -159,14 +149,10 @@ class Motion:
                 f" {self.q[:, most].min():.2f} and {self.q[:, most].max():.2f} rad."
             )
         if self.target_position is not None:
-            low, high = self.target_position.min(0), self.target_position.max(0)
-            ends = [(f"{a:.2f}", f"{b:.2f}") for a, b in zip(low, high, strict=True)]
-            spans = (
-                f"{axis} from {a} to {b} m" if a != b else f"{axis} = {a} m"
-                for axis, (a, b) in zip("xyz", ends, strict=True)
-            )
+            ends = [(f"{x.min():.2f}", f"{x.max():.2f}") for x in self.target_position.T]
+            spans = [f"= {a} m" if a == b else f"from {a} to {b} m" for a, b in ends]
             does = "moves within" if any(a != b for a, b in ends) else "stays at"
-            words.append(f"The target {does} {', '.join(spans)}.")
+            words.append("The target {} x {}, y {}, z {}.".format(does, *spans))
         if self.error is not None:
             e, peak = np.abs(self.error), int(np.abs(self.error).argmax())
             words.append(

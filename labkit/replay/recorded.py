@@ -13,6 +13,10 @@ from ..trajectory import PoseSample
 from .motion import Motion, resampled
 from .surroundings import drawn_thing
 
+STOP, AFTER = 0.02, 0.1
+"""A joint nearer than this to its limit, in [rad], may have met its stop; torque sensors feel that
+for as long as this, in [s]."""
+
 
 def motion_of(
     log: Log,
@@ -35,7 +39,8 @@ def motion_of(
         reference: Draw the arm that follows perfectly as a ghost too, where the target is one of
             joint angles.
         torque: Keep the torques, which take the most room.
-        force: Draw the force on the tip, as the arm's torque sensors told it.
+        force: Draw the force on the tip, as the arm's torque sensors told it; none while a joint
+            is at its stop, which its sensor feels too.
         things: What stood around the arm: the `Wall`, `Table` and `Spring` of its world.
 
     Returns:
@@ -56,7 +61,7 @@ def motion_of(
         path=T_wd[:: max(1, len(log) // 120), :3, 3],
         error=np.linalg.norm(metrics.tip_error(log)[:, :3], axis=1),
         tau=log.tau if torque else None,
-        force=metrics.felt_wrench(log)[:, :3] if force else None,
+        force=_felt(log) if force else None,
         ghosts=arms,
         things={
             f"{type(x).__name__.lower()} {k}": data
@@ -64,3 +69,13 @@ def motion_of(
             if (data := drawn_thing(x))
         },
     )
+
+
+def _felt(log: Log) -> Any:
+    """The force on the tip, shape (N, 3) in [N]; zero within `AFTER` of a stop's torque."""
+    from scipy.ndimage import binary_dilation
+
+    room = np.minimum(log.q - log.robot.lower, log.robot.upper - log.q).min(axis=1)
+    ticks = max(1, round(AFTER / float(log.t[1] - log.t[0])))
+    unknown = binary_dilation(room < STOP, iterations=ticks)
+    return np.where(unknown[:, None], 0.0, metrics.felt_wrench(log)[:, :3])

@@ -8,28 +8,25 @@ the two: the picture until the widget lives, and beside it in a browser that dra
 from __future__ import annotations
 
 import base64
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from html import escape
 from io import BytesIO
-from itertools import chain, repeat
 from typing import Any
 
 import numpy as np
 
-from ..robot import SIDES, Robot
+from ..robot import Robot
 from ..shapes import Array
+from .figure import filled
 
 LIFT = 0.6
 """Power of the picture's brightness, below 1 to lighten what is dark."""
 
-_STYLE = """<style>
-.jp-OutputArea-child:has(.lk-saved):has(+ .jp-OutputArea-child :is(.lk-player, .widget-box))\
-:not(:has(+ .jp-OutputArea-child .lk-stage > .lk-note)),
-.jp-OutputArea-child:has(.lk-saved) + .jp-OutputArea-child:not(:has(:is(.lk-player, .widget-box)))
-{ position: absolute; width: 1px; height: 1px; overflow: hidden; clip-path: inset(50%); }
-.lk-saved { margin: 0; } .lk-saved img { max-width: 100%; border-radius: 8px; background: #e9edf2; }
-body[data-jp-theme-light="false"] .lk-saved img { background: #8a95a2; }
-</style>"""
+NEWTON, FORCE = 0.01, "#c77700"
+"""Of a force's arrow: how long a newton is, in [m], and its colour, as `player.js` has them."""
+
+BACK = 0.005
+"""What can be seen through is set back by this, in [m]: an arm within another stays as it is."""
 
 
 class Saved:
@@ -65,53 +62,75 @@ def in_its_place(words: str, picture: bytes | None = None) -> dict[str, str]:
     told = escape(words)
     data = base64.b64encode(picture or b"").decode()
     shown = f'<img alt="{told}" src="data:image/png;base64,{data}">' if picture else ""
-    page = f'<figure class="lk-saved">{shown}<figcaption>{told}</figcaption></figure>{_STYLE}'
-    return {"text/plain": words, "text/html": page}
+    return {"text/plain": words, "text/html": filled("still.html", shown=shown, told=told)}
 
 
-def still(robot: Robot, q: Any, *paths: Array, around: Any = None) -> bytes:
-    """A picture of an arm, with paths drawn into it: a PNG file's bytes, or those of an empty one.
+def still(
+    robot: Robot,
+    q: Any,
+    *paths: Array,
+    around: Any = None,
+    alone: bool = False,
+    through: Iterable[tuple[Any, float]] = (),
+    force: Any = (0.0, 0.0, 0.0),
+) -> bytes:
+    """A picture of an arm, with what is around it: a PNG file's bytes.
 
     Args:
-        robot: Which arm; only Baxter's have a body to show.
+        robot: Which arm.
         q: Joint angles, shape (n,) in [rad].
         *paths: Points of lines, each of shape (K, 3) in [m]: red, black, then grey ones.
         around: Further points that must be in sight, shape (K, 3) in [m].
+        alone: Leave out body, head and the other arm.
+        through: What can be seen through: each surface, and its opacity from 0 to 1.
+        force: What acts on the tip, shape (3,) in [N].
     """
     from PIL import Image, ImageDraw
 
-    from ..arm import Arm
-    from ..tags import Camera, Intrinsics, looking_at
+    from ..model import Model
+    from ..tags import Intrinsics, looking_at
+    from ..tags.rendering import FAR, Window, draw
 
-    width, height = 640, 400
-    picture = np.full((height, width, 3), 255, dtype=np.uint8)
-    with Arm(robot, q0=np.clip(q, robot.lower, robot.upper)) as arm:
-        points = np.vstack([arm.tip()[0], *paths[:2], *([] if around is None else [around])])
-        at = 0.5 * (points.min(0) + points.max(0))
-        radius = 0.5 * float(np.linalg.norm(np.ptp(points, axis=0))) + 0.12
-        away = radius / np.sin(np.radians(17.5)) * _direction(robot)
-        focus = height / 2 / np.tan(np.radians(17.5))
-        lens = Intrinsics(width, height, focus, focus)
-        camera = Camera(arm.world, looking_at(at + away, at), lens)
-        if robot.name in SIDES:
-            picture = np.array(camera.image())
-        T_cw = np.linalg.inv(camera.T_wc)
-    ground = (picture == 255).all(axis=2)
-    light = 255.0 * (picture / 255.0) ** LIFT  # a black gripper shows its shape
-    whole = Image.fromarray(np.dstack([light, np.where(ground, 0.0, 255.0)]).astype(np.uint8))
-    colours = chain(("#b3001b", "#1f2328"), repeat("#57606a"))
-    for points, colour in reversed(list(zip(paths, colours, strict=False))):
+    tip = Model(robot).pose(q)[:3, 3]
+    points = np.vstack([tip, *paths[:2], *([] if around is None else [around])])
+    at = 0.5 * (points.min(0) + points.max(0))
+    radius = 0.5 * float(np.linalg.norm(np.ptp(points, axis=0))) + 0.12
+    along = np.array([0.318, -0.818 if robot.name == "right" else 0.818, 0.479])  # as in `rig.js`
+    T_wc = looking_at(at + radius / np.sin(np.radians(17.5)) * along, at)
+    lens = Intrinsics(640, 400, *[200.0 / np.tan(np.radians(17.5))] * 2)
+
+    def layer(surface: Any, before: Any, opacity: float) -> tuple[Any, Any]:
+        colours, depth = draw(surface, lens, T_wc, Window(0, 0, lens.width, lens.height))
+        seen = np.where((depth < before - BACK) & (depth < 0.99 * FAR), opacity, 0.0)
+        return Image.fromarray((255.0 * np.dstack([colours, seen])).astype(np.uint8)), depth
+
+    solid = body(robot, q, alone)
+    whole, depth = layer(solid._replace(colours=solid.colours**LIFT), FAR, 1.0)
+    for surface, opacity in through:
+        whole.alpha_composite(layer(surface, depth, opacity)[0])
+    colours = ["#b3001b", "#1f2328", *["#57606a"] * len(paths)]
+    lines = [*zip(paths, colours, strict=False)][::-1]
+    if (size := float(np.linalg.norm(force))) > 0.05:
+        lines.append((np.array([tip, tip + NEWTON * np.asarray(force)]), FORCE))
+    paint, T_cw = ImageDraw.Draw(whole), np.linalg.inv(T_wc)
+    for points, colour in lines:
         seen = points @ T_cw[:3, :3].T + T_cw[:3, 3]
-        if (seen[:, 2] <= 0.0).any():  # a large wall that reaches behind the camera
-            continue
-        pixels = lens.project(seen)
-        ImageDraw.Draw(whole).line(list(map(tuple, pixels.tolist())), colour, 3)
+        if (seen[:, 2] > 0.0).all():  # no large wall that reaches behind the camera
+            pixels = lens.project(seen)
+            paint.line([*map(tuple, pixels.tolist())], colour, 3)
+            if colour == FORCE:
+                right, down = pixels[1] - pixels[0]
+                turn = np.degrees(np.arctan2(-right, -down))
+                paint.regular_polygon((*pixels[1], 9), 3, turn, FORCE)
+                paint.text((*(pixels[1] + [12, -9]),), f"{size:.1f} N", FORCE, font_size=18)
     file = BytesIO()
     whole.save(file, "PNG", optimize=True)
     return file.getvalue()
 
 
-def _direction(robot: Robot) -> Array:
-    """From where the viewer's first picture looks, as `rig.js` has it."""
-    azimuth, up = 1.2 * (-1 if robot.name == "right" else 1), 0.5
-    return np.array([np.cos(up) * np.cos(azimuth), np.cos(up) * np.sin(azimuth), np.sin(up)])
+def body(robot: Robot, q: Array, alone: bool) -> Any:
+    """The surface of a robot whose arm is at q, shape (n,) in [rad], or of this arm alone."""
+    from ..tags.visuals import RobotVisuals
+
+    seen = RobotVisuals([(robot, q)])
+    return seen.surface([not alone or x.parent in robot.joint_names for x in seen.pieces])

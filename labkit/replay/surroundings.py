@@ -98,13 +98,13 @@ class Surroundings:
         if T_wd is not None:
             fixed = not isinstance(self._latest, PoseSample)
             about = {"fixed": fixed, "shift": self._shift.tolist()}
-            found[TARGET] = _placed("target", T_wd) | about
+            found[TARGET] = placed("target", T_wd) | about
         for i, thing in enumerate(self._arm.world.things):
             if data := drawn_thing(thing):
                 found[f"thing {i}"] = data
         if camera := getattr(getattr(self._target, "lookups", None), "camera", None):
             lens = camera.intrinsics
-            found["camera"] = _placed("camera", camera.T_wc) | {
+            found["camera"] = placed("camera", camera.T_wc) | {
                 "field": float(np.degrees(2.0 * np.arctan(lens.height / 2.0 / lens.fy))),
                 "ratio": lens.width / lens.height,
                 "fixed": True,  # it stands where its readings are made
@@ -112,7 +112,7 @@ class Surroundings:
         shown: list[Any] = self._arm.world.shown
         for i, board in enumerate(shown):
             if hasattr(board, "T_wm"):
-                found[f"tag {i}"] = _placed("tag", board.T_wm) | {"size": float(board.tag.paper)}
+                found[f"tag {i}"] = placed("tag", board.T_wm) | {"size": float(board.tag.paper)}
         return found
 
     def move(self, name: str, position: Any) -> None:
@@ -137,19 +137,17 @@ class Surroundings:
         for number, goal in list(self._goals.items()):
             old: Any = world.things[number]
             way = goal - _middle(old)
-            far = float(np.linalg.norm(way))
-            if far <= FASTEST * seconds:
+            share = FASTEST * seconds / max(1e-9, float(np.linalg.norm(way)))
+            if share >= 1.0:
                 del self._goals[number]
-            else:
-                goal = _middle(old) + way * (FASTEST * seconds / far)
-            world.things[number] = _moved(old, goal)
+            world.things[number] = _moved(old, _middle(old) + min(1.0, share) * way)
 
 
 def drawn_thing(thing: Any) -> dict[str, Any]:
     """A wall, a table or a band in plain numbers; nothing of what cannot be seen."""
     if isinstance(thing, Wall | Table):
         size, colour = (list(map(float, x)) for x in (thing.size, thing.colour))
-        return _placed("face", thing.T_wf) | {"size": size, "colour": colour}
+        return placed("face", thing.T_wf) | {"size": size, "colour": colour}
     if isinstance(thing, Spring):
         return {"kind": "band", "position": thing.anchor.tolist()}
     return {}
@@ -166,6 +164,16 @@ def outline(drawn: Mapping[str, Any], tips: Array) -> Array:
     return np.asarray(turned + drawn["position"])
 
 
+def faces(things: Mapping[str, Any]) -> list[tuple[Any, float]]:
+    """Walls and tables as surfaces, each with its opacity in the viewer."""
+    from ..tags.surface import in_colour
+
+    drawn = [x for x in things.values() if x["kind"] == "face"]
+    halves = [outline(x, np.empty(0))[[[0, 1, 2], [2, 3, 0]]] for x in drawn]
+    colours = [x["colour"] for x in drawn]
+    return [(in_colour(h, c), min(0.55, c[3])) for h, c in zip(halves, colours, strict=True)]
+
+
 def _middle(thing: Any) -> Array:
     return np.asarray(thing.anchor if isinstance(thing, Spring) else thing.T_wf[:3, 3])
 
@@ -178,7 +186,8 @@ def _moved(thing: Any, position: Array) -> Any:
     return replace(thing, anchor=position)
 
 
-def _placed(kind: str, T: Array) -> dict[str, Any]:
+def placed(kind: str, T: Array) -> dict[str, Any]:
+    """Something at a pose, shape (4, 4), in plain numbers."""
     from scipy.spatial.transform import Rotation  # a slow import, for who looks around
 
     turn = Rotation.from_matrix(T[:3, :3]).as_quat()

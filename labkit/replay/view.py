@@ -4,14 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from dataclasses import asdict
-from functools import cache
 from typing import Any
 
 import numpy as np
 
 from ..arm import Arm
-from ..errors import NothingKept, TypeMismatch
-from ..log import Log
+from ..errors import TypeMismatch
 from ..robot import SIDES
 from ..run import name_of
 from ..shapes import shown
@@ -20,7 +18,7 @@ from .figure import compact
 from .motion import drawn
 from .saved import still
 from .session import Session
-from .widget import widget_class
+from .surroundings import faces
 
 
 def live(
@@ -61,6 +59,8 @@ def live(
         UnknownName: Neither a controller nor the plant has a number of a dial's name.
         OutOfRange: A dial starts outside its range, or the rate does not fit the physics step.
     """
+    from .front import Live
+
     if not isinstance(arm, Arm):
         raise TypeMismatch(f"arm is {shown(arm)}, expected a simulated lk.Arm")
     named = controller if isinstance(controller, Mapping) else {name_of(controller): controller}
@@ -69,11 +69,10 @@ def live(
             raise TypeMismatch(f"{name} is {shown(given)}, expected a function")
     laws = {str(name): law for name, law in named.items()}
     found = read_dials(dials, arm.plant, laws)
-    widget = _widget_class()()
+    widget = Live()
     widget.session = Session(arm, laws, target, found, rate, widget.send)
     widget.on_msg(lambda _, message, __: widget.session.tell(message))
     first = widget.session.numbers()
-    names = " and ".join(laws)
     widget.data = compact(
         {
             "kind": "live",
@@ -89,40 +88,11 @@ def live(
         }
     )
     widget.words = (
-        f"{title}, held by {names}: run this cell, press Start, and pull at the arm with the mouse "
-        "or with the buttons below it."
+        f"{title}, held by {' and '.join(laws)}: run this cell, press Start, and pull at the arm "
+        "with the mouse or with the buttons below it."
     )
     elbow = arm.model.point_on(first["q"], arm.robot.n // 2, np.zeros(3))[0]
-    widget.picture = lambda: still(arm.robot, first["q"], around=elbow[None, :])
+    widget.picture = lambda: still(
+        arm.robot, first["q"], around=elbow[None, :], alone=True, through=faces(first["things"])
+    )
     return widget
-
-
-@cache
-def _widget_class() -> type[Any]:
-    class Live(widget_class()):  # type: ignore[misc]
-        """Shows one session and passes on what the hand does."""
-
-        session: Session
-
-        @property
-        def log(self) -> Log:
-            """The run that was kept last.
-
-            Raises:
-                NothingKept: None was.
-            """
-            if not self.session.logs:
-                raise NothingKept("no run was kept: press Start, then Keep this run in the view")
-            return self.session.logs[-1]
-
-        @property
-        def logs(self) -> tuple[Log, ...]:
-            """All runs that were kept."""
-            return tuple(self.session.logs)
-
-        def close(self) -> None:
-            """End it; the arm is at rest and free."""
-            self.session.close()
-            super().close()
-
-    return Live

@@ -171,7 +171,7 @@ class Camera:
         """The robot as it stands now, and where the camera is."""
         if self.world.closed:
             raise Closed("this camera's world was closed; make a new World, and a Camera in it")
-        return RobotVisuals(self.world), self.T_wc
+        return RobotVisuals([(arm.robot, arm.truth().q) for arm in self.world.arms]), self.T_wc
 
     def _robot_in(self, robot: RobotVisuals, T_wc: Array, window: Window, depth: float) -> Surface:
         """Those pieces of the robot that reach into a window's cone, up to a depth."""

@@ -42,6 +42,11 @@ class Surface(NamedTuple):
 NOTHING = Surface(np.empty((0, 3, 3)), np.empty((0, 3)))
 
 
+def in_colour(corners: Array, colour: Any) -> Surface:
+    """Triangles, shape (n, 3, 3) in [m], in one colour: red, green and blue, from 0 to 1."""
+    return Surface(corners, np.tile(np.asarray(colour, dtype=float)[:3], (len(corners), 1)))
+
+
 def joined(surfaces: Iterable[Surface]) -> Surface:
     """Several surfaces as one."""
     corners, colours = zip(NOTHING, *surfaces, strict=True)
@@ -56,13 +61,13 @@ def box(half: Any, colour: Any) -> Surface:
         colour: Red, green and blue, and opacity, which is not drawn.
     """
     corners = (_BOX * half)[_SIDES]
-    return Surface(corners, np.tile(np.asarray(colour, dtype=float)[:3], (len(corners), 1)))
+    return in_colour(corners, colour)
 
 
 def wrapped(points: Array, colour: Any) -> Surface:
     """The convex hull of points, shape (n, 3) in [m]."""
     corners = points[ConvexHull(points).simplices]
-    return Surface(corners, np.tile(np.asarray(colour, dtype=float)[:3], (len(corners), 1)))
+    return in_colour(corners, colour)
 
 
 def mesh(file: Path, colour: Any) -> Surface:
@@ -76,4 +81,4 @@ def mesh(file: Path, colour: Any) -> Surface:
             first, *rest = (int(word.partition("/")[0]) - 1 for word in words)
             sides += [[first, a, b] for a, b in pairwise(rest)]
     corners = np.array(points)[np.array(sides)]
-    return Surface(corners, np.tile(np.asarray(colour, dtype=float)[:3], (len(corners), 1)))
+    return in_colour(corners, colour)

@@ -7,6 +7,7 @@ one of Baxter's arms, or no arm, the other hangs at Rethink's neutral pose.
 from __future__ import annotations
 
 import json
+from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cache, cached_property, lru_cache
 from pathlib import Path
@@ -16,7 +17,7 @@ import numpy as np
 from scipy.spatial.transform import Rotation
 
 from .. import se3
-from ..baxter import robot
+from ..baxter import robot as baxter
 from ..robot import SIDES, Robot
 from ..scene import FACE, Table, Wall
 from ..shapes import Array, locked
@@ -54,23 +55,23 @@ class Piece:
 
 
 class RobotVisuals:
-    """What cameras see of the robots, with their joints where they are now.
+    """What cameras see of robots with their joints at some angles.
 
     Attributes:
         pieces: All of their parts.
         frames: Pose in the world of each part's joint, shape (pieces, 4, 4).
     """
 
-    def __init__(self, world: World) -> None:
-        """Look where the joints of ``world`` are."""
-        q = {arm.robot.name: arm.truth().q for arm in world.arms if arm.robot.name in SIDES}
-        others = [arm for arm in world.arms if arm.robot.name not in SIDES]
+    def __init__(self, arms: Sequence[tuple[Robot, Array]]) -> None:
+        """See ``arms``, each a robot and its joint angles, shape (n,) in [rad]."""
+        q = {robot.name: angles for robot, angles in arms if robot.name in SIDES}
+        others = [(robot, angles) for robot, angles in arms if robot.name not in SIDES]
         self.pieces: tuple[Piece, ...] = pieces() if q or not others else ()
-        frames = joint_frames({side: robot(side).neutral for side in SIDES} | q)
+        frames = joint_frames({side: baxter(side).neutral for side in SIDES} | q)
         poses = [frames[piece.parent] for piece in self.pieces]
-        for arm in others:
-            links = capsules(arm.robot)
-            frames = link_frames(arm.robot, arm.truth().q)
+        for robot, angles in others:
+            links = capsules(robot)
+            frames = link_frames(robot, angles)
             self.pieces += links
             poses += [frames[link.parent] for link in links]
         self.frames = np.array(poses)
@@ -107,7 +108,7 @@ def joint_frames(q: dict[str, Any]) -> dict[str, Array]:
     angle = {
         name: float(x)
         for side, angles in q.items()
-        for name, x in zip(robot(side).joint_names, angles, strict=True)
+        for name, x in zip(baxter(side).joint_names, angles, strict=True)
     }
     frames: dict[str, Array] = {"base": np.eye(4)}
     for name, parent, T in _joints():

@@ -62,6 +62,29 @@ def test_a_live_page_is_quiet_accessible_and_fits(live, name):
     assert violations(page, only=COLOURS) == [], "dark"
 
 
+CUT = """() => {
+    const pen = document.createElement("canvas").getContext("2d"), found = [];
+    for (const part of document.querySelectorAll(".lk-live fieldset *")) {
+        const field = part.parentElement.closest("fieldset").getBoundingClientRect();
+        if (part.getBoundingClientRect().right > field.right - 2) found.push(part.textContent);
+    }
+    for (const list of document.querySelectorAll(".lk-live select")) {
+        pen.font = getComputedStyle(list).font;
+        const longest = Math.max(...[...list.options].map((o) => pen.measureText(o.text).width));
+        if (longest + 26 > list.clientWidth && list.clientWidth) found.push(list.value);
+    }
+    return found;
+}"""
+
+
+@pytest.mark.parametrize("name", PAGES)
+def test_no_unit_and_no_name_is_cut_on_a_phone(live, name):
+    """What a field holds stays within its frame, and the longest name within its list."""
+    page = live(name, phone=True, reduced_motion="reduce")
+    page.evaluate("document.querySelectorAll('details').forEach((e) => { e.open = true; })")
+    assert page.evaluate(CUT) == []
+
+
 @pytest.mark.parametrize("name", ["index", "live"])
 def test_a_page_that_nobody_clicked_loads_no_physics(visit, name):
     """Before the click there is a picture, and neither MuJoCo nor the live arm's bundle."""

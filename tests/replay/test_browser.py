@@ -243,6 +243,16 @@ def test_a_phone_loads_on_tap_and_does_not_scroll_sideways(chromium, visit):
     assert page.evaluate("document.documentElement.scrollWidth <= innerWidth")
 
 
+def test_a_phone_shows_the_whole_caption_of_the_jacobian(chromium, visit):
+    """The table scrolls sideways, and its caption stays in sight."""
+    page = visit(chromium, "demos", phone=True)
+    page.get_by_role("button", name="Tap to load").nth(1).click()
+    caption, table = page.locator(".lk-table caption"), page.locator(".lk-table").last
+    caption.filter(has_text="Jacobian").wait_for()
+    seen, whole = (part.bounding_box() for part in (caption.last, table))
+    assert whole["x"] + whole["width"] > 390 > seen["x"] + seen["width"]
+
+
 def test_the_explorer_stops_on_the_grid(chromium, visit):
     page = visit(chromium, "explorer")
     page.wait_for_selector("[data-ready]")

@@ -33,22 +33,30 @@ def data():
 @pytest.fixture
 def page(chromium, data):
     """The arm in a page; `sent` is what it said to the kernel, `tell` is what the kernel says."""
+    page = opened(chromium, data)
+    page.wait_for_selector("[data-ready]")
+    yield page
+    page.close()
+
+
+def opened(chromium, data, how=""):
+    """A page whose kernel goes when `link.gone` is set: its line is "cut", or it is "deaf"."""
     page = chromium.new_page(viewport={"width": 800, "height": 1000})
     page.set_content("<!doctype html><html lang='en'><body><div id='a'></div></body></html>")
     page.set_default_timeout(120_000)  # a guard against hanging only
     for name in ("viewer.js", "robot.js"):
         page.add_script_tag(content=shared_files()[name].read_text())
     page.evaluate(
-        """(data) => {
+        """([data, how]) => {
             window.sent = [];
-            const link = { send: (m) => sent.push(m), hear: (f) => { window.tell = f; } };
+            window.link = { hear: (f) => { window.tell = f; },
+                cut: () => how === "cut" && link.gone,
+                send: (m) => { if (link.gone) throw new Error("Cannot send"); sent.push(m); } };
             labkitViewer.mount(document.getElementById("a"), data, undefined, link);
         }""",
-        json.loads(data),
+        [json.loads(data), how],
     )
-    page.wait_for_selector("[data-ready]")
-    yield page
-    page.close()
+    return page
 
 
 def sent(page, kind):
@@ -339,6 +347,113 @@ def test_force_and_sentence_are_shown_and_said(page, data):
     assert page.inner_text(".lk-say") == words
     page.locator("[role=status]").filter(has_text=words).wait_for(state="attached")
     assert first["state"] == "ready"
+
+
+GONE = "The kernel was restarted or shut down, and this arm is gone with it: run the notebook"
+
+
+def test_the_box_tells_the_truth_where_the_page_takes_the_arm_in_late(page, data):
+    """Made outside of the page, as by a cell that is run again: ticked, and the arm is alone."""
+    hidden = page.evaluate(
+        """(data) => {
+            const host = document.createElement("div"), link = { send() {}, hear() {} };
+            const { picture, sight } = labkitViewer.mount(host, data, undefined, link);
+            const box = [...sight.element.querySelectorAll("label")]
+                .find((label) => label.textContent === "Arm alone").firstChild;
+            const shown = () => [box.checked, picture.body.groups.base.visible];
+            const first = shown();
+            picture.pose("right", data.first.q);
+            return [first, shown(), picture.body.groups.right_w0.visible];
+        }""",
+        json.loads(data),
+    )
+    assert hidden == [[True, False], [True, False], True]
+
+
+@pytest.mark.parametrize("how", ["cut", "deaf"])
+def test_a_kernel_that_is_gone_is_told_with_what_to_do(chromium, data, how):
+    """A line that is cut is seen within seconds, or as soon as something is sent."""
+    page = opened(chromium, data, how)
+    page.wait_for_selector("[data-ready]")
+    assert page.is_hidden(".lk-say")
+    page.evaluate("link.gone = true")
+    if how == "deaf":
+        page.get_by_role("button", name="Start").click()
+    page.locator(".lk-say", has_text=GONE).wait_for()
+    page.locator("[role=status]").filter(has_text=GONE).wait_for(state="attached")
+    assert page.get_by_role("button", name="Start").is_disabled()
+    assert page.get_by_label("factor, typed").is_disabled()
+    assert page.get_by_role("button", name="Front").is_enabled()
+    page.close()
+
+
+def test_a_silent_kernel_is_told_only_while_its_arm_should_run(page, data):
+    """Five seconds without a word from a running arm are told, until the next word comes."""
+
+    def after(seconds, **frame_):
+        page.evaluate("(f) => tell(f)", frame(data, **frame_))
+        page.evaluate(f"{LIVE}.came -= 1000 * {seconds}; {LIVE}.look()")
+        return page.inner_text(".lk-say") if page.is_visible(".lk-say") else ""
+
+    assert after(4.0, state="running") == ""
+    assert after(9.0, state="paused") == ""
+    assert after(9.0, state="running").startswith("Nothing has come from the kernel for 5 s. If it")
+    assert after(0.0, state="running") == ""
+
+
+def test_the_notebook_cuts_the_line_to_a_kernel_that_is_gone(chromium, data):
+    """Shut down, JupyterLab has none; while one is restarted it says so, and only for a moment."""
+    page = chromium.new_page()
+    page.set_content("<!doctype html><html lang='en'><body></body></html>")
+    cut = page.evaluate(
+        """async ([source, data]) => {
+            let link, live;
+            globalThis.labkitLoad = async () => ({ mount: (...given) => { link = given[3]; } });
+            const file = URL.createObjectURL(new Blob([source], { type: "text/javascript" }));
+            const front = (await import(file)).default, found = [];
+            const manager = { kernel: { status: "busy" } };
+            const on = (name, f) => { if (name === "comm_live_update") live = f; };
+            const model = { get: () => data, on, off() {}, send() {}, widget_manager: manager };
+            const look = () => found.push(link.cut());
+            const show = () => front.render({ model, el: document.createElement("div") });
+            await show();
+            look();
+            manager.kernel = null;
+            look();
+            manager.kernel = { status: "restarting" };
+            live();
+            manager.kernel = { status: "idle" };
+            look();
+            await show(); // another cell
+            delete model.widget_manager; // not every notebook has one
+            look();
+            return found;
+        }""",
+        [(VIEWER / "widget.js").read_text(), data],
+    )
+    assert cut == [False, True, True, False]
+    page.close()
+
+
+def test_a_force_that_is_held_is_said_once(page, data):
+    """After a second, and again only when another force is held; never while it changes."""
+    at = json.loads(data)["first"]["things"]["target"]["position"]
+    page.evaluate(
+        """() => {
+            window.heard = [];
+            const status = document.querySelector("[role=status]");
+            new MutationObserver(() => heard.push(status.textContent))
+                .observe(status, { childList: true });
+        }"""
+    )
+    told = frame(data, state="running", at=at, link=7, error=0.0333)
+    for size in (*range(5, 50, 5), *[40.0, 41.0] * 12, *[20.0] * 24):
+        page.evaluate("(f) => tell(f)", told | {"force": [0, size, 0]})
+        page.wait_for_timeout(60)
+    heard = [words for words in page.evaluate("heard") if "N" in words]
+    where = "; the tip is 33 mm from its target."
+    assert heard == [f"Pulling the tip with {size} N{where}" for size in (heard[0][21:25], "20.0")]
+    assert heard[0][21:25] in ("40.0", "41.0")
 
 
 def test_without_a_kernel_it_says_so(chromium, data):

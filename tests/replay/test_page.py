@@ -2,6 +2,7 @@
 
 import base64
 import json
+import re
 from dataclasses import replace
 from html.parser import HTMLParser
 from io import BytesIO
@@ -24,6 +25,7 @@ import labkit as lk
 from labkit.errors import OutOfRange, TypeMismatch, UnknownName
 from labkit.replay import motion_of, show
 from labkit.replay.motion import unpack
+from labkit.replay.widget import motion_still
 
 
 class Reader(HTMLParser):
@@ -155,6 +157,66 @@ def test_what_was_met_is_drawn_named_and_felt():
     pictures = [Image.open(BytesIO(show(x).picture())) for x in (motion, motion_of(log, "Alone"))]
     drawn = [(np.array(p)[:, :, :3] == [87, 96, 106]).all(axis=2).sum() for p in pictures]
     assert drawn[0] > 100 > drawn[1]
+
+
+def test_a_still_shows_what_the_viewer_shows():
+    """See-through arms, the faces of walls, and the largest force with its newtons."""
+    plain = replace(swing(1.0, ghosts=0), path=None)
+    force = np.zeros((len(plain.t), 3))
+    force[40] = [0.0, 12.0, 0.0]
+    tip = lk.Model("left").pose(plain.q[len(plain.t) // 2])[:3, 3]
+    wall = {"kind": "face", "position": tip, "quaternion": [0, 0.7071, 0, 0.7071],
+            "size": [0.2, 0.2], "colour": [0.2, 0.8, 0.2, 1.0]}  # fmt: skip
+
+    def drawn(motion):
+        return np.array(Image.open(BytesIO(motion_still(motion)))).astype(int)
+
+    def reddish(pixels):
+        return (pixels == [179, 0, 27, 255]).all(axis=2).sum()
+
+    first = drawn(plain)
+    for name, change, (low, high) in (
+        ("ghost", {"ghosts": {"other": plain.q + 0.3}}, ([0, 60, 100, 60], [130, 190, 255, 110])),
+        ("wall", {"things": {"wall 1": wall}}, ([0, 90, 0, 100], [90, 230, 90, 255])),
+        ("force", {"force": force}, ([199, 119, 0, 255], [199, 119, 0, 255])),
+    ):
+        seen = drawn(replace(plain, **change))
+        new = (seen != first).any(axis=2) & (seen >= low).all(axis=2) & (seen <= high).all(axis=2)
+        assert new.sum() > 100, name
+        assert reddish(seen) > 100, "the path is still there"
+    at, last = (drawn(replace(plain, force=f)) for f in (force, np.roll(force, 100, axis=0)))
+    assert (at != last).any(), "the arm stands where the force is largest"
+
+
+def test_the_still_of_a_live_arm_shows_the_arm_alone_and_its_wall():
+    """As the view does when it opens."""
+    robot = lk.robot("left")
+    T = lk.Model(robot).pose(robot.ready)
+    wall = lk.Wall(T[:3, 3] + [0.1, 0, 0], [-1.0, 0.0, 0.0], size=(0.3, 0.3), colour=(0, 0, 1, 1))
+    with lk.Arm(robot, q0=robot.ready, world=lk.World(things=[wall])) as arm:
+        view = lk.live(arm, lk.control.hold(robot.ready), lk.Hold(T, 1.0))
+        pixels = np.array(Image.open(BytesIO(view.picture()))).astype(int)
+    assert ((pixels[:, :, 2] > 100) & (pixels[:, :, 0] == 0) & (pixels[:, :, 3] > 0)).sum() > 500
+    assert (pixels[:, 520:, 3] == 0).all(), "no body beside the shoulder"
+
+
+def test_a_joint_at_its_stop_is_no_force_on_the_tip():
+    """A law with a wrong sign throws the arm against its stops; the push on it was 10 N."""
+    model = lk.Model("left")
+    ready = model.robot.ready
+    T = model.pose(ready)
+
+    def wrong(state, target):
+        J, pull = model.tip_jacobian(state.q), 300.0 * (T[:3, 3] - model.pose(state.q)[:3, 3])
+        return lk.JointTorque(model.gravity(state.q) - J[:3].T @ pull - 2.0 * state.dq)
+
+    things = [lk.Push((0.0, 10.0, 0.0), duration=2.0)]
+    plant = lk.Plant(armature=0.05, viscous=0.7)
+    with lk.Arm("left", plant, q0=ready, world=lk.World(things=things)) as arm:
+        log = lk.run(arm, lk.Hold(T, 2.0), wrong)
+    assert np.linalg.norm(lk.metrics.felt_wrench(log)[:, :3], axis=1).max() > 100.0
+    told = re.search(r"up to (\d+) N act on the tip", motion_of(log, "Thrown", force=True).alt)
+    assert 10 <= int(told[1]) < 20
 
 
 def test_a_wall_that_reaches_behind_the_eye_is_left_out_of_the_picture():

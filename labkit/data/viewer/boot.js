@@ -106,9 +106,9 @@ fieldset .lk-dial label { flex-basis: 2.6rem; }
 .lk-choice select { flex: 1 1 auto; min-width: 0; }
 .lk-recorded { margin: 0.5rem 0 0; font-size: 0.9rem; }
 .lk-badge { display: inline-block; padding: 0 0.5rem; border: 1px solid var(--lk-quiet); border-radius: 1rem; font-size: 0.8rem; margin-right: 0.4rem; }
-.lk-scroll { overflow-x: auto; }
+.lk-scroll { overflow-x: auto; container-type: inline-size; }
 .lk-table { border-collapse: collapse; font-variant-numeric: tabular-nums; font-size: 0.85rem; margin: 0.4rem 0; width: auto; }
-.lk-table caption { text-align: left; color: var(--lk-text); caption-side: top; padding: 0; }
+.lk-table caption { position: sticky; left: 0; max-width: 100cqi; text-align: left; color: var(--lk-text); caption-side: top; padding: 0; }
 .lk-table :is(th, td) { padding: 0.1rem 0.55rem; text-align: right; border-bottom: 1px solid var(--lk-edge); color: var(--lk-text); background: none; }
 .lk-table thead th[aria-current="true"], .lk-table td.lk-chosen { border-left: 3px solid var(--lk-accent); font-weight: 700; }
 @media (max-width: 500px) {

@@ -32,12 +32,20 @@ async function render({ model, el }) {
   alt.remove();
   const hear = [];
   const heard = (message) => hear.forEach((f) => f(message));
-  const link = model.send && { send: (message) => model.send(message), hear: (f) => hear.push(f) };
+  // JupyterLab keeps the widget when its kernel is shut down (then it has none) or is restarted.
+  let gone = false;
+  const cut = () => {
+    const { kernel } = model.widget_manager ?? {};
+    return gone || kernel === null || ["dead", "restarting", "autorestarting"].includes(kernel?.status);
+  };
+  const restarted = () => { gone ||= cut(); };
+  model.on("comm_live_update", restarted);
+  const link = model.send && { send: (message) => model.send(message), hear: (f) => hear.push(f), cut };
   let shown = mount(host, data(), undefined, link);
   const change = () => { hear.length = 0; shown.dispose(); shown = mount(host, data(), undefined, link); };
   model.on("change:data", change);
   model.on("msg:custom", heard);
-  return () => { model.off("change:data", change); model.off("msg:custom", heard); shown.dispose(); };
+  return () => { model.off("comm_live_update", restarted); model.off("change:data", change); model.off("msg:custom", heard); shown.dispose(); };
 }
 
 export default { render };

@@ -21,6 +21,20 @@ function fill(element, attributes, children) {
   return element;
 }
 
+/**
+ * Tells of a force [N] once it has been held for a second, and again once another is held: called
+ * with each that comes, it is true when there is something to say.
+ */
+export function steady() {
+  let held = 0, since = 0, said = true;
+  return (size) => {
+    const now = performance.now();
+    if (Math.abs(size - held) > Math.max(1, 0.2 * held)) [held, since, said] = [size, now, !size];
+    if (said || now - since < 1000) return false;
+    return (said = true);
+  };
+}
+
 let count = 0;
 /** An id that no other element has. */
 export const unique = (stem) => `lk-${stem}-${++count}`;

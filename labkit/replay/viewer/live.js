@@ -2,7 +2,7 @@
 // this side draws it and says what pointer, keys and dials want.
 import { Picture } from "./picture.js";
 import { Plot } from "./plots.js";
-import { choice, dial, entered, h } from "./dom.js";
+import { choice, dial, entered, h, steady } from "./dom.js";
 import { line } from "./marks.js";
 import { sight } from "./sight.js";
 
@@ -14,14 +14,17 @@ const STALE = 400; // ms without a force in a hand that holds, from which on the
 const TOLD = 3; // s of the arm's time for which the page says that a run was kept
 const MOST = 60; // N, of a push and a pull
 const SHOWN = 10; // seconds of the curves
+const LOOK = 2000; // ms between two looks whether there still is a kernel
+const QUIET = 5000; // ms without a word from a kernel whose arm runs, from which on the page says so
+const AGAIN = "run the notebook again from its first cell to this one.";
 
 /** A link in a sentence. */
 const spoken = (link) => (/^(tip|elbow)/.test(link) ? `the ${link}` : `joint ${link}`);
 
 export class LiveArm {
-  /** link: {send(message), hear(f)}, the way to the kernel; without it the picture stands still. */
+  /** link: {send(message), hear(f), cut()}, the line to the kernel; without it the picture stands still. */
   constructor(host, data, robot, link) {
-    Object.assign(this, { host, data, link, robot: data.robot ?? robot, held: null, moves: 0, rows: [], frames: 0, beaten: 0, slow: 0 });
+    Object.assign(this, { host, data, link, robot: data.robot ?? robot, held: null, moves: 0, rows: [], frames: 0, beaten: 0, slow: 0, felt: steady() });
     this.element = h("div", { class: "lk-player lk-live", role: "group", "aria-label": data.title });
     this.stagebox = h("div", { class: "lk-stage" });
     this.note = h("p", { class: "lk-say", hidden: true });
@@ -43,8 +46,10 @@ export class LiveArm {
       host.dataset.ready = "1";
     }
     this.show(data.first);
-    if (!link) this.say("This arm needs a running kernel: run the cell, or the whole notebook, again.");
-    else link.hear((message) => {
+    if (!link) { this.say(`This arm needs a running kernel: ${AGAIN}`); return; }
+    this.looking = setInterval(() => this.look(), LOOK);
+    link.hear((message) => {
+      this.came = performance.now();
       if (message.kind !== "frame") { this.told(message); return; }
       const answer = message.move !== this.frame.move;
       this.show(message);
@@ -52,7 +57,31 @@ export class LiveArm {
     });
   }
 
-  send(message) { this.link?.send(message); }
+  send(message) {
+    try { this.link?.send(message); } catch { this.lost(); } // nobody is at the other end
+  }
+
+  /** Whether the kernel is still there: a cut line is certain, silence is not. */
+  look() {
+    if (this.link.cut?.()) this.lost();
+    else if (this.state === "running" && performance.now() - this.came > QUIET) {
+      this.say(`Nothing has come from the kernel for ${QUIET / 1000} s. If it was restarted or shut down, ${AGAIN}`);
+    }
+  }
+
+  /** The kernel is gone. */
+  lost() {
+    if (!this.link) return;
+    this.link = null;
+    this.release();
+    clearInterval(this.looking);
+    if (this.picture.works) this.picture.stage.rig.grab = null;
+    for (const control of this.element.querySelectorAll("button, input, select")) {
+      control.disabled ||= !this.sight.element.contains(control);
+    }
+    this.say(`The kernel was restarted or shut down, and this arm is gone with it: ${AGAIN}`, true);
+    this.speak(this.note.textContent, 0);
+  }
 
   buttons() {
     const button = (text, kind, title, first = () => {}) => h("button", { type: "button", title, disabled: !this.link,
@@ -78,7 +107,7 @@ export class LiveArm {
     entered(this.newtons, () => (this.pushing ?? this.bounded)(), () => String(this.size));
     this.pushes = AXES.map(([name, axis]) => h("button", { type: "button", class: "lk-icon", "aria-pressed": "false", disabled: !this.link,
       "aria-label": `Push along ${name.replace("−", "minus ").replace("+", "plus ")}`, title: "Push until it is pressed again",
-      onclick: (e) => this.push(e.currentTarget, axis, name) }, name));
+      onclick: (e) => this.push(e.currentTarget, axis) }, name));
     return h("div", { class: "lk-bar", role: "group", "aria-label": "Push with keys" }, this.where.element,
       this.newtons, h("span", { class: "lk-unit" }, `N (0 to ${MOST}) along`), this.pushes, h("span", { class: "lk-unit" }, "(press again to let go)"));
   }
@@ -94,7 +123,7 @@ export class LiveArm {
     return this.size;
   };
 
-  push(button, axis, name) {
+  push(button, axis) {
     const on = button.getAttribute("aria-pressed") !== "true";
     this.release();
     if (!on) return;
@@ -103,7 +132,6 @@ export class LiveArm {
     this.pushing = () => { // again when another force is typed
       const size = this.bounded();
       this.take({ link, local: [0, 0, 0], force: axis.map((x) => size * x) });
-      this.speak(() => `Under ${size} N along ${name}: ${this.numbers()}`, 1500);
     };
     this.pushing();
   }
@@ -170,7 +198,7 @@ export class LiveArm {
       this.frames++;
       if (this.held && performance.now() - this.beaten > BEAT) this.beat(); // drawing keeps timers from their turn
     };
-    this.sight.alone.click();
+    this.sight.alone(true);
     if (this.link) picture.grab((picked, event) => this.grip(picked, event), ({ thing }) => !this.things[thing]?.fixed);
   }
 
@@ -226,7 +254,14 @@ export class LiveArm {
     this.say(frame.note || (stale ? `${busy}: what you pull arrives later, and until then there is no force.` : kept),
       frame.state === "stopped");
     if (before !== frame.state || frame.note && frame.note !== told) this.speak(frame.note || { running: "Running.", paused: "Paused.", ready: "Ready.", closed: "Ended." }[frame.state] || "", 0);
+    if (this.felt(frame.force ? Math.hypot(...frame.force) : 0)) this.speak(this.forced(frame), 0);
     this.plotted ??= setTimeout(() => { this.plotted = null; const c = this.curve(); this.plot.set(c.series, c.x); this.plot.time(c.x.at(-1)); }, 200);
+  }
+
+  /** The hand's force in a sentence. */
+  forced({ force, link, error }) {
+    const away = error === null ? "" : `; the tip is ${(1000 * error).toFixed(0)} mm from its target`;
+    return `${this.pushing ? "Pushing" : "Pulling"} ${spoken(this.links[link])} with ${Math.hypot(...force).toFixed(1)} N${away}.`;
   }
 
   /** Whether the hand has been held for longer than a message should take. */
@@ -285,7 +320,7 @@ export class LiveArm {
   dispose() {
     this.send({ kind: "pause" });
     for (const timer of [this.spoken, this.turning, this.plotted]) clearTimeout(timer);
-    clearInterval(this.beating);
+    for (const timer of [this.beating, this.looking]) clearInterval(timer);
     this.plot.dispose();
     this.picture.dispose();
     this.element.remove();

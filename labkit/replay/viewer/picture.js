@@ -28,6 +28,7 @@ export class Picture {
     this.robot = robot;
     if (this.body) { this.stage.scene.remove(this.body.root); this.body.dispose(); }
     this.body = new Body(robot);
+    this.body.alone(this.side, this.lone);
     this.stage.scene.add(this.body.root);
     this.stage.floor.position.z = robot.arm ? 0 : -0.925; // Baxter's base is its waist
     this.stage.rig.size = robot.arm ? Math.min(1, 0.5 * span(robot)) : 1;
@@ -35,6 +36,7 @@ export class Picture {
 
   /** Put the arm's joints, n numbers in rad, where they are now. */
   pose(side, q) {
+    if (side !== this.side) this.body.alone(side, this.lone);
     Object.assign(this, { side, q });
     this.body.pose(side, q);
     this.frames = frames(this.robot, posture(this.robot, side, q));
@@ -45,6 +47,7 @@ export class Picture {
 
   /** Hide the robot's body and its idle arm, or show them. */
   alone(on) {
+    this.lone = on;
     this.body.alone(this.side, on);
     this.stage.floor.visible = !on;
     this.stage.draw();

@@ -11,7 +11,7 @@ export function check(label, value, onchange) {
 }
 
 /**
- * The bar under a picture: {element, magnifier, alone}, the last the box that hides the rest of the robot.
+ * The bar under a picture: {element, magnifier, alone(on)}, the last of which hides the rest of the robot.
  * @param magnify  called with 1, 10 or 50; without it there is no such choice
  * @param whole  whether the robot is more than its arm, which can then be shown alone
  * @param camera  whether a camera is among the things, whose picture can be shown
@@ -31,7 +31,7 @@ export function sight(picture, { magnify, camera, whole = true } = {}) {
   check("Velocity", false, (on) => { picture.quick = on; picture.velocity([0, 0, 0]); })];
   if (camera) boxes.push(check("Camera's picture", false, (on) => inset(on && (() => picture.seen()))));
   boxes[1].hidden = !whole;
-  const [near, , , lens] = boxes.map((box) => box.querySelector("input"));
+  const [near, arm, , lens] = boxes.map((box) => box.querySelector("input"));
   const inset = (from) => { // one inset: the close-up or the camera's picture
     if (!stage.small) stage.inset();
     Object.assign(stage, { closely: () => from(picture) });
@@ -48,7 +48,9 @@ export function sight(picture, { magnify, camera, whole = true } = {}) {
   const element = h("div", { class: "lk-bar lk-views", role: "group", "aria-label": "View" },
     h("span", { class: "lk-word", "aria-hidden": "true" }, "View"), views, h("span", { class: "lk-gap" }), moves,
     h("span", { class: "lk-gap" }), boxes, magnifier);
-  return { element, magnifier, alone: boxes[1].querySelector("input") };
+  // A click on a box that is not yet in the page would tick it and tell nobody.
+  const alone = (on) => { arm.checked = on; picture.alone(on); };
+  return { element, magnifier, alone };
 }
 
 /** Where the close-up looks from: beside the hand, as the picture's own camera is turned. */

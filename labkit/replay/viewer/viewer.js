@@ -8,7 +8,7 @@ import { ScalingDemo } from "./scaling_demo.js";
 import { dress } from "./style.js";
 
 // For pages that bring their own loop, such as the book's live arm.
-export { choice, dial, h, svg, unique } from "./dom.js";
+export { choice, dial, h, steady, svg, unique } from "./dom.js";
 export * as kinematics from "./kinematics.js";
 export { Picture } from "./picture.js";
 export { dispose, line } from "./marks.js";
