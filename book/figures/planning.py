@@ -146,20 +146,20 @@ def plan() -> HTML:
         by_hand = f"{drawn:.0f} whys, {drawn * WHY / 60.0:.1f} h"
         if name == REPORT:
             by_hand = f"{CLASS / TEAM:.0f} reports, {CLASS * REPORT_MINUTES / TEAM / 60.0:.0f} h"
-        what = f"practice hand-in, then {name}" if name == next(iter(HOURS)) else name
-        hours_of = (f"{core + read:.2g}", f"{whole + read:.2g}")
-        rows.append((what, *hours_of, *map(_week, WEEKS[name[:2]]), by_hand))
-    rows.append(
-        ("reviews of two reports", "", "", "11", "\N{EN DASH}", "\N{EN DASH}", "done or not")
-    )
+        what = name.replace("_", " ")
+        what = what if rows else f"practice hand-in, then {what}"
+        spent = " to ".join(dict.fromkeys(f"{x + read:.2g}" for x in (core, whole)))
+        rows.append((what, spent, *map(_week, WEEKS[name[:2]]), by_hand))
+    rows.append(("reviews of two reports", "", "11", _week(None), _week(None), "done or not"))
     talks = f"{CLASS / TEAM:.0f} talks, {CLASS * MINUTES[TALK] / 60.0:.0f} h; or "
     defences = f"{CLASS} defences, {CLASS * DEFENCE / 60.0:.0f} h"
-    rows.append(("talk or defence", "", "", "12", "6", "2, at its end", talks + defences))
+    rows.append(("talk or defence", "", "12", "6", "2, at its end", talks + defences))
     return table(
-        ("What is due", "Hours, core and chapter", "Hours, all and chapter", "Week of 12",
-         "Week of 6", "Week of 2", f"Then by hand, {CLASS} students in 12 weeks"), rows,
+        ("What is due", "Hours, core to all", "Week of 12", "Week of 6", "Week of 2",
+         f"Then by hand, for {CLASS} students"), rows,
         "A plan by weeks. Each notebook is due at the end of the week that is named, the practice "
-        "hand-in in the first days. Hours are the authors' estimates",
+        "hand-in in the first days. Hours are the authors' estimates, with the chapter; what is "
+        "marked by hand is that of a term of 12 weeks",
     )  # fmt: skip
 
 
