@@ -73,7 +73,7 @@ def new_term(course: Course, seed: int | None, names: tuple[str, ...] = ()) -> d
         names: What to release; all by default.
 
     Returns:
-        The record: seed, date, the archive of the last term, and the hash of each bundle, which
+        The record, with seed, date, the archive of the last term, and the hash of each bundle, which
         every result names.
 
     Raises:
