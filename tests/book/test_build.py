@@ -158,7 +158,29 @@ def test_the_reference_says_what_the_docstrings_say(book):
     told = "".join(p.read_text() for p in (book / "reference").glob("*.html"))
     assert "Alias for field number" not in told
     assert ">Type<" not in told
+    assert "Return type" not in told
     assert "(*args, **kwargs)" not in BeautifulSoup(told, "html.parser").get_text()
+
+
+@pytest.mark.slow
+def test_the_reference_says_what_a_class_is_made_with(book):
+    """The arguments that only `__init__` describes, and the methods of a class's base."""
+    arm = BeautifulSoup((book / "reference/arm.html").read_text(), "html.parser").get_text()
+    assert "seed – Of the measurement noise" in arm
+    paths = (book / "reference/motion.html").read_text()
+    assert 'id="labkit.paths.Quintic.within"' in paths
+
+
+@pytest.mark.slow
+def test_a_name_of_another_module_leads_to_its_entry(book):
+    """`Push`, in the words of the arm, and `Robot.neutral`, which its class describes."""
+    page = BeautifulSoup((book / "reference/arm.html").read_text(), "html.parser")
+    links = {a.get_text(): a["href"] for a in page.select("a:has(code.py-obj)")}
+    assert links["Push"] == "#labkit.scene.Push"
+    assert links["Robot.neutral"] == "#labkit.robot.Robot"
+    page = BeautifulSoup((book / "own_robot.html").read_text(), "html.parser")
+    links = {a.get_text(): a["href"] for a in page.select("a:has(code.py-obj)")}
+    assert links["Robot"] == "reference/arm.html#labkit.robot.Robot"
 
 
 @pytest.mark.slow
