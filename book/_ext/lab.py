@@ -65,7 +65,8 @@ def entry_elsewhere(app: Sphinx, env: Any, node: Element, shown: Element) -> Ele
         return None
     entries = env.get_domain("py").objects
     name = node["reftarget"].removeprefix("labkit.")
-    for wanted in filter(None, (name, name.rpartition(".")[0])):
+    before, _, last = name.rpartition(".")
+    for wanted in filter(None, (name, last if last[0].isupper() else before)):
         found = [full for full in entries if full.endswith(f".{wanted}")]
         if len(found) == 1:
             it = entries[found[0]]
