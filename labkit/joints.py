@@ -139,7 +139,7 @@ class Touch(NamedTuple):
     Attributes:
         wrench: Force at the tip's origin in [N] and moment in [N m], world axes, shape (6,).
         damping: D, symmetric, shape (3, 3) in [N s/m].
-        outwards: The way in which a face pushes and never pulls, shape (3,); None pulls too.
+        outwards: The direction in which a face pushes and never pulls, shape (3,); None pulls too.
     """
 
     wrench: Array

@@ -174,7 +174,7 @@ class Model(Kinematics):
         return made
 
     def free_motion(self, q: Array, dq: Array, tau: Array) -> tuple[Array, Array]:
-        """`forward_dynamics` and `inverse_mass` in one sweep over the arm, 6 us instead of 12.
+        """`forward_dynamics` and `inverse_mass` in one sweep over the arm, 6 µs instead of 12.
 
         Args:
             q: Joint angles, shape (n,) in [rad]; like the others taken as it is, unchecked.
@@ -182,7 +182,8 @@ class Model(Kinematics):
             tau: Joint torques, shape (n,) in [N m].
 
         Returns:
-            Both, for use before the model is asked again: shapes (n,) and (n, n).
+            The accelerations, shape (n,) in [rad/s^2], and the inverse of M, shape (n, n) in
+            [1/(kg m^2)]; use both before you ask the model again.
         """
         a: Array = pin.aba(self._pin, self._data, q, dq, tau, pin.Convention.WORLD)
         return a, pin.computeMinverse(self._pin, self._data)

@@ -260,7 +260,11 @@ class _Profile(ABC):
 
 @dataclass(frozen=True)
 class BangBang(_Profile):
-    """Constant acceleration, then as much deceleration: the report's equations, corrected."""
+    """Constant acceleration, then as much deceleration: the report's equations, corrected.
+
+    Attributes:
+        duration: How long it lasts, in [s], at least 0.
+    """
 
     PEAK_SPEED = 2.0
     PEAK_ACCELERATION = 4.0
@@ -274,7 +278,11 @@ class BangBang(_Profile):
 
 @dataclass(frozen=True)
 class Cubic(_Profile):
-    """The third-order polynomial that starts and ends at rest (Lynch & Park, eq. 9.9)."""
+    """The third-order polynomial that starts and ends at rest (Lynch & Park, eq. 9.9).
+
+    Attributes:
+        duration: How long it lasts, in [s], at least 0.
+    """
 
     PEAK_SPEED = 1.5
     PEAK_ACCELERATION = 6.0
@@ -286,7 +294,11 @@ class Cubic(_Profile):
 
 @dataclass(frozen=True)
 class Quintic(_Profile):
-    """The fifth-order polynomial whose acceleration is zero at both ends too."""
+    """The fifth-order polynomial whose acceleration is zero at both ends too.
+
+    Attributes:
+        duration: How long it lasts, in [s], at least 0.
+    """
 
     PEAK_SPEED = 1.875
     PEAK_ACCELERATION = 10.0 / sqrt(3.0)

@@ -85,8 +85,8 @@ def margins(joint: VelocityJoint, Kp: float, Kd: float = 0.0) -> Margins:
 
     Args:
         joint: What is controlled.
-        Kp: Proportional gain, at least 0.
-        Kd: Derivative gain, at least 0.
+        Kp: Proportional gain, at least 0, in [1/s].
+        Kd: Derivative gain, at least 0, without unit.
 
     Raises:
         OutOfRange: A gain is negative, or both are zero, so there is no loop.

@@ -219,7 +219,12 @@ class Hold:
     """
 
     def __init__(self, place: Any, duration: float) -> None:
-        """Hold joint angles (n,) [rad], a point (3,) [m] or a pose (4, 4)."""
+        """Hold a place.
+
+        Args:
+            place: Joint angles, shape (n,) in [rad], a point, shape (3,) in [m], or a pose, (4, 4).
+            duration: How long, in [s].
+        """
         self.duration = as_number(duration, "duration", least=0.0)
         x = locked(as_numbers(place, "place"))
         still = locked(np.zeros(6 if x.ndim == 2 else x.size))

@@ -33,7 +33,7 @@ class Standing(Protocol):
         """Place [m] and velocity [m/s] of the tip, world axes, each of shape (3,)."""
 
     def push(self, force: Array, moment: Array) -> None:
-        """Push the tip during the next physics step."""
+        """Push the tip during the next physics step: (3,) [N] and (3,) [N m], world axes."""
 
     def touch(self, touch: Touch) -> None:
         """Let something act on the tip during the next physics step."""

@@ -14,7 +14,9 @@ from typing import Any
 import citations
 import excerpts
 from bs4 import BeautifulSoup, NavigableString
+from docutils.nodes import Element
 from sphinx.application import Sphinx
+from sphinx.util.nodes import make_refnode
 
 
 def settings(app: Sphinx, config: Any) -> None:
@@ -49,6 +51,27 @@ def without_filler(
 ) -> tuple[str, str] | None:
     """What a protocol takes stands in its `__call__`; Python's own signature says nothing."""
     return ("", returned) if signature == "(*args, **kwargs)" else None
+
+
+CLASS = re.compile(r"([a-z]\w*\.)*[A-Z][A-Za-z]+(\.\w+)?$")
+
+
+def entry_elsewhere(app: Sphinx, env: Any, node: Element, shown: Element) -> Element | None:
+    """The one class of another module that has a name, or that describes it as its attribute.
+
+    The name of a function may also be that of an argument, so it leads nowhere.
+    """
+    if node.get("reftype") != "obj" or not CLASS.match(node["reftarget"]):
+        return None
+    entries = env.get_domain("py").objects
+    name = node["reftarget"].removeprefix("labkit.")
+    before, _, last = name.rpartition(".")
+    for wanted in filter(None, (name, last if last[0].isupper() else before)):
+        found = [full for full in entries if full.endswith(f".{wanted}")]
+        if len(found) == 1:
+            it = entries[found[0]]
+            return make_refnode(app.builder, node["refdoc"], it.docname, it.node_id, shown)
+    return None
 
 
 def without_unused(
@@ -263,6 +286,7 @@ def setup(app: Sphinx) -> dict[str, Any]:
     app.connect("autodoc-process-docstring", hide_colon, priority=400)
     app.connect("autodoc-process-docstring", show_colon, priority=600)
     app.connect("autodoc-process-signature", without_filler)
+    app.connect("missing-reference", entry_elsewhere)
     app.connect("html-page-context", without_unused, priority=900)
     app.connect("build-finished", repair, priority=900)
     return {"parallel_read_safe": True, "parallel_write_safe": True}

@@ -23,6 +23,7 @@ from .page import figure, holds, replay, table
 
 FILMS = Path(__file__).parents[2] / "build/campaign.json"
 SHOWN = (*FIVE, BASELINE)
+JOINTS = tuple(name.removeprefix("left_") for name in lk.robot("left").joint_names)
 LATE = 1.0
 """When the counting of errors begins, in [s]; until then every method still approaches the path."""
 
@@ -114,7 +115,7 @@ def everything(controller: str, task: str) -> HTML:
     for ax, (label, values, target), limits in zip(
         axes, _panels(controller, task), _limits(task), strict=True
     ):
-        names = AXES if values.shape[1] == 3 else lk.robot("left").joint_names
+        names = AXES if values.shape[1] == 3 else JOINTS
         for k, name in enumerate(names):
             if target is not None:
                 ax.plot(
@@ -140,7 +141,8 @@ def everything(controller: str, task: str) -> HTML:
         f"Six panels over {found.duration:.3g} s: position and speed of the tip and of its target, "
         "its position error along x, y and z, its orientation error, the error of each joint and "
         f"the torque of each motor beyond gravity. {found}. The largest joint error is "
-        f"{np.abs(off).max():.2g} degrees, the largest torque {np.abs(torque).max():.3g} N m, the "
+        f"{np.abs(off).max():.2g} degrees, the largest torque "
+        f"beyond gravity {np.abs(torque).max():.3g} N m, the "
         f"last error {_told(float(np.linalg.norm(e[-1]))).replace('&lt;', 'below')} mm. All errors "
         "here are those of the whole run, and the RMS torque includes the arm's weight.",
     )

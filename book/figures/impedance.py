@@ -56,13 +56,13 @@ def one_mass() -> HTML:
 
 
 @cache
-def push_run(stiffness: float, plant: lk.Plant = ROTORS) -> lk.Log:
+def push_run(stiffness: float, plant: lk.Plant = ROTORS, force: float = PUSH) -> lk.Log:
     """A hand pushes the tip sideways from 0.5 s to 2 s."""
     model = lk.Model("left", plant)
     q0 = model.robot.ready
     K = np.array((stiffness,) * 3 + (TURN,) * 3)
     law = WorkspaceImpedance(model, K=K, gravity=not plant.gravity_compensation)
-    world = lk.World(things=[lk.Push(force=(0.0, PUSH, 0.0), start=BEGINS, duration=1.5)])
+    world = lk.World(things=[lk.Push(force=(0.0, force, 0.0), start=BEGINS, duration=1.5)])
     rate = 200.0 if plant.state_rate else 1000.0
     with lk.Arm("left", plant, SEED, q0=q0, world=world) as arm:
         return lk.run(arm, lk.Hold(model.pose(q0), 3.5), law, rate=rate)
@@ -134,6 +134,32 @@ def push() -> HTML:
         "10 N sideways on the tip from 0.5 s to 2 s, no force measured by anyone.",
         f"Displacement over time: {'; '.join(told)}. The realistic arm, told 300 N/m, moves less, "
         f"as if {felt:.3g} N/m, and stays {left:.2g} mm off when released.",
+    )
+
+
+def two_pushes() -> None:
+    """The realistic arm, pushed with 10 N and with 20 N: what each says, and what both say."""
+    forces, asked, read_at = (PUSH, 2.0 * PUSH), 300.0, 1.95
+    logs = [push_run(asked, lk.BAXTER, force) for force in forces]
+    far = [float(np.interp(read_at, log.t, _sideways(log))) for log in logs]
+    alone = [1e3 * force / x for force, x in zip(forces, far, strict=True)]
+    both = 1e3 * (forces[1] - forces[0]) / (far[1] - far[0])
+    shows("On the realistic arm 10 N and 20 N move the hand", (10.0, 20.0), forces)
+    numbers({"two_first": far[0], "two_second": far[1]}, ".3g")
+    numbers({"alone_first": alone[0], "alone_second": alone[1], "two_slope": both}, ".3g")
+    claim(
+        "which is nearer to the 300 N/m that were asked for",
+        lambda both, alone: asked < both < alone[1] < alone[0],
+        both=both,
+        alone=alone,
+    )
+    moved = [float(np.abs(np.ptp(log.q[:, 1]))) for log in logs]
+    turned = [float(np.abs(np.ptp(log.q[:, 2]))) for log in logs]
+    claim(
+        "here s1 in both pushes",
+        lambda moved, turned: all(0.0 <= a < 0.05 * b for a, b in zip(moved, turned, strict=True)),
+        moved=moved,
+        turned=turned,
     )
 
 

@@ -11,6 +11,7 @@ from IPython.display import HTML
 from labkit.course.authoring.layout import Course
 from labkit.course.authoring.outcomes import OUTCOMES
 from labkit.course.identification import Identification
+from labkit.grader.whys import DRAWN
 
 from .front import NOTEBOOKS, hours
 from .page import holds, number, table
@@ -70,6 +71,18 @@ TRACKS = {
     "6 weeks": ("00", "01", "03", "04", "05"),
     "12 weeks": tuple(name[:2] for name in HOURS),
 }
+WEEKS = {
+    "00": (1, 1, 1),
+    "01": (2, 2, 1),
+    "02": (3, "3, its chapter alone", None),
+    "03": (4, 3, 2),
+    "04": (5, 4, None),
+    "05": (6, 5, None),
+    "06": (7, None, None),
+    "07": (8, None, None),
+    "08": ("9 and 10", None, None),
+}
+"""The week of each notebook in a term of 12, of 6 and of 2 weeks; it is due when the week ends."""
 
 
 def planning() -> HTML:
@@ -118,6 +131,40 @@ def syllabi() -> HTML:
         "notebooks, and the one on the model where 04 or 05 needs it; discussions in class are not "
         "counted",
     )  # fmt: skip
+
+
+def plan() -> HTML:
+    """Week by week: what students read and write, when it is due, and what a person then marks."""
+    for column, track in enumerate(reversed(TRACKS)):
+        taken = {name for name, weeks in WEEKS.items() if isinstance(weeks[column], int | str)}
+        extra = {"02"} if set(ON_THE_MODEL) <= taken else set()
+        holds(taken == {*TRACKS[track], *extra}, f"the plan of {track} has its notebooks")
+    rows: list[tuple[str, ...]] = []
+    drawn = CLASS * DRAWN / len(NOTEBOOKS)
+    for name, (core, whole) in HOURS.items():
+        read = READING.get(name[:2], 0.0)
+        by_hand = f"{drawn:.0f} whys, {drawn * WHY / 60.0:.1f} h"
+        if name == REPORT:
+            by_hand = f"{CLASS / TEAM:.0f} reports, {CLASS * REPORT_MINUTES / TEAM / 60.0:.0f} h"
+        what = name.replace("_", " ")
+        what = what if rows else f"practice hand-in, then {what}"
+        spent = " to ".join(dict.fromkeys(f"{x + read:.2g}" for x in (core, whole)))
+        rows.append((what, spent, *map(_week, WEEKS[name[:2]]), by_hand))
+    rows.append(("reviews of two reports", "", "11", _week(None), _week(None), "done or not"))
+    talks = f"{CLASS / TEAM:.0f} talks, {CLASS * MINUTES[TALK] / 60.0:.0f} h; or "
+    defences = f"{CLASS} defences, {CLASS * DEFENCE / 60.0:.0f} h"
+    rows.append(("talk or defence", "", "12", "6", "2, at its end", talks + defences))
+    return table(
+        ("What is due", "Hours, core to all", "Week of 12", "Week of 6", "Week of 2",
+         f"Then by hand, for {CLASS} students"), rows,
+        "A plan by weeks. Each notebook is due at the end of the week that is named, the practice "
+        "hand-in in the first days. Hours are the authors' estimates, with the chapter; what is "
+        "marked by hand is that of a term of 12 weeks",
+    )  # fmt: skip
+
+
+def _week(which: int | str | None) -> str:
+    return "\N{EN DASH}" if which is None else str(which)
 
 
 def numbers_told() -> None:

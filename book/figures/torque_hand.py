@@ -189,6 +189,14 @@ def lifted() -> None:
     number("lift_exact", 1e3 * float(model.pose(rest)[2, 3] - model.pose(q0)[2, 3]), ".3g")
 
 
+def cut() -> None:
+    """How far s0 may be off before its motor is at its limit."""
+    inertia = float(lk.Model("left", lk.BAXTER).mass_matrix(lk.robot("left").ready)[0, 0])
+    shows("With $K_p = 100$ 1/s² and 2.17 kg m² an error of 0.25 rad at rest asks s0 for 54 N m, "
+          "and its limit is 50 N m", (100.0, 2.17, 0.25, 54.0, 50.0),
+          (KP, inertia, 0.25, KP * inertia * 0.25, lk.robot("left").effort[0]), 0.01)  # fmt: skip
+
+
 def wrists() -> None:
     """Which joints friction holds beside their targets on the circle."""
     off = 1e3 * np.sqrt((metrics.joint_error(circle_run()) ** 2).mean(axis=0))

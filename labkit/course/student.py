@@ -205,7 +205,7 @@ def case(name: str) -> tuple[tuple[Any, ...], dict[str, Any]]:
         name: The question's name.
 
     Returns:
-        Its arguments: a tuple of those by place, and a dictionary of those by name.
+        A tuple of the arguments by place, and a dictionary of those by name.
 
     Raises:
         UnknownName: No such question.

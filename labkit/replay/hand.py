@@ -29,8 +29,9 @@ STRONGEST = 60.0
 """The most that it pulls, in [N]."""
 
 FRESH, SLOW_PAGE = 0.2, 1.0
-"""A pointer of which nothing was heard for this long, in [s], lets go; where a page says that it is
-slow, after three times its slowest turn of late, but at most after the second of these."""
+"""A pull ends when nothing was heard of the pointer for the first of these times, in [s]. If the
+page says that it is slow, it ends after three of its longest recent turns, at most after the
+second."""
 
 STEADY = 5.0
 """A push by a button goes on for this long, in [s], after the last word of it."""

@@ -35,7 +35,7 @@ class Engine(Protocol):
         Args:
             tau: Shape (n,) in [N m].
             ddq: The accelerations that they make, shape (n,) in [rad/s^2], where somebody knows
-                them already: 7 us less where the engine has no rotors.
+                them already: 7 µs less where the engine has no rotors.
         """
 
     def close(self) -> None:

@@ -125,7 +125,11 @@ class Camera:
 
     @property
     def reported_T_wc(self) -> Array:
-        """Where the robot thinks that the camera is: by its reported joint angles, if in a hand."""
+        """Where the robot thinks that the camera is: by its reported joint angles, if in a hand.
+
+        Returns:
+            Shape (4, 4).
+        """
         return self._fixed if self._hand is None else _held(self._hand, self._hand.state().q)
 
     def image(self) -> Picture:

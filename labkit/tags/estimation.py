@@ -49,8 +49,11 @@ def first_estimate(t: float, position: Any, noise: Any, *spread: float) -> Estim
 def update(estimate: Estimate, position: Any, noise: Any) -> Estimate:
     r"""Take in a reading of the position at the estimate's own time.
 
-    .. math:: K = P H^T (H P H^T + R)^{-1}, \quad
-       m' = m + K (z - H m), \quad P' = (I - KH) P (I - KH)^T + K R K^T
+    .. math::
+
+        K &= P H^T (H P H^T + R)^{-1} \\
+        m' &= m + K (z - H m) \\
+        P' &= (I - KH) P (I - KH)^T + K R K^T
 
     Args:
         estimate: What is known so far, predicted to the time of the picture.

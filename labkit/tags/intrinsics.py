@@ -5,7 +5,11 @@ r"""Intrinsics: how a camera turns points into pixels.
 with x = X/Z and y = Y/Z; a lens with distortion first bends these by OpenCV's model, with
 r^2 = x^2 + y^2:
 
-.. math:: x' = x\,(1 + k_1 r^2 + k_2 r^4 + k_3 r^6) + 2 p_1 x y + p_2 (r^2 + 2 x^2)
+.. math::
+
+    d &= 1 + k_1 r^2 + k_2 r^4 + k_3 r^6 \\
+    x' &= d\,x + 2 p_1 x y + p_2\,(r^2 + 2 x^2) \\
+    y' &= d\,y + p_1\,(r^2 + 2 y^2) + 2 p_2 x y
 
 The camera's frame c has z forward, x to the right and y down in the picture.  Pixel (0, 0) is the
 middle of the upper left pixel (OpenCV's convention), so the middle of a picture 640 pixels wide is

@@ -61,6 +61,9 @@ class Window(NamedTuple):
         Args:
             lens: The lens.
             samples: For each pixel, along either side.
+
+        Returns:
+            Shapes (width * samples,) and (height * samples,), without unit.
         """
         u = self.left - 0.5 + (np.arange(self.width * samples) + 0.5) / samples
         v = self.top - 0.5 + (np.arange(self.height * samples) + 0.5) / samples

@@ -31,7 +31,7 @@ class Surface(NamedTuple):
     colours: Array
 
     def moved(self, T: Array) -> Surface:
-        """The surface at a pose, shape (4, 4)."""
+        """The surface at the pose ``T`` of its frame in another, shape (4, 4)."""
         return self._replace(corners=self.corners @ T[:3, :3].T + T[:3, 3])
 
     def only(self, wanted: Any) -> Surface:

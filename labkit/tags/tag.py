@@ -61,7 +61,7 @@ class Tag:
 
     @property
     def corners(self) -> Array:
-        """The black square's corners in the tag's frame: see `tag_corners`."""
+        """The black square's corners in the tag's frame, shape (4, 3) in [m]: see `tag_corners`."""
         return tag_corners(self.size)
 
     def image(self, cell: int = 16) -> Picture:

@@ -7,6 +7,7 @@ import subprocess
 import sys
 import zipfile
 from importlib.util import find_spec
+from types import SimpleNamespace
 
 import book_pages
 import lab
@@ -158,7 +159,50 @@ def test_the_reference_says_what_the_docstrings_say(book):
     told = "".join(p.read_text() for p in (book / "reference").glob("*.html"))
     assert "Alias for field number" not in told
     assert ">Type<" not in told
+    assert "Return type" not in told
     assert "(*args, **kwargs)" not in BeautifulSoup(told, "html.parser").get_text()
+
+
+@pytest.mark.slow
+def test_the_reference_says_what_a_class_is_made_with(book):
+    """The arguments that only `__init__` describes, and the methods of a class's base."""
+    arm = BeautifulSoup((book / "reference/arm.html").read_text(), "html.parser").get_text()
+    assert "seed – Of the measurement noise" in arm
+    paths = (book / "reference/motion.html").read_text()
+    assert 'id="labkit.paths.Quintic.within"' in paths
+
+
+@pytest.mark.parametrize(
+    ("name", "entry"),
+    [
+        ("Push", "labkit.scene.Push"),
+        ("Robot.neutral", "labkit.robot.Robot"),
+        ("labkit.course.Question", "labkit.course.question.Question"),
+        ("log", None),
+        ("Twice", None),
+    ],
+)
+def test_a_class_is_found_by_its_name_alone(monkeypatch, name, entry):
+    """A name that two entries have leads nowhere, and so does that of a function."""
+    full = ["labkit.scene.Push", "labkit.robot.Robot", "labkit.course", "labkit.se3.log",
+            "labkit.course.question.Question", "labkit.a.Twice", "labkit.b.Twice"]  # fmt: skip
+    entries = {x: SimpleNamespace(docname="page", node_id=x) for x in full}
+    env = SimpleNamespace(get_domain=lambda domain: SimpleNamespace(objects=entries))
+    monkeypatch.setattr(lab, "make_refnode", lambda builder, here, page, at, shown: at)
+    node = {"reftype": "obj", "reftarget": name, "refdoc": "here"}
+    assert lab.entry_elsewhere(SimpleNamespace(builder=None), env, node, None) == entry
+
+
+@pytest.mark.slow
+def test_a_name_of_another_module_leads_to_its_entry(book):
+    """`Push`, in the words of the arm, and `Robot.neutral`, which its class describes."""
+    page = BeautifulSoup((book / "reference/arm.html").read_text(), "html.parser")
+    links = {a.get_text(): a["href"] for a in page.select("a:has(code.py-obj)")}
+    assert links["Push"] == "#labkit.scene.Push"
+    assert links["Robot.neutral"] == "#labkit.robot.Robot"
+    page = BeautifulSoup((book / "own_robot.html").read_text(), "html.parser")
+    links = {a.get_text(): a["href"] for a in page.select("a:has(code.py-obj)")}
+    assert links["Robot"] == "reference/arm.html#labkit.robot.Robot"
 
 
 @pytest.mark.slow

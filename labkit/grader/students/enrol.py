@@ -100,7 +100,7 @@ def import_list(
         assignment: Where the file is Moodle's grading worksheet of this assignment.
 
     Returns:
-        What was done; and what a person should look at: work of one student that is in two folders,
+        What was done; and what a person should look at, such as work of one student in two folders
         and hand-in times that are not set.  A sentence each.
 
     Raises:

@@ -73,8 +73,8 @@ def new_term(course: Course, seed: int | None, names: tuple[str, ...] = ()) -> d
         names: What to release; all by default.
 
     Returns:
-        The record: seed, date, the archive of the last term, and the hash of each bundle, which
-        every result names.
+        The record, with seed, date, the archive of the last term, and the hash of each bundle,
+        which every result names.
 
     Raises:
         LabkitError: The seed is the public one, or the last term's; or a name is unknown.
