@@ -53,7 +53,7 @@ export class Plot {
     const width = this.element.clientWidth;
     if (!width) return;
     const longest = Math.max(this.beside, letters(this.series));
-    const right = longest ? Math.min(24 + 6.6 * longest, 0.34 * width) : 12;
+    const right = longest ? Math.min(24 + 6.6 * longest, 0.43 * width) : 12;
     const wide = this.wide = Math.max(60, width - LEFT - right);
     const tall = HEIGHT - TOP - BOTTOM;
     let low = this.zero ? 0 : Infinity, high = -Infinity;
