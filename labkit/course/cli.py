@@ -107,8 +107,8 @@ def merge(mine: Path, new: Path, to: Path) -> int:
     text = json.dumps(notebook, indent=1, ensure_ascii=False) + "\n"
     to.write_text(text, encoding="utf-8", errors="replace")  # a lone surrogate is not text
     print(
-        f"{to}: the new release with your work; look through it, put it in the place of "
-        f"{mine.name}, and run all its cells"
+        f"{to}: the new release with your work; look through it, put it in the place of your "
+        "notebook, and run all its cells"
     )
     if both:
         print(f"where the new release changed what you may have changed too, it says: {BESIDE}")

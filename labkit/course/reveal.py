@@ -65,8 +65,12 @@ def _write_down(name: str, said: Any) -> None:
 def _reveal(name: str, form: Form, truth: Any) -> None:
     """The prediction beside the truth; without a prediction, no truth."""
     place = desk()
-    said, wrong = place.committed.get(name), " and ".join(place.stand_ins.wrong())
-    text = f"the experiment uses your wrong {wrong}; the truth is shown here once it is right"
+    said, wrong = place.committed.get(name), place.stand_ins.wrong()
+    once = "it is" if len(wrong) == 1 else "they are"
+    text = (
+        f"the experiment uses your wrong {' and '.join(wrong)}; the truth is shown here once "
+        f"{once} right"
+    )
     if said is None:
         text = "commit to a prediction above, then run the cells from there to here again"
     if said is None or wrong:
@@ -84,7 +88,7 @@ def _compare(form: Form, said: Any, truth: Any) -> None:
     print(wrapped(f"You predicted: {form.words(said)}."))
     print(wrapped(f"The arm says:  {form.words(truth)}."))
     if isinstance(form, Number):
-        times = f"{said / truth:.2g}" if truth else ""
+        times = f"{said / truth:.2g}" if said * truth > 0.0 else ""
         says = {"": "", "1": "Your number is the arm's."}
         print(wrapped(says.get(times, f"Your number is {times} times the arm's.")))
     else:

@@ -100,7 +100,10 @@ def _gains(random: Random) -> dict[str, Any]:
 
 def _law(random: Random, **what: float) -> Call:
     model, state, target = _tip(random, **what)
-    return call(state, target, model, **_gains(random))
+    gains = _gains(random)
+    push = np.array([10.0] * 3 + [0.5] * 3) * random.uniform(-1.0, 1.0, 6)
+    felt = model.tip_jacobian(state.q).T @ push
+    return call(lk.State(state.t, state.q, state.dq, felt), target, model, **gains)
 
 
 def off_in_position(random: Random) -> Iterator[Call]:

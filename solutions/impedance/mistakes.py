@@ -136,6 +136,26 @@ def diagonal_only(M: Any, J: Any) -> Any:
     return right.operational_inertia(np.diag(np.diag(M)), J)
 
 
+@dataclass(frozen=True)
+class Feeling:
+    """The right law, and so much of the torque that the sensors feel."""
+
+    share: float
+
+    def __call__(
+        self,
+        state: lk.State,
+        target: lk.PoseSample,
+        model: lk.Model,
+        *,
+        stiffness: Any,
+        damping: Any,
+    ) -> lk.JointTorque:
+        """The torque."""
+        tau = right.workspace_impedance(state, target, model, stiffness=stiffness, damping=damping)
+        return lk.JointTorque(tau.value + self.share * state.tau_ext)
+
+
 def plus_in_front(
     state: lk.State, target: lk.PoseSample, model: lk.Model, *, stiffness: Any, damping: Any
 ) -> lk.JointTorque:

@@ -24,6 +24,7 @@ SPEED = np.array([0.8, -0.5, 0.4, 1.0, -1.2, 0.9, 1.5])
 TWIST = np.array([0.2, -0.1, 0.3, 0.4, -0.2, 0.5])
 DTWIST = np.array([1.0, -2.0, 1.5, 2.0, 1.0, -1.0])
 PUSH = np.array([8.0, -5.0, 10.0, 0.5, 0.4, -0.3])
+FELT = MODEL.tip_jacobian(BENT).T @ PUSH
 SIX = np.delete(np.arange(7), 2)
 
 
@@ -35,7 +36,7 @@ def _target(shift: object, turn: object, moving: float) -> lk.PoseSample:
 
 
 def _law(shift: object, turn: object, *, speed: float = 0.0, moving: float = 0.0) -> Call:
-    state = lk.State(0.0, BENT, speed * SPEED)
+    state = lk.State(0.0, BENT, speed * SPEED, FELT)
     return call(state, _target(shift, turn, moving), MODEL, stiffness=K, damping=D)
 
 
@@ -460,6 +461,21 @@ WORKSPACE_IMPEDANCE = Problem(
         "itself takes.",
     ),
     wrong=(
+        Wrong(
+            "the felt push cancelled",
+            "Your law takes away what the torque sensors feel, so the arm does not give way: whoever "
+            "pushes meets a wall. An impedance needs no sensor: the push moves the tip, and the "
+            "springs and dampers answer.",
+            mistakes.Feeling(-1.0),
+            "What does the arm do under a push, if this torque cancels it?",
+        ),
+        Wrong(
+            "the felt push added",
+            "Your law adds what the torque sensors feel, so the push counts twice and the tip goes "
+            "twice as far. The push acts on the arm by itself.",
+            mistakes.Feeling(1.0),
+            "The push is there already, and the sensors only report it.",
+        ),
         Wrong(
             "the spring's sign reversed",
             "The spring drives the tip away from its target: as soon as anything disturbs it, the "

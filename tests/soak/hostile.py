@@ -707,7 +707,6 @@ STATES = {
     "result: own is a text": _json(_RESULT, own="xyz"),
     "result: seconds are missing": _json(_RESULT, seconds={}),
     "result: another's": _json(_RESULT, student="zoe"),
-    "result: another field": _json(_RESULT, more=1),
     "result: folder": _as_folder(_RESULT),
     "result: unreadable": lambda root: (root / _RESULT).chmod(0),
     "result: nobody's": lambda root: (root / "results/01_paths/nobody.json").write_bytes(
