@@ -84,7 +84,7 @@ def test_a_later_cell_that_draws_with_a_stand_in_says_so(said):
     _, _, drawn, _, called, kept, dialled, replayed, two = said(ANSWER.format(3), USE, DRAW, *cells)
     assert [drawn, called, kept] == [f"{NAMED}{x}" for x in ("Drawn.", "Called.", "Kept.")]
     assert dialled == f"{NAMED}2."
-    assert replayed.startswith(f"Replay: {NAMED}Circle with") and replayed.count(NAMED) == 1
+    assert replayed.startswith(f"{NAMED}Circle with") and replayed.count(NAMED) == 1
     assert two == f"{BOTH}Two."
 
 
