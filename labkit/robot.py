@@ -183,7 +183,7 @@ class Robot:
                 f'velocity="{speed!r}" effort="{effort!r}"/></joint>'
             )
             parent = f"{name}_body"
-        return "".join([*parts, "</robot>"])
+        return "\n".join([*parts, "</robot>"])  # PyBullet cuts long lines
 
 
 def _with_point_mass(m: float, c: Array, I: Array, extra: float, p: Array) -> tuple[Any, ...]:

@@ -182,19 +182,25 @@ def _definition(part: list[ast.stmt], lines: list[str]) -> dict[str, Any]:
 
     Returns:
         Names that it ``binds``; names from ``outside``; the dotted names that it ``uses``; names
-        whose contents it ``fills``; questions that it ``asks`` `use` about; what names of these
-        that it imports itself ``mean``, "*" for all of a module; whether it is a ``stub``.
+        whose contents it ``fills`` without having made them; questions that it ``asks`` `use`
+        about; what names of these that it imports itself ``mean``, "*" for all of a module; whether
+        it is a ``stub``.
     """
     scope = symtable.symtable(_text(part, lines), "", "exec")
     binds, outside = _own(scope), set(_from_elsewhere(scope))
     mean: dict[str, str] = {}
-    chains, fills, asks = set[str](), set[str](), set[str]()
+    chains, fills, sets, asks = set[str](), set[str](), set[str](), set[str]()
+    grown: set[ast.AST] = set()
     for node in _used(part):
         kind = type(node)
         if kind in _CHAINS:
             chains.add(dotted(node))
         if isinstance(node, ast.Call) and dotted(node) == "use" and node.args:
             asks.add(str(getattr(node.args[0], "value", "")))
+        if isinstance(node, ast.AugAssign):
+            grown.add(node.target)
+        elif isinstance(node, ast.Name) and isinstance(node.ctx, ast.Store) and node not in grown:
+            sets.add(node.id)
         if filled := _filled(node):
             fills.add(dotted(filled).partition(".")[0])
         elif kind in _IMPORTS:
@@ -204,7 +210,7 @@ def _definition(part: list[ast.stmt], lines: list[str]) -> dict[str, Any]:
         "binds": sorted(binds | (mean.keys() & {"*"})),
         "outside": sorted(outside),
         "uses": sorted(uses),
-        "fills": sorted(fills & (binds | outside)),
+        "fills": sorted((fills - sets) & (binds | outside)),
         "asks": sorted(asks),
         "mean": mean,
         "stub": is_stub(part[0]),

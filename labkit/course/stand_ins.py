@@ -54,7 +54,8 @@ def drawn_with(cells: Iterable[str], replaced: Collection[str]) -> list[str]:
         for part in cell["definitions"]:
             means |= {name: [part] for name in part["binds"] if name not in part["fills"]}
             for name in part["fills"]:
-                means[name] = [*means.get(name, ()), part]
+                if not any(name in x["mean"] for x in means.get(name, ())):  # no module
+                    means[name] = [*means.get(name, ()), part]
         kept = {*cell["functions"]}
         waiting = [x for x in cell["definitions"] if not kept & {*x["binds"]}]
         waiting = [x for x in waiting if not (x["asks"] and x["binds"])]

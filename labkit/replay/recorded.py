@@ -76,6 +76,6 @@ def _felt(log: Log) -> Any:
     from scipy.ndimage import binary_dilation
 
     room = np.minimum(log.q - log.robot.lower, log.robot.upper - log.q).min(axis=1)
-    ticks = max(1, round(AFTER / float(log.t[1] - log.t[0])))
+    ticks = max(1, round(AFTER * len(log) / max(AFTER, float(np.ptp(log.t)))))
     unknown = binary_dilation(room < STOP, iterations=ticks)
     return np.where(unknown[:, None], 0.0, metrics.felt_wrench(log)[:, :3])

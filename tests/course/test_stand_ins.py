@@ -84,7 +84,7 @@ def test_a_later_cell_that_draws_with_a_stand_in_says_so(said):
     _, _, drawn, _, called, kept, dialled, replayed, two = said(ANSWER.format(3), USE, DRAW, *cells)
     assert [drawn, called, kept] == [f"{NAMED}{x}" for x in ("Drawn.", "Called.", "Kept.")]
     assert dialled == f"{NAMED}2."
-    assert replayed.startswith(f"Replay: {NAMED}Circle with") and replayed.count(NAMED) == 1
+    assert replayed.startswith(f"{NAMED}Circle with") and replayed.count(NAMED) == 1
     assert two == f"{BOTH}Two."
 
 
@@ -142,3 +142,21 @@ def test_an_older_answer_is_replaced_by_a_stand_in_that_is_named(said):
 def test_before_a_cell_has_run_nothing_is_drawn():
     """A history without cells."""
     assert drawn_with([], {"double"}) == drawn_with([""], {"double"}) == []
+
+
+@pytest.mark.parametrize(
+    ("earlier", "draws"),
+    [
+        ("errors = np.append([], my_double(1))", "plt.plot(np.zeros(2))"),
+        ('for k in (1, 2):\n    plt.rcParams["font.size"] = my_double(k)', "plt.plot([1])"),
+        ("with at() as a:\n    logs = {}\n    logs[1] = my_double(1)",
+         "with at() as a:\n    logs = {}\n    logs[1] = given(1)\nplt.plot(logs[1])"),
+        ("for k in (1, 2):\n    total = 0\n    total += my_double(k)",
+         "for k in (1, 2):\n    total = 0\n    total += given(k)\nplt.plot(total)"),
+    ],
+)  # fmt: skip
+def test_what_an_earlier_cell_drew_is_not_said_of_the_next(earlier, draws):
+    """Not through a module that both use, nor through a name that this cell made anew."""
+    cells = ["import numpy as np\nimport matplotlib.pyplot as plt", HEAD, USE, earlier]
+    assert drawn_with(cells, {"double"}) == ["double"]
+    assert drawn_with([*cells, draws], {"double"}) == []

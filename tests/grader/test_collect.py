@@ -343,6 +343,35 @@ def test_marks_go_with_the_work(course, tmp_path):
         assert [one.id for one in book.students] == ["ada"]
 
 
+@pytest.mark.parametrize("order", [slice(None), slice(None, None, -1)])
+def test_two_of_one_name_change_places_with_their_marks(course, tmp_path, order):
+    """Who was taken for the other student of the name makes room first, in any order of rows."""
+    people = [(("Ada Lovelace", k), "x.ipynb", notebook_of(f"{k}'s")) for k in (42, 43)]
+    (tmp_path / "list.csv").write_text("name,login\nAda Lovelace,ada\n")
+    assert not enrolled(course, tmp_path / "list.csv")
+    for files in (people[:1], people):
+        take(course, from_moodle(tmp_path / "1.zip", files))
+    folders = {"ada": 42, "Ada-Lovelace-43": 43}
+    made = [result_of(course, x, data=notebook_of(f"{k}'s")) for x, k in folders.items()]
+    for one in made:
+        Results(course, NAME).keep(one)
+    record(course, NAME, made)
+    with open_gradebook(course) as book:
+        book.find_grade("circle-check", NAME, NAME, "ada").manual_score = 1.5
+        book.db.commit()
+    rows = ["Participant 42,Ada Lovelace,ada2", "Participant 43,Ada Lovelace,ada"][order]
+    text = "\n".join(["Identifier,Full name,Username", *rows])
+    (tmp_path / "worksheet.csv").write_text(f"{text}\n")
+    _, left = import_list(course, tmp_path / "worksheet.csv", NAME)
+    assert "left there" not in " ".join(left)
+    for who, number in (("ada", 43), ("ada2", 42)):
+        assert counting(course)[who] == notebook_of(f"{number}'s").decode()
+    marks = {mark.student: mark for mark in marks_of(course, NAME)}
+    assert not any(mark.missing for mark in marks.values())
+    given = {x: [line.by_hand for line in mark.lines if line.by_hand] for x, mark in marks.items()}
+    assert given == {"ada": [], "ada2": [1.5]}
+
+
 def test_what_cannot_be_moved_is_named(bare, tmp_path):
     """A mark under the old name, or other work under the new one, wants a look."""
     take(bare, zipped(tmp_path / "1.zip", [("hoppergrace_7_99_x.ipynb", "moodle's")]))

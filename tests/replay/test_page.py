@@ -219,6 +219,15 @@ def test_a_joint_at_its_stop_is_no_force_on_the_tip():
     assert 10 <= int(told[1]) < 20
 
 
+def test_a_run_of_one_tick_is_refused_in_a_sentence_with_its_force_too():
+    """As where no force is asked for; a controller that fails at once leaves such a log."""
+    ready = lk.robot("left").ready
+    with lk.Arm("left", q0=ready) as arm:
+        log = lk.run(arm, lk.Hold(lk.Model().pose(ready), 0.0), lk.control.hold(ready))
+    with pytest.raises(OutOfRange, match="t has 1 times, and a motion needs at least two"):
+        motion_of(log, "Short", force=True)
+
+
 def test_a_wall_that_reaches_behind_the_eye_is_left_out_of_the_picture():
     """However large the things are, there is a picture."""
     wall = {"kind": "face", "position": [0.7, 0.4, 0.0], "quaternion": [0, 0.7071, 0, 0.7071],

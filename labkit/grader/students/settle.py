@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import shutil
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
@@ -58,7 +58,8 @@ def bring(course: Course, assignment: str, moves: Mapping[str, str]) -> list[Fai
         Which folders stayed, and why.
     """
     moves = {old: new for old, new in moves.items() if old != new}
-    for pair in moves.items():
+    moved: dict[str, str] = {}
+    for pair in _in_order(moves):
         both = all(_work(course, who, assignment) for who in pair)
         for base in () if both else (*_WORK, *_MADE_OF_IT):
             source, target = (course.root / base / who / assignment for who in pair)
@@ -69,12 +70,15 @@ def bring(course: Course, assignment: str, moves: Mapping[str, str]) -> list[Fai
                 source.rename(target)
                 if not any(source.parent.iterdir()):
                     source.parent.rmdir()
-    without = {old: new for old, new in moves.items() if not _work(course, old, assignment)}
-    _bring_marks(course, assignment, without)
+        if not _work(course, pair[0], assignment):
+            moved |= [pair]
+    _bring_marks(course, assignment, moved)
     said: list[Failure] = []
     for old, new in moves.items():
         result = Results(course, assignment).path(old)
-        left = [*_work(course, old, assignment), *[result] * result.exists()]
+        left = [] if old in moved else _work(course, old, assignment)
+        if result.exists() and old not in moved.values():
+            left.append(result)
         if left:
             names = " and ".join(str(path.relative_to(course.root)) for path in left)
             says = (
@@ -85,6 +89,13 @@ def bring(course: Course, assignment: str, moves: Mapping[str, str]) -> list[Fai
             )
             said.append(Failure(old, says))
     return said
+
+
+def _in_order(moves: Mapping[str, str]) -> Iterator[tuple[str, str]]:
+    """The moves, each after the one that leaves its new folder; of a circle, none."""
+    waiting = dict(moves)
+    while free := [old for old, new in waiting.items() if new not in waiting]:
+        yield from [(old, waiting.pop(old)) for old in free]
 
 
 def _work(course: Course, student: str, assignment: str) -> list[Path]:
