@@ -35,11 +35,13 @@ class StandIns(dict[str, str]):
         return given
 
     def wrong(self) -> list[str]:
-        """The wrong answers of the student's that the last cell uses."""
-        return [name for name in drawn_with(self.ran, self) if self[name] == WRONG]
+        """The student's wrong answers that made the truth of a prediction in the last cell."""
+        return [x for x in drawn_with(self.ran, self, ("predict",)) if self[x] == WRONG]
 
 
-def drawn_with(cells: Iterable[str], replaced: Collection[str]) -> list[str]:
+def drawn_with(
+    cells: Iterable[str], replaced: Collection[str], where: Collection[str] = ()
+) -> list[str]:
     """The answers that are not right and that the last cell uses, itself or through others.
 
     A function that this cell defines, or gets from ``use``, counts only if the rest of it uses it.
@@ -47,6 +49,7 @@ def drawn_with(cells: Iterable[str], replaced: Collection[str]) -> list[str]:
     Args:
         cells: Their text, in the order in which they ran.
         replaced: The answers that are not right.
+        where: Only what a call of one of these functions uses; anywhere in the cell if empty.
     """
     means: dict[str, list[Any]] = {}
     waiting: list[Any] = []
@@ -59,6 +62,8 @@ def drawn_with(cells: Iterable[str], replaced: Collection[str]) -> list[str]:
         kept = {*cell["functions"]}
         waiting = [x for x in cell["definitions"] if not kept & {*x["binds"]}]
         waiting = [x for x in waiting if not (x["asks"] and x["binds"])]
+    if where:
+        waiting = [x for x in waiting if {*where} & {*x["uses"]}]
     found, seen = set[str](), set[str]()
     while waiting:
         part = waiting.pop()

@@ -195,8 +195,9 @@ for axis, name in enumerate("xyz"):
 #
 # There are seven joints and six springs, so nothing holds or damps the elbow. Here friction brakes the elbow.
 # Do not rely on friction elsewhere: add a damper that the tip does not feel, as everybody does who builds
-# such arms. You may do so here too, because many torques move the tip in the same manner, and the check looks
-# only at the tip.
+# such arms. For torques this takes the projector $I - J^T\bar J^T$ with $\bar J = M^{-1}J^T\Lambda$; the $I - J^+J$ of
+# speeds would shake the tip. You may do so here too, because many torques move the tip in the same manner, and
+# the check looks only at the tip.
 #
 # No force is measured. Many texts, the report among them, claim that "impedance needs a force sensor". It
 # does not, as long as the arm keeps its own inertia.
@@ -228,7 +229,7 @@ def workspace_impedance(state, target, model, *, stiffness, damping):
 # ## A push
 #
 # The arm holds still, and a force of 10 N pushes its tip to the side for two seconds. Baxter's position mode,
-# as stiff as its motors are strong, runs beside your law. The damping is critical for the masses that you
+# as stiff as its motors allow, runs beside your law. The damping is critical for the masses that you
 # just measured, $d_i = 2\sqrt{k_i m_i}$. (If your law is not ready, springs in the *joints* stand in. They
 # give way too, but not as you asked.)
 
@@ -369,10 +370,8 @@ def press(stiffness):
     ax.legend(frameon=False)
     last = pressed(log)[-20:].mean()
     who = "the tip" if yours else "a stand-in, which does not know K,"
-    return figure, (
-        f"With K = {stiffness:.0f} N/m {who} presses with {last:.1f} N; "
-        f"expected are {force:.1f} N."
-    )
+    does = f"presses with {last:.1f} N" if last > 0.0 else "does not rest on the wall"
+    return figure, f"With K = {stiffness:.0f} N/m {who} {does}; expected are {force:.1f} N."
 
 
 if wall_force is not None:  # first comes your prediction
@@ -545,8 +544,8 @@ lk.plotting.show(
 # instructor gave you, as in notebook 03; `"demo"` is a public arm to practise on.) Find out both with experiments of
 # your own; the cell below is only a beginning. The torque sensors were set to zero with the load in the gripper, so
 # they feel the wall and not the load. Move slowly: a fast tip bounces off the wall and blurs the reading. And
-# do not look for the wall with springs as soft as those of *Feel it*: your arm's joints have dry friction, which
-# holds soft springs back before the tip arrives.
+# do not look for the wall with springs of only 300 N/m: your arm's joints have dry friction, which holds soft
+# springs back before the tip arrives.
 
 # %%
 HANDLE = "demo"  # in a course: the name that your instructor gave you

@@ -149,9 +149,9 @@ def decay_rate(kp, kd):
 # %% predict="with_more_d"
 
 # %% [markdown]
-# Compare with an arm whose motors take 50 ms to follow a command. (With motors that obey at once, the loop
-# would feed on itself: the speed measured now *is* the last command, so with kd above 1 the commands would
-# grow from tick to tick. The report's authors ended with a kd of 0.0001.) kd is useful with a moving target,
+# Compare with an arm whose motors take 50 ms to follow a command. (On paper the controller knows the speed of
+# the same instant. A computer knows it a tick late: with motors that obey at once it *is* the last command, so
+# with kd above 1 the commands would grow from tick to tick. The report's authors ended with a kd of 0.0001.) kd is useful with a moving target,
 # because it reduces the error that the motors' lag causes; here the target rests. The thick lines are
 # the arm, the thin dotted ones your rate.
 
@@ -164,19 +164,26 @@ def nobody_knows(kp, kd):
 my_decay_rate = use("decay_rate", decay_rate, nobody_knows)
 
 lagging = lk.Arm("left", lk.Plant(name="lagging", velocity_lag=0.05))
-plt.figure(figsize=(8, 3), layout="constrained")
-shares = {}
-for kd, style in ((0.0, "-"), (1.0, "--"), (3.0, "-.")):
 
-    def brakes(state, target, kd=kd):
+
+def braked(kd):
+    """Times and errors of s0 while a D term brakes the joints."""
+
+    def brakes(state, target):
         return lk.JointVelocity(3.0 * (target.position - state.q) - kd * state.dq)
 
     lagging.reset(q0)
-    braked = lk.run(lagging, lk.Hold(q0 + 0.2 * np.eye(7)[0], 1.5), brakes)
-    left = braked.target.position[:, 0] - braked.q[:, 0]
-    line = plt.plot(braked.t, left, style, linewidth=2, label=f"kd = {kd:g}")[0]
-    yours = left[0] * np.exp(-my_decay_rate(3.0, kd) * braked.t)
-    plt.plot(braked.t, yours, ":", color=line.get_color())
+    log = lk.run(lagging, lk.Hold(q0 + 0.2 * np.eye(7)[0], 1.5), brakes)
+    return log.t, log.target.position[:, 0] - log.q[:, 0]
+
+
+errors = {kd: braked(kd) for kd in (0.0, 1.0, 3.0)}
+plt.figure(figsize=(8, 3), layout="constrained")
+shares = {}
+for (kd, (t, left)), style in zip(errors.items(), ("-", "--", "-.")):
+    line = plt.plot(t, left, style, linewidth=2, label=f"kd = {kd:g}")[0]
+    yours = left[0] * np.exp(-my_decay_rate(3.0, kd) * t)
+    plt.plot(t, yours, ":", color=line.get_color())
     shares[kd] = left[-1] / left[0]
 plt.xlabel("time [s]")
 plt.ylabel("error of s0 [rad]")
@@ -191,11 +198,11 @@ else:
     )
 
 # %%
-predict("with_more_d", truth=(braked.t, left))
+predict("with_more_d", truth=errors[3.0])
 
 # %% [markdown]
-# Two things change with D. The arm keeps closer to the curve that you would expect of quick motors, because D
-# makes the loop less sensitive to their lag. And the arm arrives later. The second effect matters more. So
+# Two things change with D. The thick line is nearer to its dotted one, because D makes the loop less sensitive
+# to the motors' lag. And the arm arrives later. The second effect matters more. So
 # from here on kd is 0, and you choose only kp.
 
 # %% [markdown]
@@ -258,17 +265,24 @@ my_damped_inverse = use("damped_inverse", damped_inverse, truncated_inverse)
 angles = np.linspace(0.0, 0.8, 161)
 stretched = [np.array([-0.3, -0.4, 0.0, e1, 0.0, 0.6, 0.0]) for e1 in angles]
 straight = angles[np.argmin([model.nearness_to_singularity(q) for q in stretched])]
-plt.figure(figsize=(8, 3), layout="constrained")
-speeds = {}
-for damping, style in ((0.0, "-"), (0.0025, "--"), (0.02, "-.")):
-    inverse = my_damped_inverse if damping else exact_inverse
+
+
+def fastest_joint(inverse, damping):
+    """The speed of the fastest joint at each angle, in [rad/s]."""
     fastest = []
     for q in stretched:
         J = model.tip_jacobian(q)
         worst = np.linalg.svd(J)[0][:, -1]
         worst = 0.1 * worst / np.linalg.norm(worst[:3])
         fastest.append(np.abs(inverse(J, damping) @ worst).max())
-    undamped = fastest if damping == 0.0 else undamped
+    return fastest
+
+
+undamped = fastest_joint(exact_inverse, 0.0)
+plt.figure(figsize=(8, 3), layout="constrained")
+speeds = {}
+for damping, style in ((0.0, "-"), (0.0025, "--"), (0.02, "-.")):
+    fastest = fastest_joint(my_damped_inverse, damping) if damping else undamped
     name = "no damping" if damping == 0.0 else f"damping {damping:g}"
     plt.semilogy(angles, fastest, style, label=name)
     speeds[name] = max(fastest)

@@ -596,7 +596,7 @@ WORKSPACE_VELOCITY_PD = Problem(
         Wrong(
             "the orientation left to itself",
             "The last three numbers of the error are zero, so the hand keeps any tilt. Fill them "
-            "with orientation_error; several teams left them out to get rid of a wrong one.",
+            "with orientation_error; several teams left them out because their orientation error was wrong.",
             mistakes.position_only,
             "A gain of zero hides a wrong sign.",
         ),
