@@ -21,15 +21,7 @@ from .checks_file import read_checks
 from .forms import COMMITTED, OWN_ARM
 from .gaps import bring_back, calculated, changed_since, first_error, undefined
 from .messages import head
-from .notebook import (
-    PLACEHOLDER,
-    check_id,
-    defines,
-    grade_id,
-    kind,
-    last_verdict,
-    read_cells,
-)
+from .notebook import PLACEHOLDER, check_id, defines, grade_id, kind, last_verdict, read_cells
 from .own_arm import FILE, arms_for, opens_the_public_arm
 from .serialize import decode
 from .source import look

@@ -23,9 +23,7 @@ from .question import Call, Probe, Question
 
 
 def probed(
-    question: Question,
-    answer: Callable[..., Any],
-    expected: Callable[..., Any],
+    question: Question, answer: Callable[..., Any], expected: Callable[..., Any]
 ) -> tuple[Probe, ...]:
     """What is right on each probe.
 

@@ -28,10 +28,7 @@ _FACTORS = {
     "9.8/9.81": 9.8 / 9.81,
 }
 """Factors that have a cause, in words."""
-_POWERS = {
-    "multiplied by `{}`": 1.0,
-    "divided by `{}`": -1.0,
-}
+_POWERS = {"multiplied by `{}`": 1.0, "divided by `{}`": -1.0}
 
 
 def same_form(a: Parts, b: Parts) -> bool:

@@ -197,12 +197,13 @@ def _definition(part: list[ast.stmt], lines: list[str]) -> dict[str, Any]:
             chains.add(dotted(node))
         if isinstance(node, ast.Call) and dotted(node) == "use" and node.args:
             asks.add(str(getattr(node.args[0], "value", "")))
+        stores = isinstance(getattr(node, "ctx", None), ast.Store)
         if isinstance(node, ast.AugAssign):
             grown.add(node.target)
-        elif isinstance(node, ast.Name) and isinstance(node.ctx, ast.Store) and node not in grown:
-            sets.add(node.id)
-        if filled := _filled(node):
-            fills.add(dotted(filled).partition(".")[0])
+        elif isinstance(node, ast.Name) and stores:  # `x = 1`, or `x += 1`
+            (fills if node in grown else sets).add(node.id)
+        elif stores or getattr(node, "attr", "") in _GROW:  # `x[k] = 1`, `x.k = 1`, `x.append(1)`
+            fills.add(dotted(getattr(node, "value", node)).partition(".")[0])
         elif kind in _IMPORTS:
             mean |= imported(node)
     uses = {x for x in chains if (root := x.partition(".")[0]) in outside or root in mean}
@@ -215,16 +216,6 @@ def _definition(part: list[ast.stmt], lines: list[str]) -> dict[str, Any]:
         "mean": mean,
         "stub": is_stub(part[0]),
     }
-
-
-def _filled(node: ast.AST) -> ast.AST | None:
-    """What a node adds to, as `x[k] = 1`, `x.k = 1`, `x += 1` and `x.append(1)` do to x."""
-    if isinstance(node, ast.AugAssign):
-        return node.target
-    if isinstance(node, ast.Subscript | ast.Attribute):
-        stores = isinstance(node.ctx, ast.Store) or getattr(node, "attr", "") in _GROW
-        return node.value if stores else None
-    return None
 
 
 def _used(part: list[ast.stmt]) -> Iterator[ast.AST]:

@@ -72,9 +72,7 @@ class Detection:
 
 
 def detect_tags(
-    image: Any,
-    camera: Camera | Intrinsics,
-    size: float | Mapping[int, float],
+    image: Any, camera: Camera | Intrinsics, size: float | Mapping[int, float]
 ) -> tuple[Detection, ...]:
     """Find the tags in a picture.
 

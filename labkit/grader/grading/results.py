@@ -208,9 +208,8 @@ class Result:
         rounded = 0.01 * sum(theirs[x].points != mine[x].points for x in both)
         if sum(mine[x].earned for x in both) < was - rounded - 1e-6:
             return True
-        earned, points = (sum(getattr(v, x) for v in theirs.values()) for x in ("earned", "points"))
         gone = any(v.earned for name, v in theirs.items() if name not in mine)
-        share = earned / points * self.points if gone else 0.0
+        share = before.score / before.points * self.points if gone else 0.0
         return self.score < share - 0.01 * len(mine)
 
     @property
