@@ -160,8 +160,8 @@ def test_state_survives_between_calls_but_not_between_questions(marks, solved):
 @pytest.mark.parametrize(
     ("body", "says"),
     [
-        ("import os; os._exit(1)", "SystemExit: it ended its own process"),
-        ("import ctypes; ctypes.string_at(0)", "SystemExit: it ended its own process"),
+        ("import os; os._exit(1)", "SystemExit: its process ended before it answered"),
+        ("import ctypes; ctypes.string_at(0)", "SystemExit: its process ended before it answered"),
         ("import sys; sys.exit()", "SystemExit"),
         ("while True: pass", "TimeoutError: it did not come back within 1 s"),
         ("return bytearray(10**10)", "MemoryError"),

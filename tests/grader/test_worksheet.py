@@ -8,7 +8,7 @@ import pytest
 from downloaded import NAME, bare_course, from_moodle
 
 from labkit.__main__ import main
-from labkit.grader.students.attempts import that_counts
+from labkit.grader.students.attempts import perhaps_late, that_counts
 from labkit.grader.students.collect import collect
 from labkit.grader.timestamp import read_time
 
@@ -69,6 +69,18 @@ def test_a_time_that_is_not_taken_is_named(bare, tmp_path, capsys, when, says):
     assert (code, handed_in(bare)) == (1, "") and "; 0 hand-in times set" in out
     assert err.startswith("Ada Lovelace (Ada-Lovelace): no hand-in time is set; the worksheet")
     assert says in err
+
+
+def test_who_is_perhaps_late_is_named_until_the_time_is_known(bare, tmp_path, capsys):
+    """When a download is collected, also where an earlier worksheet had a time for earlier work."""
+    (bare.root / "course.toml").write_text(f"[assignments.{NAME}]\ndue = 2026-03-02T12:00:00Z\n")
+    assert "perhaps late" not in "\n".join(take(bare, tmp_path))
+    worksheet(bare, tmp_path, capsys, IN_TIME)
+    again = "\n".join(take(bare, tmp_path, "2", day=5))
+    assert "perhaps late: 1 (Ada-Lovelace); no late rule is applied" in again
+    assert "was there at 2026-03-05 12:00 UTC" in perhaps_late(bare, "Ada-Lovelace", NAME)
+    worksheet(bare, tmp_path, capsys, "Wednesday, 4 March 2026, 11:30 AM")
+    assert (handed_in(bare), perhaps_late(bare, "Ada-Lovelace", NAME)) == ("04 11:30", "")
 
 
 def test_a_worksheet_without_times_is_named_once(bare, tmp_path, capsys):

@@ -22,6 +22,7 @@ from ..grading.standing import full_marks, grade_again, standing
 from ..nbgrader.gradebook import open_gradebook
 from ..rules import FILE as RULES
 from ..rules import read_rules, settle_lateness
+from ..students.attempts import perhaps_late
 from ..students.class_list import Student
 from ..students.identity import lms_users
 from ..students.roster import read_roster
@@ -81,8 +82,10 @@ def _own_marks(course: Course, assignment: str, only: str | None) -> Iterator[Ma
             row = replace(row, remark=nothing)
             if submission is not None or one is not None:
                 row = _marked(replace(row, remark=""), submission, one, assignment)
-            if isinstance(one, Result) and one.rejected and not row.missing:
-                row = replace(row, remark=f"rejected: {one.rejected}")
+                row = replace(row, remark=row.remark or perhaps_late(course, student, assignment))
+            if isinstance(one, Result) and one.unanswered and not row.missing:
+                rejected = "rejected: " if one.rejected else ""
+                row = replace(row, remark=f"{rejected}{one.unanswered}")
             elif row.raw is not None and one is not None and student not in handed_in:
                 gone = "nothing of theirs is in submitted/; the mark stays as it was"
                 row = replace(row, remark=gone)

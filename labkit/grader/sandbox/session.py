@@ -264,7 +264,7 @@ class RemoteFunction:
         except MessageTooLarge as error:
             failed = "TypeMismatch", str(error)
         except Disconnected:
-            failed = "SystemExit", "SystemExit: it ended its own process"
+            failed = "SystemExit", "SystemExit: its process ended before it answered"
         self.lost += 1
         raise NoAnswer(*failed)
 

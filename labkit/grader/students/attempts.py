@@ -139,6 +139,28 @@ def that_counts(course: Course, student: str, assignment: str) -> Counted | None
     return counts([one for one in shown if one.hand_ins], assignment) or counts(all, assignment)
 
 
+def perhaps_late(course: Course, student: str, assignment: str) -> str:
+    """What to know of work that a download showed after it was due; empty if all is known.
+
+    Canvas calls late work late, and the exchange has times of its own.
+    """
+    due = read_rules(course).due_for(student, assignment)
+    try:
+        chosen = that_counts(course, student, assignment)
+    except LabkitError:  # a damaged record, which is named where work is collected
+        return ""
+    if chosen is None or due is None or chosen.first.when <= due:
+        return ""
+    first = chosen.first
+    exact = any(x.exact for x in (first, *chosen.attempt.hand_ins))
+    if exact or first.late or first.origin not in {"moodle", "files"}:
+        return ""
+    return (
+        f"nobody knows whether it came in time, only that it was there at "
+        f"{first.when:%Y-%m-%d %H:%M %Z}; no late rule is applied"
+    )
+
+
 def keep(
     course: Course,
     student: str,

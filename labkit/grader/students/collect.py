@@ -15,9 +15,10 @@ from pathlib import Path
 
 from ...course.authoring.layout import Course
 from ...errors import LabkitError
+from ..clean import some
 from ..each import Failure, for_student
 from ..submission import digest
-from .attempts import HandIn, adopt, called, install, keep, that_counts
+from .attempts import HandIn, adopt, called, install, keep, perhaps_late, that_counts
 from .exchange import in_exchange
 from .identity import all_lms_users, alone, places, remember
 from .owner import owner
@@ -49,6 +50,11 @@ class Taken:
 _NO_LIST = (
     "no class list, so students are known by the platform's numbers alone, which Moodle gives anew "
     "in each assignment; for one folder a student all term, type: labkit students import LIST.csv"
+)
+_PERHAPS_LATE = (
+    "perhaps late: {who}; no late rule is applied to them until their hand-in times are known: "
+    "with Moodle, download the grading worksheet now and type: labkit students import "
+    "WORKSHEET.csv --assignment {of}; with files of your own, collect with --at"
 )
 _HandedIn = tuple[File, Named]
 """A file, and the one reading of its name that is right."""
@@ -149,6 +155,8 @@ def _take(course: Course, assignment: str, source: Path, files: Sequence[File]) 
         by_student.setdefault(found[named.who.key].folder, []).append((file, named))
     for student, mine in sorted(by_student.items()):
         yield from _keep(course, assignment, student, mine)
+    if late := [x for x in sorted(by_student) if perhaps_late(course, x, assignment)]:
+        yield Taken("", "", _PERHAPS_LATE.format(who=f"{len(late)} ({some(late)})", of=assignment))
 
 
 def _keep(
