@@ -11,6 +11,7 @@ import { write } from "./predict.js";
 const GHOST = 0x1f77d0;
 export const CALM = 800; // ms without another curve until the last one is told
 const SIGNS = { zeta: "ζ", lambda2: "λ²", threshold: "damped where σ is below" }; // of gains, as the text has them
+const UNITS = { lambda2: " m²", threshold: " m" }; // a radian counts as a lever of so many metres
 
 export class Panel extends Drawing {
   constructor(host, config, mujoco, viewer, robot, began) {
@@ -89,7 +90,7 @@ export class Panel extends Drawing {
 
   words() {
     const { controller, gains, plant } = this.settings;
-    const told = Object.entries(gains).map(([name, x]) => `${SIGNS[name] ?? name} ${+x.toPrecision(3)}`);
+    const told = Object.entries(gains).map(([name, x]) => `${SIGNS[name] ?? name} ${+x.toPrecision(3)}${UNITS[name] ?? ""}`);
     return [ARMS[plant], NAMES[controller], ...told].join(", ");
   }
 

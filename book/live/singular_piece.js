@@ -28,6 +28,17 @@ export function atElbow(e1, lambda2) {
   return { quickest: Math.max(...dq.map(Math.abs)), lost: 1000 * length(subtract(V, apply(J, dq)).slice(0, 3)) };
 }
 
+/** What the equations say for a damping, over elbow angles: a pole has no largest speed. */
+export function told(lambda2, x, found) {
+  const peak = found.reduce((a, b) => (b.quickest > a.quickest ? b : a)), at = x[found.indexOf(peak)].toFixed(2);
+  if (!lambda2) return `With λ² = 0: the speed of the fastest joint grows without bound at e1 = ${at} rad; nothing of the tip's speed is lost.`;
+  const lost = Math.max(...found.map((f) => f.lost)).toFixed(0);
+  return `With λ² = ${lambda2} m²: the fastest joint turns at ${peak.quickest.toFixed(1)} rad/s, at e1 = ${at} rad; up to ${lost} of 100 mm/s are lost.`;
+}
+
+/** The elbow angles of the maps, in [rad]. */
+export const ANGLES = Array.from({ length: 240 }, (_, k) => 0.0025 * (k + 1));
+
 /** The elbow angle at which a joint must turn quickest. */
 export function worstElbow() {
   const angles = Array.from({ length: 1200 }, (_, k) => 0.0005 * (k + 1));
@@ -51,9 +62,9 @@ class Singular extends Panel {
   parts() {
     const { h, viewer } = this;
     this.predicted = predictBox(h, {
-      question: "The tip is to move outwards at 10 cm/s while the elbow stretches. At which elbow angle e1 must some joint turn quickest? (0 is the straight elbow.)",
-      unit: "rad", commit: () => this.map(0), found: worstElbow });
-    this.lambda = this.dial({ label: "Damping λ²", unit: "", min: 0, max: 0.02, value: 0 }, (lambda2) => {
+      question: "The tip is to move outwards at 10 cm/s while the elbow stretches. By the equations alone, at which elbow angle e1 must some joint turn quickest? (0 is the straight elbow.)",
+      unit: "rad", source: "the equations give", commit: () => this.map(0), found: worstElbow });
+    this.lambda = this.dial({ label: "Damping λ²", unit: "m²", min: 0, max: 0.02, value: 0 }, (lambda2) => {
       this.change({ gains: { ...this.settings.gains, lambda2 } });
       this.map(lambda2);
     });
@@ -72,7 +83,7 @@ class Singular extends Panel {
   /** What the equations say at each elbow angle, shown once the reader has predicted. */
   map(lambda2) {
     if (this.predicted.said === null) return;
-    const x = Array.from({ length: 240 }, (_, k) => 0.0025 * (k + 1)), found = x.map((e1) => atElbow(e1, lambda2));
+    const x = ANGLES, found = x.map((e1) => atElbow(e1, lambda2));
     const values = [found.map((f) => Math.min(20, f.quickest)), found.map((f) => f.lost)];
     this.mapbox.hidden = false;
     this.maps.forEach((plot, k) => {
@@ -83,8 +94,7 @@ class Singular extends Panel {
       plot.draw();
     });
     this.mapped = values;
-    const peak = found.reduce((a, b) => (b.quickest > a.quickest ? b : a)), at = x[found.indexOf(peak)];
-    this.maptold.textContent = `With λ² = ${lambda2}: the fastest joint turns at ${peak.quickest.toFixed(1)} rad/s, at e1 = ${at.toFixed(2)} rad; ${lambda2 ? `up to ${Math.max(...values[1]).toFixed(0)} of 100 mm/s are lost` : "nothing of the tip's speed is lost"}.`;
+    this.maptold.textContent = told(lambda2, x, found);
   }
 }
 

@@ -10,6 +10,7 @@ import { Model } from "../../book/live/model.js";
 import * as numbers from "../../book/live/numbers.js";
 import { run } from "../../book/live/run.js";
 import { spring, wall } from "../../book/live/scene.js";
+import { ANGLES, atElbow, told } from "../../book/live/singular_piece.js";
 import { taskTarget } from "../../book/live/tasks.js";
 import { twoPoses } from "../../book/live/two_poses.js";
 
@@ -46,6 +47,7 @@ const ASK = {
     }
     return count;
   },
+  stretched: ({ lambda2 }) => told(lambda2, ANGLES, ANGLES.map((e1) => atElbow(e1, lambda2))),
   poses: ({ size, image }) => twoPoses(size, image),
   run: (request) => {
     const { controller, task, duration, things = [], start } = request;

@@ -172,3 +172,13 @@ def test_half_pixels_flip_a_far_tag_as_the_page_says():
     page = (ROOT / "book/live_age.md").read_text()
     assert "At 1.5 m and 10° its first half pixel flips the pose" in page
     assert "at 0.5 m and\n30° it takes 21 of them" in page
+
+
+def test_without_damping_the_joint_speed_has_no_peak_that_could_be_told():
+    """At the pole a reader is told no number of rad/s, which would be that of a grid."""
+    undamped, damped = javascript(
+        {"ask": "stretched", "lambda2": 0}, {"ask": "stretched", "lambda2": 0.01}
+    )
+    assert "grows without bound at e1 = 0.16 rad" in undamped
+    assert "rad/s" not in undamped
+    assert re.search(r"λ² = 0\.01 m²: .* at [\d.]+ rad/s, .* 55 of 100 mm/s", damped)

@@ -245,7 +245,7 @@ def test_the_tag_tells_nothing_before_the_reader_has(live):
     page.keyboard.type("12")  # the box has the focus
     page.keyboard.press("Enter")
     results.wait_for()
-    assert "the arm gave 13" in page.inner_text(".lk-predict")
+    assert "the equations give 13" in page.inner_text(".lk-predict")
 
 
 def test_half_a_pixel_flips_a_tag(live):
