@@ -25,7 +25,8 @@ UNREAD = ", ".join([
 BLOCKS = {"p", "li", "dt", "dd", "tr", "td", "th", "div", "pre", "section", "figcaption", "caption"}
 SIGNS = {"lVert": "‖", "rVert": "‖", "times": "×", "cdot": "·", "le": "≤", "ge": "≥", "pm": "±",
          "int": "∫", "sum": "Σ", "to": "→", "in": "∈", "approx": "≈", "partial": "∂", "sqrt": "√",
-         "star": "*", "lambda": "λ", "Lambda": "Λ", "bar": "\N{COMBINING MACRON}",
+         "star": "*", "dots": "…", "ldots": "…", "cdots": "…", "lambda": "λ", "Lambda": "Λ",
+         "bar": "\N{COMBINING MACRON}",
          "dot": "\N{COMBINING DOT ABOVE}", "ddot": "\N{COMBINING DIAERESIS}",
          "hat": "\N{COMBINING CIRCUMFLEX ACCENT}"}  # fmt: skip
 
@@ -99,10 +100,11 @@ def _title(element: Tag) -> str:
 
 def spoken(formula: str) -> str:
     """A formula of a sentence in plain letters, as far as they go: `\\dot q_d` becomes q̇_d."""
-    text = re.sub(r"^\\\(|\\\)$|\\[,;!]|\\(left|right|mathrm|text|operatorname)\b", "", formula)
+    text = re.sub(r"^\\\(|\\\)$|\\(left|right|mathrm|text|operatorname)\b", "", formula)
     text = re.sub(r"\\[dt]?frac\s*(\{[^{}]*\}|\w)\s*(\{[^{}]*\}|\w)", r"\1/\2", text)
-    text = re.sub(r"\\(d?dot|hat|bar)\s*(\{\w\}|\\[a-z]+|\w)", _accented, text)
-    text = re.sub(r"[{}]", "", re.sub(r"\\([A-Za-z]+)\s*", _sign, text))
+    text = re.sub(r"\\(d?dot|hat|bar)(?![A-Za-z])\s*(\{\\?\w+\}|\\[A-Za-z]+|\w)", _accented, text)
+    text = re.sub(r"\\([A-Za-z]+)\s*", _sign, text)
+    text = re.sub(r"[{}]|\\[,;!]", "", text)  # a thin space ends a command, so it goes last
     return unicodedata.normalize("NFC", text)
 
 

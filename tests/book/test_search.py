@@ -26,6 +26,9 @@ def test_a_page_is_cut_at_headings_and_names_and_words_stay_whole():
         (r"\(\dot q = u\)", "q̇ = u"),
         (r"\(\tfrac12\,\lambda\)", "1/2λ"),
         (r"\(\ddot{x}\)", "ẍ"),
+        (r"\(J^T\Lambda\,J\)", "J^TΛJ"),
+        (r"\(q_1, \dots, q_n\)", "q_1, …, q_n"),
+        (r"\(\dot{\theta}\)", "θ̇"),
         (r"\(\lVert e\rVert \le 1\)", "‖e‖≤1"),
     ],
 )
