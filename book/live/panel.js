@@ -1,5 +1,6 @@
 // The open page's panel: any path with any controller, dials, hands, a kept run beside the present one.
 import { Curves, ERROR } from "./curves.js";
+import { ARM_DIALS } from "./controls.js";
 import { Drawing } from "./drawing.js";
 import { ARMS } from "./form.js";
 import { tire } from "./hands.js";
@@ -12,6 +13,17 @@ const GHOST = 0x1f77d0;
 export const CALM = 800; // ms without another curve until the last one is told
 const SIGNS = { zeta: "ζ", lambda2: "λ²", threshold: "damped where σ is below" }; // of gains, as the text has them
 const UNITS = { lambda2: " m²", threshold: " m" }; // a radian counts as a lever of so many metres
+
+const FORCES = { hand: "your pull" }; // what a reader calls them, where it is not their name
+
+/** Settings in words: arm, controller, and what of both the reader has changed. */
+export function described({ controller, gains, plant, ...arm }) {
+  const short = (x) => +x.toPrecision(3);
+  const changed = ARM_DIALS.filter(({ key }) => key in PRESETS[plant] && arm[key] !== PRESETS[plant][key])
+    .map(({ key, label, unit }) => `${label.toLowerCase()} ${short(arm[key])}${unit === "Baxter's" ? "" : ` ${unit}`}`);
+  const told = Object.entries(gains).map(([name, x]) => `${SIGNS[name] ?? name} ${short(x)}${UNITS[name] ?? ""}`);
+  return [ARMS[plant], ...changed, NAMES[controller], ...told].join(", ");
+}
 
 export class Panel extends Drawing {
   constructor(host, config, mujoco, viewer, robot, began) {
@@ -81,17 +93,11 @@ export class Panel extends Drawing {
       this.kept = this.settings;
       this.other = new Session(this.mujoco, this.settings);
       this.ghost = this.picture.works && this.picture.ghost("left", GHOST);
-      this.curves.keep(this.words());
+      this.curves.keep();
       this.restart();
     }
     this.keeper.textContent = this.kept ? "Discard the kept run" : "Keep this run";
     this.say(this.kept ? "Kept: the see-through arm goes on with these values." : "The kept run is gone.");
-  }
-
-  words() {
-    const { controller, gains, plant } = this.settings;
-    const told = Object.entries(gains).map(([name, x]) => `${SIGNS[name] ?? name} ${+x.toPrecision(3)}${UNITS[name] ?? ""}`);
-    return [ARMS[plant], NAMES[controller], ...told].join(", ");
   }
 
   restart() {
@@ -132,7 +138,7 @@ export class Panel extends Drawing {
     if (!now) return;
     if (picture.works) this.drawNow(now);
     const words = [`t = ${now.t.toFixed(2)} s`, `tip ${(1000 * now.error).toFixed(1)} mm from its target`,
-      ...now.forces.map((f) => `${f.name} ${f.size.toFixed(1)} N`), `fastest joint ${now.speed.toFixed(2)} rad/s`];
+      ...now.forces.map((f) => `${FORCES[f.name] ?? f.name} ${f.size.toFixed(1)} N`), `fastest joint ${now.speed.toFixed(2)} rad/s`];
     this.numbers.textContent = words.join(" · ");
     this.curves.time(now.t % this.session.lap);
     this.shown?.(now);
@@ -153,7 +159,7 @@ export class Panel extends Drawing {
         const told = await this.curves.run(this.mujoco, settings, this.config.seconds ?? 2.5, () => asked !== this.asked);
         if (asked !== this.asked) return;
         this.host.dataset.rerun = String(Math.round(performance.now() - began));
-        this.said.textContent = `${this.words()}: ${told}`;
+        this.said.textContent = `${described(settings)}: ${told}`;
         this.say(told, CALM);
         this.computed?.();
       } catch (problem) { this.lost(problem); }

@@ -74,11 +74,14 @@ class Stiffness extends Panel {
     if (!this.settled()) { write(this.verdict, "Coming to rest…"); this.told = false; return; }
     if (this.told) return;
     this.told = true; // once it is at rest, once for a screen reader
-    this.verdict.textContent = `At rest: ${this.wallForce.toFixed(1)} N on the wall (at most ${LIMITS.wall}), ${this.sag.toFixed(1)} mm of sag (at most ${LIMITS.sag}). ${kept(this.wallForce, this.sag)}`;
+    this.verdict.textContent = `At rest: ${this.wallForce.toFixed(1)} N on the wall (at most ${LIMITS.wall}), ${tenths(this.sag)} mm of sag (at most ${LIMITS.sag}). ${kept(this.wallForce, this.sag)}`;
     this.host.dataset.wall = this.wallForce.toFixed(2);
     this.host.dataset.sag = this.sag.toFixed(2);
   }
 }
+
+/** A number of one decimal place, with a minus and no negative zero. */
+const tenths = (x) => x.toFixed(1).replace(/^-0\.0$/, "0.0").replace("-", "−");
 
 /** Which of the two limits are kept, in words. */
 function kept(force, sag) {
@@ -95,7 +98,7 @@ function bar(h, name, limit, most, unit) {
   const set = (x) => {
     fill.style.width = `${Math.min(100, Math.max(0, (100 * x) / most))}%`;
     fill.classList.toggle("lk-over", x > limit);
-    words.textContent = `${x.toFixed(1)} ${unit}, limit ${limit} ${unit}`;
+    words.textContent = `${tenths(x)} ${unit}, limit ${limit} ${unit}`;
   };
   return { element, set };
 }

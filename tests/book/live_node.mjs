@@ -8,9 +8,11 @@ import * as laws from "../../book/live/controllers.js";
 import { jointTrajectory } from "../../book/live/inverse.js";
 import { Model } from "../../book/live/model.js";
 import * as numbers from "../../book/live/numbers.js";
+import { described } from "../../book/live/panel.js";
 import { run } from "../../book/live/run.js";
 import { spring, wall } from "../../book/live/scene.js";
 import { ANGLES, atElbow, told } from "../../book/live/singular_piece.js";
+import { PRESETS } from "../../book/live/settings.js";
 import { taskTarget } from "../../book/live/tasks.js";
 import { twoPoses } from "../../book/live/two_poses.js";
 
@@ -48,6 +50,7 @@ const ASK = {
     return count;
   },
   stretched: ({ lambda2 }) => told(lambda2, ANGLES, ANGLES.map((e1) => atElbow(e1, lambda2))),
+  described: ({ plant, gains, change }) => described({ ...PRESETS[plant], controller: "jointVelocity", gains, ...change }),
   poses: ({ size, image }) => twoPoses(size, image),
   run: (request) => {
     const { controller, task, duration, things = [], start } = request;

@@ -182,3 +182,25 @@ def test_without_damping_the_joint_speed_has_no_peak_that_could_be_told():
     assert "grows without bound at e1 = 0.16 rad" in undamped
     assert "rad/s" not in undamped
     assert re.search(r"λ² = 0\.01 m²: .* at [\d.]+ rad/s, .* 55 of 100 mm/s", damped)
+
+
+def test_the_line_under_a_curve_names_what_of_the_arm_was_changed():
+    """Payload, friction and latency as set, the gains after them; nothing that is as it was."""
+    changed = {"payload": 0.5, "friction": 2, "latency": 60}
+    assert javascript(
+        {"ask": "described", "plant": "baxter", "gains": {"Kp": 9}},
+        {"ask": "described", "plant": "baxter", "gains": {"Kp": 9}, "change": changed},
+    ) == [
+        "realistic arm, joint velocity, Kp 9",
+        "realistic arm, friction × 2, payload 0.5 kg, latency 60 ms, joint velocity, Kp 9",
+    ]
+
+
+def test_the_page_says_how_much_a_click_loads():
+    """Five scripts and their size, before the click; WebAssembly grows by a third as base64."""
+    bundle, viewer = ROOT / "book/live/bundle", ROOT / "labkit/data/viewer"
+    plain = [viewer / "viewer.js", viewer / "robot.js", bundle / "mujoco.js", bundle / "live.js"]
+    packed = (bundle / "mujoco.wasm.gz").stat().st_size
+    size = sum(path.stat().st_size for path in plain) + packed * 4 / 3
+    assert f'"{size / 1e6:.0f} MB, from this' in (ROOT / "book/live/boot.js").read_text()
+    assert "loads five scripts" in (ROOT / "book/live.md").read_text()

@@ -104,7 +104,9 @@ def test_a_mouse_pulls_the_hand_and_lets_it_go(live):
     page.mouse.move(x, y)
     page.mouse.down()
     page.mouse.move(x + 60, y + 10, steps=4)
-    page.wait_for_function("/hand \\d/.test(document.querySelector('.lk-readout').textContent)")
+    page.wait_for_function(
+        "/your pull \\d/.test(document.querySelector('.lk-readout').textContent)"
+    )
     page.wait_for_function(OFF)
     page.mouse.up()
     page.wait_for_function(BACK)

@@ -53,7 +53,7 @@ export class ScalingDemo {
     const cells = (values) => values.map((v) => h("td", {}, fixed(v)));
     this.table.replaceChildren(
       h("caption", {}, `At t = ${t.toFixed(2)} s, and the largest values on the way`),
-      h("thead", {}, h("tr", {}, ["time scaling", "way [m]", "speed [m/s]", "accel. [m/s²]", "peak speed", "peak accel."].map((n) => h("th", { scope: "col" }, n)))),
+      h("thead", {}, h("tr", {}, ["time scaling", "way [m]", "speed [m/s]", "accel. [m/s²]", "peak speed [m/s]", "peak accel. [m/s²]"].map((n) => h("th", { scope: "col" }, n)))),
       h("tbody", {}, NAMES.map((name, i) => h("tr", {}, h("th", { scope: "row" }, name),
         cells(this.sample(name, t).map((v) => d * v)), cells(this.peaks[i])))));
   }
