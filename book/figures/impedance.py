@@ -145,7 +145,7 @@ def two_pushes() -> None:
     alone = [1e3 * force / x for force, x in zip(forces, far, strict=True)]
     both = 1e3 * (forces[1] - forces[0]) / (far[1] - far[0])
     shows("On the realistic arm 10 N and 20 N move the hand", (10.0, 20.0), forces)
-    numbers({"two_first": far[0], "two_second": far[1]}, ".3g")
+    numbers({"two_first": far[0], "two_second": far[1]}, ".4g")  # enough for their slope
     numbers({"alone_first": alone[0], "alone_second": alone[1], "two_slope": both}, ".3g")
     claim(
         "which is nearer to the 300 N/m that were asked for",

@@ -74,7 +74,7 @@ def scalings() -> HTML:
         for name, s in _scalings()
     }
     told = "; ".join(
-        f"{name}: speed {v:.3g} per second, acceleration {a:.3g} per second squared"
+        f"{name}: speed {v:.3g} per second, acceleration {a:.4g} per second squared"
         for name, (_, v, a) in peaks.items()
     )
     axes[0].legend(ncols=2, fontsize="small", loc="upper left")

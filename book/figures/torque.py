@@ -41,7 +41,13 @@ def responses() -> HTML:
             log = lk.run(arm, lk.Hold(q0, 1.5), law, rate=1000)
         e = metrics.joint_error(log) / 0.1
         for k, joint in enumerate(lk.robot("left").joint_names):
-            ax.plot(log.t, e[:, k], f"C{k}{STYLES[k % 4]}", label=joint, linewidth=1.4)
+            ax.plot(
+                log.t,
+                e[:, k],
+                f"C{k}{STYLES[k % 4]}",
+                label=joint.removeprefix("left_"),
+                linewidth=1.4,
+            )
         ax.set(xlabel="time [s]", title=name)
         spread[name] = float(np.ptp(e, axis=1).max())
     exact = (1.0 + 10.0 * log.t) * np.exp(-10.0 * log.t)

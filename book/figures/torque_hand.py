@@ -247,7 +247,7 @@ def payload() -> HTML:
         ax.plot(log.t, sag, f"C{k}{STYLES[k]}", label=f"Kp = {gain:g} 1/s²")
         ax.axhline(expected, color="#999999", linestyle=":")
         ends.append((float(sag[-1]), float(expected)))
-        said.append(f"{sag[-1]:.2g} mm for Kp = {gain:g}")
+        said.append(f"{sag[-1]:.3g} mm for Kp = {gain:g}")
     claim(
         "the hand comes to rest where the formula says",
         lambda found, expected: (
@@ -273,5 +273,5 @@ def payload() -> HTML:
         "Holding still under computed torque with 0.5 kg in the hand that the model does not have. "
         "Dotted, the formula.",
         f"Two curves that rise and settle: {', '.join(said)}; the dotted lines of the formula "
-        "are where they settle.",
+        "are close to where they settle.",
     )
