@@ -158,8 +158,8 @@ def plan() -> HTML:
         ("What is due", "Hours, core to all", "Week of 12", "Week of 6", "Week of 2",
          f"Then by hand, for {CLASS} students"), rows,
         "A plan by weeks. Each notebook is due at the end of the week that is named, the practice "
-        "hand-in in the first days. Hours are the authors' estimates, with the chapter; what is "
-        "marked by hand is that of a term of 12 weeks",
+        "hand-in in the first days. Hours are the authors' estimates, with the chapter and without "
+        "the practice hand-in; what is marked by hand is that of a term of 12 weeks",
     )  # fmt: skip
 
 
