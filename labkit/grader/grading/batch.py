@@ -30,7 +30,7 @@ FAILURE_RATE_ALERT = 0.3
 MIN_ATTEMPTS = 5
 """Nothing is concluded from fewer than these."""
 MIN_FAILURES = 3
-"""Two students who make one known mistake say nothing of a test."""
+"""Fewer failures than this, such as two of one known mistake, do not cast doubt on a test."""
 EVERY = 15.0
 """Seconds between two sentences on how far it is."""
 

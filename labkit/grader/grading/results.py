@@ -194,8 +194,8 @@ class Result:
 
         A release can change what a question is worth, so the share of each question is compared,
         times its points now; with the same points that is the mark.  A question that earned
-        something and is not asked any more may only be called otherwise now; the share of the whole
-        is then compared, too.  A file that could not be read is not taken for another submission.
+        something and is no longer asked may merely have a new name; the share of the whole is
+        then compared, too.  A file that could not be read is not taken for another submission.
         """
         unread = bool(self.rejected) and self.hashes["submission"] == _NOTHING
         if before.hashes["submission"] != self.hashes["submission"] and not unread:

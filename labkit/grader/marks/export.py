@@ -160,7 +160,7 @@ def remarks(layout: str, marks: Sequence[Mark], assignment: str = "") -> Iterato
 
 
 def left_out(layout: str, marks: Sequence[Mark]) -> str:
-    """Whom a platform cannot match by a table, in a sentence; "" if it can match everybody."""
+    """Students whom a platform cannot find from a table, in a sentence; "" if it finds all."""
     lost, count = unmatched(layout, marks)
     if lost and len(lost) == count:
         return (
@@ -171,7 +171,7 @@ def left_out(layout: str, marks: Sequence[Mark]) -> str:
 
 
 def unmatched(layout: str, marks: Sequence[Mark]) -> tuple[list[str], int]:
-    """Whom a platform cannot match by a table, and of how many who handed in."""
+    """Students whom a platform cannot find from a table, and how many handed in."""
     once = _participants(marks)
     ways: dict[str, Callable[[Mark], str]] = {
         "canvas": lambda r: r.canvas or r.person.id_number or r.login,

@@ -1,4 +1,4 @@
-"""Assignments without a notebook of the course's, in nbgrader's gradebook: defence and cup."""
+"""Assignments that have no notebook, in nbgrader's gradebook: the defence and the cup."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Whom a platform means: its users, by the folder that holds their work.
+"""Which student a user of a platform is: users by the folder that holds their work.
 
 A student of the roster has the folder that the roster says, all term.  Who is not in it, or could
 be two of its students, has a folder of their own, and is named.  Such a folder is called by the

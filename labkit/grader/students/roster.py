@@ -38,7 +38,7 @@ class Roster:
         return self._by_id.get(id)
 
     def whose(self, one: LmsUser) -> tuple[Student, ...]:
-        """Whom a platform may mean: nobody, one student, or all who have the same name."""
+        """The students that a platform may mean: none, one, or all who have the same name."""
         key = same_name(one.name) if one.system == "moodle" else one.number.casefold()
         found = self._by_key.get((one.system, key), ())
         if one.system == "files" and not found:
