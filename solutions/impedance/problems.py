@@ -463,7 +463,7 @@ WORKSPACE_IMPEDANCE = Problem(
     wrong=(
         Wrong(
             "the felt push cancelled",
-            "Your law takes away what the torque sensors feel, so the arm does not give way: whoever "
+            "Your law takes away what the torque sensors feel, so the arm does not give way: one who "
             "pushes meets a wall. An impedance needs no sensor: the push moves the tip, and the "
             "springs and dampers answer.",
             mistakes.Feeling(-1.0),
