@@ -21,7 +21,7 @@ from labkit.errors import LabkitError
 from labkit.grader.grading.grade import rejection
 from labkit.grader.grading.results import Answer, Results
 from labkit.grader.marks.table import marks_of
-from labkit.grader.nbgrader.gradebook import record
+from labkit.grader.nbgrader.gradebook import open_gradebook, record
 from labkit.grader.peers.readers import handed_out, readers, sheet_of, without_names
 from labkit.grader.students.class_list import Student
 from labkit.grader.terms.release import release
@@ -163,3 +163,23 @@ def test_reports_go_out_and_reviews_come_back_without_names(course, monkeypatch,
         assert "reader 1 says &lt;i&gt;why" in heard or not read_by[author]
         assert not re.findall("Ada|Bob|Eve", heard)
     assert read_by.total() == 5
+
+
+def test_who_is_forgotten_takes_no_mark_from_their_team(course, capsys):
+    """Bob has his mark from Ada's report: when she goes it is his, and so is what stands in it."""
+    with open_gradebook(course) as book:
+        for cell in book.find_submission(NAME, "ada").notebooks[0].grades:
+            if cell.auto_score is None:
+                cell.manual_score, cell.needs_manual_grade = 1.5, False
+        book.db.commit()
+    before = {mark.student: mark for mark in marks_of(course, NAME)}["bob"]
+    assert before.author == "ada" and before.score > 0
+    capsys.readouterr()
+    for more, says in ([], "would move"), (["--yes"], "moved"):
+        assert typed(course, "term", "forget", "--student", "ada", *more) == 0
+        said = f"{says} to bob, with its mark, which is the team's: submitted/ada/{NAME}\n"
+        assert said in capsys.readouterr().out
+    marks = {mark.student: mark for mark in marks_of(course, NAME)}
+    assert (marks["bob"].score, marks["bob"].author) == (before.score, "")
+    assert marks["bob"].lines == before.lines and "ada" not in marks
+    assert not list(course.root.glob("[!s]*/ada")) and not (course.submitted / "ada").exists()
