@@ -22,7 +22,7 @@ from labkit.grader.grading.grade import rejection
 from labkit.grader.grading.results import Answer, Results
 from labkit.grader.marks.table import marks_of
 from labkit.grader.nbgrader.gradebook import open_gradebook, record
-from labkit.grader.peers.readers import handed_out, readers, sheet_of, without_names
+from labkit.grader.peers.readers import handed_out, names_of_class, readers, sheet_of, without_names
 from labkit.grader.students.class_list import Student
 from labkit.grader.terms.release import release
 
@@ -67,6 +67,21 @@ def test_names_go_from_a_text():
     assert said == 'author 1 and author 2 (author 1): my_arm("author 1") adapts, bobbing.'
 
 
+def test_names_of_the_class_go_and_its_words_stay():
+    """A word that is a login or a name too stays, unless it is written as a name; so do numbers."""
+    people = [
+        Student("force", "Mark", "Force", "m.force@uni.org", "300", id_number="1234567"),
+        Student("in", "Eve", "Li", login="in", github="eve-codes"),
+    ]
+    text = (
+        'The force in m; eve LI, Mark, EVE-CODES and m.force@uni.org mark 300 runs: my_arm("force")'
+    )
+    assert names_of_class(people).sub("X", f"{text}, 1234567") == (
+        'The force in m; X, X, X and X mark 300 runs: my_arm("X"), X'
+    )
+    assert names_of_class([]).sub("X", text) == text
+
+
 @pytest.fixture(scope="module")
 def course(tmp_path_factory):
     """A class of four in three teams whose reports are handed in, graded and marked."""
@@ -79,7 +94,7 @@ def course(tmp_path_factory):
     for author in ("ada", "eve", "zoe"):
         notebook = json.loads(given)
         claim = (
-            f"We, {author.title()} and friends: **our** arm <b>sags</b> ![x](http://e.org/p.png)"
+            f"We, {author.title()} and friends, not Zoe: **our** arm <b>sags</b> ![x](http://e.org/p.png)"
         )
         cell_of(notebook, "claim_and_prediction")["source"] = claim
         code = {"cell_type": "code", "id": "own-1", "metadata": {}, "execution_count": 1,
@@ -137,6 +152,7 @@ def test_reports_go_out_and_reviews_come_back_without_names(course, monkeypatch,
         assert not re.findall(r"\b(?:ada|bob|eve|zoe)(?:son)?\b", sheet, re.IGNORECASE)
         for hidden in ("<b>", "![x]", "script", "kestrel"):
             assert hidden not in sheet
+        assert "not somebody: **our**" in sheet
         assert "&lt;b>sags" in sheet and sheet.count(PNG) == 2 and "0 | 1 | 2 | 3" in sheet
         notebook = json.loads(sheet)
         forms = [cell for cell in notebook["cells"] if cell["cell_type"] == "raw"]
