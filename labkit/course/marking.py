@@ -180,13 +180,29 @@ def _outcome(results: Sequence[TestResult]) -> Outcome:
 
 
 def recognise(question: Question, answers: list[Any]) -> Mistake | None:
-    """The known mistake that gives just these answers on the public calls, if there is one."""
+    """The known mistake that gives just these answers on the public calls, if there is one.
+
+    Whoever is right where a mistake is wrong has not made it, however near the answers are.
+    """
+    expected = [call.expected for call in question.calls]
+    right = [right_by(question.judge, *pair) for pair in zip(answers, expected, strict=False)]
     for mistake in question.mistakes:
         if answers and len(answers) == len(mistake.answers):
-            known = map(as_expected, mistake.answers, (call.expected for call in question.calls))
-            if all(map(_same, repeat(question.judge), answers, known)):
+            known = map(as_expected, mistake.answers, expected)
+            if all(map(_same, repeat(question.judge), answers, known)) and not any(
+                is_right and not right_by(question.judge, wrong, should)
+                for is_right, wrong, should in zip(right, mistake.answers, expected, strict=True)
+            ):
                 return mistake
     return None
+
+
+def right_by(judge: Judge, answer: Any, expected: Any) -> bool:
+    """Whether a judge takes an answer; there is no end to what an answer can be."""
+    try:
+        return judge(answer, expected) is None
+    except Exception:
+        return False
 
 
 def fingerprint(question: Question, function: Callable[..., Any]) -> tuple[Any, ...]:
