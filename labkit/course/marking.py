@@ -7,7 +7,6 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
-from itertools import repeat
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -16,7 +15,7 @@ from ..errors import Diverged, LabkitError
 from ..log import Log
 from ..shapes import Array
 from .advice import full_description
-from .equivalence import Judge, as_expected
+from .equivalence import Judge, as_expected, right_by
 from .judges import AtMost, Close, numbers
 from .question import Call, Case, Choice, Loop, Mistake, Question, Raised, Test, Tuned
 from .reply import NoAnswer
@@ -184,25 +183,19 @@ def recognise(question: Question, answers: list[Any]) -> Mistake | None:
 
     Whoever is right where a mistake is wrong has not made it, however near the answers are.
     """
-    expected = [call.expected for call in question.calls]
-    right = [right_by(question.judge, *pair) for pair in zip(answers, expected, strict=False)]
+    judge, expected = question.judge, [call.expected for call in question.calls]
     for mistake in question.mistakes:
         if answers and len(answers) == len(mistake.answers):
-            known = map(as_expected, mistake.answers, expected)
-            if all(map(_same, repeat(question.judge), answers, known)) and not any(
-                is_right and not right_by(question.judge, wrong, should)
-                for is_right, wrong, should in zip(right, mistake.answers, expected, strict=True)
+            rows = list(zip(answers, mistake.answers, expected, strict=False))
+            alike = all(
+                _same(judge, mine, as_expected(wrong, right)) for mine, wrong, right in rows
+            )
+            if alike and not any(
+                right_by(judge, mine, right) and not right_by(judge, wrong, right)
+                for mine, wrong, right in rows
             ):
                 return mistake
     return None
-
-
-def right_by(judge: Judge, answer: Any, expected: Any) -> bool:
-    """Whether a judge takes an answer; there is no end to what an answer can be."""
-    try:
-        return judge(answer, expected) is None
-    except Exception:
-        return False
 
 
 def fingerprint(question: Question, function: Callable[..., Any]) -> tuple[Any, ...]:

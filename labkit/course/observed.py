@@ -13,8 +13,9 @@ from typing import Any
 
 import numpy as np
 
+from .equivalence import right_by
 from .judges import factor
-from .marking import Tried, right_by
+from .marking import Tried
 from .probes import arrays, ask, exchanges, variations
 from .question import Call, Case, Question
 from .relations import Parts, all_near, related, same_form

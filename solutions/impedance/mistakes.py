@@ -275,7 +275,7 @@ def damps_the_joints(
 def brakes_behind_speeds(
     state: lk.State, target: lk.PoseSample, model: lk.Model, *, stiffness: Any, damping: Any
 ) -> lk.JointTorque:
-    """A damper of the elbow behind I - pinv(J) J, which is for speeds: through M the tip feels it."""
+    """A damper of the elbow behind I - pinv(J) J, the projector of speeds: the tip feels it."""
     tau = right.workspace_impedance(state, target, model, stiffness=stiffness, damping=damping)
     J = model.tip_jacobian(state.q)
     return lk.JointTorque(tau.value - 2.0 * (state.dq - np.linalg.pinv(J) @ (J @ state.dq)))

@@ -93,9 +93,7 @@ def course(tmp_path_factory):
     bundle = Bundle.of(course, NAME)
     for author in ("ada", "eve", "zoe"):
         notebook = json.loads(given)
-        claim = (
-            f"We, {author.title()} and friends, not Zoe: **our** arm <b>sags</b> ![x](http://e.org/p.png)"
-        )
+        claim = f"We, {author.title()} and friends, not Zoe: **our** arm <b>sags</b> ![x](http://e.org/p.png)"
         cell_of(notebook, "claim_and_prediction")["source"] = claim
         code = {"cell_type": "code", "id": "own-1", "metadata": {}, "execution_count": 1,
                 "source": f'mine = lk.my_arm("{author}")',
