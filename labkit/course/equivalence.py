@@ -164,3 +164,8 @@ def right_by(judge: Judge, answer: Any, expected: Any) -> bool:
         return judge(answer, expected) is None
     except Exception:
         return False
+
+
+def no_better(judge: Judge, answer: Any, mistake: Any, expected: Any) -> bool:
+    """Whether an answer is wrong where a mistake is."""
+    return right_by(judge, mistake, expected) or not right_by(judge, answer, expected)

@@ -7,6 +7,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
+from itertools import repeat
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -15,7 +16,7 @@ from ..errors import Diverged, LabkitError
 from ..log import Log
 from ..shapes import Array
 from .advice import full_description
-from .equivalence import Judge, as_expected, right_by
+from .equivalence import Judge, as_expected, no_better
 from .judges import AtMost, Close, numbers
 from .question import Call, Case, Choice, Loop, Mistake, Question, Raised, Test, Tuned
 from .reply import NoAnswer
@@ -181,19 +182,14 @@ def _outcome(results: Sequence[TestResult]) -> Outcome:
 def recognise(question: Question, answers: list[Any]) -> Mistake | None:
     """The known mistake that gives just these answers on the public calls, if there is one.
 
-    Whoever is right where a mistake is wrong has not made it, however near the answers are.
+    An answer that is right where a mistake is wrong is not this mistake, however near they are.
     """
-    judge, expected = question.judge, [call.expected for call in question.calls]
+    judge, expected = repeat(question.judge), [call.expected for call in question.calls]
     for mistake in question.mistakes:
         if answers and len(answers) == len(mistake.answers):
-            rows = list(zip(answers, mistake.answers, expected, strict=False))
-            alike = all(
-                _same(judge, mine, as_expected(wrong, right)) for mine, wrong, right in rows
-            )
-            if alike and not any(
-                right_by(judge, mine, right) and not right_by(judge, wrong, right)
-                for mine, wrong, right in rows
-            ):
+            known = map(as_expected, mistake.answers, expected)
+            alike = all(map(_same, judge, answers, known))
+            if alike and all(map(no_better, judge, answers, mistake.answers, expected)):
                 return mistake
     return None
 

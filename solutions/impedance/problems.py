@@ -361,7 +361,7 @@ OPERATIONAL_INERTIA = Problem(
         Wrong(
             "the transposes exchanged",
             "Jᵀ M⁻¹ J has the transpose on the wrong side, so with seven joints the sizes do not "
-            "fit. A wrench becomes torques by Jᵀ, which stands on the right: J M⁻¹ Jᵀ.",
+            "fit. A wrench becomes torques by Jᵀ, the factor on the right: J M⁻¹ Jᵀ.",
             mistakes.MassesOf(lambda M, J: np.linalg.inv(J.T @ np.linalg.inv(M) @ J)),
             "Say what each factor does to a wrench.",
         ),
