@@ -42,7 +42,7 @@ function start() {
     const status = document.createElement("span");
     Object.assign(button, { type: "button", className: "lk-load", textContent: "Load the live arm" });
     status.setAttribute("role", "status");
-    status.textContent = "4 MB, from this book’s folder";
+    status.textContent = "5 MB, from this book’s folder";
     button.addEventListener("click", () => open(host, button, status));
     host.querySelector(".lk-offer").replaceChildren(button, status);
   }

@@ -19,7 +19,7 @@ export function predictBox(h, { question, unit, commit, found }) {
     const now = found();
     told = now !== null;
     write(answer, now === null ? `You predicted ${said} ${unit}. Watch.`
-      : `You predicted ${said} ${unit}; the arm gave ${+now.toPrecision(3)} ${unit}. ${Math.abs(now - said) <= 0.1 * Math.abs(now) ? "Within a tenth." : "What did you leave out?"}`);
+      : `You predicted ${said} ${unit}; the answer is ${+now.toPrecision(3)} ${unit}. ${Math.abs(now - said) <= 0.1 * Math.abs(now) ? "Within a tenth." : "What did you leave out?"}`);
   };
   const go = () => {
     if (!Number.isFinite(number.valueAsNumber)) { answer.textContent = "Enter a number first; a guess will do."; return; }

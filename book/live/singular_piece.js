@@ -84,7 +84,7 @@ class Singular extends Panel {
     });
     this.mapped = values;
     const peak = found.reduce((a, b) => (b.quickest > a.quickest ? b : a)), at = x[found.indexOf(peak)];
-    this.maptold.textContent = `With λ² = ${lambda2}: the fastest joint turns at ${peak.quickest.toFixed(1)} rad/s, at e1 = ${at.toFixed(2)} rad; ${lambda2 ? `up to ${Math.max(...values[1]).toFixed(0)} of 100 mm/s are lost` : "nothing of the tip's speed is lost"}.`;
+    this.maptold.textContent = `With λ² = ${lambda2}: the fastest joint ${lambda2 ? `turns at ${peak.quickest.toFixed(1)} rad/s,` : "would have to turn without any bound"} at e1 = ${at.toFixed(2)} rad; ${lambda2 ? `up to ${Math.max(...values[1]).toFixed(0)} of 100 mm/s are lost` : "nothing of the tip's speed is lost"}.`;
   }
 }
 

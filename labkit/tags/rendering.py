@@ -15,8 +15,10 @@ from ..shapes import Array
 from .intrinsics import Intrinsics
 from .surface import Surface
 
-NEAR, FAR = 0.02, 12.0
-"""Nothing nearer or farther than this is drawn, in [m]."""
+NEAR = 0.02
+"""Nothing nearer than this is drawn, in [m]."""
+FAR = 12.0
+"""Nothing farther than this is drawn, in [m]."""
 
 _LIGHT = np.array([0.6, 0.35, 1.0]) / np.linalg.norm([0.6, 0.35, 1.0])
 """Where the light comes from, world axes."""
