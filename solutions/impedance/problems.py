@@ -19,6 +19,7 @@ READY = MODEL.robot.ready
 BENT = READY + [0.1, 0.2, -0.1, -0.3, 0.2, 0.1, 0.3]
 T_WT = MODEL.pose(BENT)
 K = np.array([200.0, 300.0, 450.0, 15.0, 20.0, 30.0])
+EVEN = np.array([300.0, 300.0, 300.0, 20.0, 20.0, 20.0])
 D = np.array([35.0, 35.0, 70.0, 4.0, 4.0, 2.0])
 SPEED = np.array([0.8, -0.5, 0.4, 1.0, -1.2, 0.9, 1.5])
 TWIST = np.array([0.2, -0.1, 0.3, 0.4, -0.2, 0.5])
@@ -451,7 +452,7 @@ WORKSPACE_IMPEDANCE = Problem(
             (
                 Loop(
                     lk.Hold(MODEL.pose(READY), 2.0),
-                    {"model": MODEL, "stiffness": K, "damping": D},
+                    {"model": MODEL, "stiffness": EVEN, "damping": D},
                     plant=PLANT,
                     things=(lk.Push((0.0, 9.0, 0.0), start=0.5),),
                     q0=READY + 0.05,
