@@ -93,7 +93,7 @@ def course(tmp_path_factory):
     bundle = Bundle.of(course, NAME)
     for author in ("ada", "eve", "zoe"):
         notebook = json.loads(given)
-        claim = f"We, {author.title()} and friends, not Zoe: **our** arm <b>sags</b> ![x](http://e.org/p.png)"
+        claim = f"We, {author.title()}, not Zoe: **our** arm <b>sags</b> ![x](http://e.org/p.png)"
         cell_of(notebook, "claim_and_prediction")["source"] = claim
         code = {"cell_type": "code", "id": "own-1", "metadata": {}, "execution_count": 1,
                 "source": f'mine = lk.my_arm("{author}")',
@@ -150,7 +150,7 @@ def test_reports_go_out_and_reviews_come_back_without_names(course, monkeypatch,
         assert not re.findall(r"\b(?:ada|bob|eve|zoe)(?:son)?\b", sheet, re.IGNORECASE)
         for hidden in ("<b>", "![x]", "script", "kestrel"):
             assert hidden not in sheet
-        assert "not somebody: **our**" in sheet
+        assert "#*" not in sheet and "not somebody: **our**" in sheet
         assert "&lt;b>sags" in sheet and sheet.count(PNG) == 2 and "0 | 1 | 2 | 3" in sheet
         notebook = json.loads(sheet)
         forms = [cell for cell in notebook["cells"] if cell["cell_type"] == "raw"]
