@@ -17,8 +17,9 @@ from .shapes import as_vector, shown
 
 _Element = ElementTree.Element
 ROUNDED = 0.98
-"""What the two smaller moments of inertia must be of the largest: 1 of any body, but files round
-theirs, by 0.2 % for an arm of Romeo; the largest is then taken for the sum of the others."""
+"""What share of the largest moment of inertia the two smaller ones must have together, where it is
+1 for any body.  Files round theirs, by 0.2 % for an arm of Romeo; the largest is then taken for the
+sum of the others."""
 
 
 def read_urdf(file: Any, tip: str, ready: Any, name: str | None) -> dict[str, Any]:

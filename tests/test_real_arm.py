@@ -227,7 +227,7 @@ Q = Desk.robot.ready
 NONSENSE = {
     "no state": (
         {"state": nonsense(None)},
-        "t = 0.000 s cannot be used: its state is None .*lk.St",
+        "t = 0.0.. s cannot be used: its state is None .*lk.St",
     ),
     "a tuple": ({"state": nonsense((0.0, Q, Q))}, r"its state is \(0.0, .*expected lk.State\(t, q"),
     "six": ({"state": nonsense(lk.State(0.0, Q[1:], Q))}, "its q has shape .*give 6 numbers"),

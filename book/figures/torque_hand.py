@@ -273,5 +273,5 @@ def payload() -> HTML:
         "Holding still under computed torque with 0.5 kg in the hand that the model does not have. "
         "Dotted, the formula.",
         f"Two curves that rise and settle: {', '.join(said)}; the dotted lines of the formula "
-        "are close to where they settle.",
+        "are near the ends of the curves, and a little above where the gain is small.",
     )

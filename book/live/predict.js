@@ -6,10 +6,10 @@ export function write(element, text) {
 }
 
 /**
- * `found()` gives the answer, and `source` says whose it is; `commit()` is called when the reader has said a number.  What
+ * `found()` gives the answer; `commit()` is called when the reader has said a number.  What
  * would tell it before is put `behind` some words, which then make room for it.
  */
-export function predictBox(h, { question, unit, source, commit, found }) {
+export function predictBox(h, { question, unit, commit, found }) {
   const number = h("input", { type: "number", step: "any", "aria-label": `Your prediction in ${unit}` });
   const answer = h("p", { role: "status" });
   const veils = [];
@@ -19,7 +19,7 @@ export function predictBox(h, { question, unit, source, commit, found }) {
     const now = found();
     told = now !== null;
     write(answer, now === null ? `You predicted ${said} ${unit}. Watch.`
-      : `You predicted ${said} ${unit}; ${source} ${+now.toPrecision(3)} ${unit}. ${Math.abs(now - said) <= 0.1 * Math.abs(now) ? "Within a tenth." : "What did you leave out?"}`);
+      : `You predicted ${said} ${unit}; the answer is ${+now.toPrecision(3)} ${unit}. ${Math.abs(now - said) <= 0.1 * Math.abs(now) ? "Within a tenth." : "What did you leave out?"}`);
   };
   const go = () => {
     if (!Number.isFinite(number.valueAsNumber)) { answer.textContent = "Enter a number first; a guess will do."; return; }

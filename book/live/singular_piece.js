@@ -63,7 +63,7 @@ class Singular extends Panel {
     const { h, viewer } = this;
     this.predicted = predictBox(h, {
       question: "The tip is to move outwards at 10 cm/s while the elbow stretches. By the equations alone, at which elbow angle e1 must some joint turn quickest? (0 is the straight elbow.)",
-      unit: "rad", source: "the equations give", commit: () => this.map(0), found: worstElbow });
+      unit: "rad", commit: () => this.map(0), found: worstElbow });
     this.lambda = this.dial({ label: "Damping λ²", unit: "m²", min: 0, max: 0.02, value: 0 }, (lambda2) => {
       this.change({ gains: { ...this.settings.gains, lambda2 } });
       this.map(lambda2);

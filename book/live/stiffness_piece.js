@@ -16,7 +16,7 @@ class Stiffness extends Panel {
     this.mode = "one";
     this.predicted = predictBox(h, {
       question: "The target lies 3 cm behind the wall's face. With K = 1000 N/m in all directions, how hard does the hand press on the wall?",
-      unit: "N", source: "the arm gave", commit: () => this.gains({ K: 1000 }, "one"), found: () => (this.settled() && this.settings.gains.K === 1000 ? this.wallForce : null) });
+      unit: "N", commit: () => this.gains({ K: 1000 }, "one"), found: () => (this.settled() && this.settings.gains.K === 1000 ? this.wallForce : null) });
     this.choose = viewer.choice({ label: "Hold by", values: Object.values(MODES), value: MODES.one,
       onchange: (label) => this.gains({}, Object.keys(MODES).find((k) => MODES[k] === label)) });
     this.bars = { wall: bar(h, "Wall force", LIMITS.wall, 45, "N"), sag: bar(h, "Sag", LIMITS.sag, 20, "mm") };

@@ -44,7 +44,7 @@ class Age extends Panel {
     const { camera: now, tagSpeed } = this.settings;
     this.predicted = predictBox(h, {
       question: "The tag rides on a conveyor at 60 mm/s; what the camera says is 200 ms old. How far beside the tag does the hand aim, by the equations alone (as a root mean square)?",
-      unit: "mm", source: "the equations give", commit: () => this.change({ ...this.settings, ...SETTINGS }), found: () => miss({ ...this.settings, ...SETTINGS }) });
+      unit: "mm", commit: () => this.change({ ...this.settings, ...SETTINGS }), found: () => miss({ ...this.settings, ...SETTINGS }) });
     const move = viewer.choice({ label: "The tag on", values: Object.values(MOVES), value: MOVES[this.settings.move],
       onchange: (label) => { this.release(); this.change({ move: Object.keys(MOVES).find((k) => MOVES[k] === label) }); } });
     const box = h("input", { type: "checkbox", onchange: () => camera({ predict: box.checked }) });

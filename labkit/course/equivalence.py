@@ -156,3 +156,16 @@ def as_expected(known: Any, expected: Any) -> Any:
 
 
 Judge = Close | Within | Response | Gains | AtTip | Form | Measured | Found | Telling
+
+
+def right_by(judge: Judge, answer: Any, expected: Any) -> bool:
+    """Whether a judge takes an answer; there is no end to what an answer can be."""
+    try:
+        return judge(answer, expected) is None
+    except Exception:
+        return False
+
+
+def no_better(judge: Judge, answer: Any, mistake: Any, expected: Any) -> bool:
+    """Whether an answer is wrong where a mistake is."""
+    return right_by(judge, mistake, expected) or not right_by(judge, answer, expected)

@@ -16,7 +16,7 @@ from ..errors import Diverged, LabkitError
 from ..log import Log
 from ..shapes import Array
 from .advice import full_description
-from .equivalence import Judge, as_expected
+from .equivalence import Judge, as_expected, no_better
 from .judges import AtMost, Close, numbers
 from .question import Call, Case, Choice, Loop, Mistake, Question, Raised, Test, Tuned
 from .reply import NoAnswer
@@ -180,11 +180,16 @@ def _outcome(results: Sequence[TestResult]) -> Outcome:
 
 
 def recognise(question: Question, answers: list[Any]) -> Mistake | None:
-    """The known mistake that gives just these answers on the public calls, if there is one."""
+    """The known mistake that gives just these answers on the public calls, if there is one.
+
+    An answer that is right where a mistake is wrong is not this mistake, however near they are.
+    """
+    judge, expected = repeat(question.judge), [call.expected for call in question.calls]
     for mistake in question.mistakes:
         if answers and len(answers) == len(mistake.answers):
-            known = map(as_expected, mistake.answers, (call.expected for call in question.calls))
-            if all(map(_same, repeat(question.judge), answers, known)):
+            known = map(as_expected, mistake.answers, expected)
+            alike = all(map(_same, judge, answers, known))
+            if alike and all(map(no_better, judge, answers, mistake.answers, expected)):
                 return mistake
     return None
 

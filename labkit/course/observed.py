@@ -13,6 +13,7 @@ from typing import Any
 
 import numpy as np
 
+from .equivalence import right_by
 from .judges import factor
 from .marking import Tried
 from .probes import arrays, ask, exchanges, variations
@@ -60,18 +61,11 @@ def _exchanged(question: Question, calls: Sequence[Call], function: Function) ->
     changed = [dict(exchanges(call, question.arguments)) for call in calls]
     for label in changed[0]:
         if all(
-            label in one and _right(question, ask(one[label], function), call.expected)
+            label in one and right_by(question.judge, ask(one[label], function), call.expected)
             for one, call in zip(changed, calls, strict=True)
         ):
             return f"Your function is right in every call if {label} before it is called."
     return ""
-
-
-def _right(question: Question, answer: Any, expected: Any) -> bool:
-    try:
-        return question.judge(answer, expected) is None
-    except Exception:  # there is no end to what an answer can be
-        return False
 
 
 def _probed(
@@ -94,7 +88,7 @@ def _probed(
             stays.append(probe.label)
         if should and not same:
             moves.append(probe.label)
-        repaired = all(map(lambda x, y: _right(question, x, y), asked, probe.answers))
+        repaired = all(map(lambda x, y: right_by(question.judge, x, y), asked, probe.answers))
         if not should and repaired and (says := _share(given, expected, right)):
             shares.append(says.format(probe.label.split("`")[1], probe.label))
     if shares:

@@ -23,10 +23,10 @@ LIFT = 0.6
 """Power of the picture's brightness, below 1 to lighten what is dark."""
 
 NEWTON, FORCE = 0.01, "#c77700"
-"""Of a force's arrow: how long a newton is, in [m], and its colour, as `player.js` has them."""
+"""How long a newton of a force's arrow is, in [m], and its colour, as `player.js` has them."""
 
 BACK = 0.005
-"""What can be seen through is set back by this, in [m]: an arm within another stays as it is."""
+"""How far what can be seen through is set back, in [m], so that an arm within another stays."""
 
 
 class Saved:

@@ -16,9 +16,9 @@ from .intrinsics import Intrinsics
 from .surface import Surface
 
 NEAR = 0.02
-"""Nothing nearer to the camera than this is drawn, in [m]."""
+"""Nothing nearer than this is drawn, in [m]."""
 FAR = 12.0
-"""Nothing farther from the camera than this is drawn, in [m]."""
+"""Nothing farther than this is drawn, in [m]."""
 
 _LIGHT = np.array([0.6, 0.35, 1.0]) / np.linalg.norm([0.6, 0.35, 1.0])
 """Where the light comes from, world axes."""

@@ -60,6 +60,14 @@ def spring_to_the_origin(
     return right.msd(state, (0.0, *target[1:]), force, m=m, b=b, k=k)
 
 
+def energy_for_force(
+    state: Any, target: Any, force: float, *, m: float, b: float, k: float
+) -> float:
+    """The spring's energy in the place of its force."""
+    energy = 0.5 * k * float(target[0] - state[0]) ** 2
+    return right.msd(state, target, force + energy, m=m, b=b, k=0.0)
+
+
 @dataclass(frozen=True)
 class OneMass:
     """The mass with its parts weighed: 1 is right, 0 left out, -1 reversed.
@@ -254,6 +262,53 @@ def brakes_the_motion(
     tau = right.workspace_impedance(state, target, model, stiffness=stiffness, damping=damping)
     pull = damping * np.asarray(target.twist)
     return lk.JointTorque(tau.value - model.tip_jacobian(state.q).T @ pull)
+
+
+def damps_the_joints(
+    state: lk.State, target: lk.PoseSample, model: lk.Model, *, stiffness: Any, damping: Any
+) -> lk.JointTorque:
+    """A damper of 1 N m s/rad at each joint."""
+    tau = right.workspace_impedance(state, target, model, stiffness=stiffness, damping=damping)
+    return lk.JointTorque(tau.value - state.dq)
+
+
+def brakes_behind_speeds(
+    state: lk.State, target: lk.PoseSample, model: lk.Model, *, stiffness: Any, damping: Any
+) -> lk.JointTorque:
+    """A damper of the elbow behind I - pinv(J) J, the projector of speeds: the tip feels it."""
+    tau = right.workspace_impedance(state, target, model, stiffness=stiffness, damping=damping)
+    J = model.tip_jacobian(state.q)
+    return lk.JointTorque(tau.value - 2.0 * (state.dq - np.linalg.pinv(J) @ (J @ state.dq)))
+
+
+@dataclass(frozen=True)
+class AlongTheTool:
+    """The impedance with springs along the tool's axes.
+
+    Attributes:
+        dampers: Whether the dampers are too.
+    """
+
+    dampers: bool = False
+
+    def __call__(
+        self,
+        state: lk.State,
+        target: lk.PoseSample,
+        model: lk.Model,
+        *,
+        stiffness: Any,
+        damping: Any,
+    ) -> lk.JointTorque:
+        """The torque."""
+        q, T_wt = state.q, model.pose(state.q)
+        R = np.kron(np.eye(2), T_wt[:3, :3])
+        J, e = model.tip_jacobian(q), lk.se3.pose_error(target.pose, T_wt)
+        de = target.twist - J @ state.dq
+        more = R @ (stiffness * (R.T @ e)) - stiffness * e
+        more = more + self.dampers * (R @ (damping * (R.T @ de)) - damping * de)
+        tau = right.workspace_impedance(state, target, model, stiffness=stiffness, damping=damping)
+        return lk.JointTorque(tau.value + J.T @ more)
 
 
 @dataclass(frozen=True)

@@ -18,7 +18,8 @@ MODEL = lk.Model("left", PLANT)
 READY = MODEL.robot.ready
 BENT = READY + [0.1, 0.2, -0.1, -0.3, 0.2, 0.1, 0.3]
 T_WT = MODEL.pose(BENT)
-K = np.array([300.0, 300.0, 300.0, 20.0, 20.0, 20.0])
+K = np.array([200.0, 300.0, 450.0, 15.0, 20.0, 30.0])
+EVEN = np.array([300.0, 300.0, 300.0, 20.0, 20.0, 20.0])
 D = np.array([35.0, 35.0, 70.0, 4.0, 4.0, 2.0])
 SPEED = np.array([0.8, -0.5, 0.4, 1.0, -1.2, 0.9, 1.5])
 TWIST = np.array([0.2, -0.1, 0.3, 0.4, -0.2, 0.5])
@@ -229,6 +230,13 @@ MSD = Problem(
             "A force is the slope of an energy.",
         ),
         Wrong(
+            "the energy of the spring",
+            "½ k e² is the spring's energy. Its force is k e, which changes its sign with the "
+            "error.",
+            mistakes.energy_for_force,
+            "A force is the slope of an energy.",
+        ),
+        Wrong(
             "no damper",
             "The damper is missing: b times the difference of the speeds.",
             mistakes.Hanging(lambda f, d, s, m, a: a + (f + s) / m),
@@ -352,6 +360,13 @@ OPERATIONAL_INERTIA = Problem(
             "Say what each factor does to a wrench.",
         ),
         Wrong(
+            "the transposes exchanged",
+            "Jᵀ M⁻¹ J has the transpose on the wrong side, so with seven joints the sizes do not "
+            "fit. A wrench becomes torques by Jᵀ, the factor on the right: J M⁻¹ Jᵀ.",
+            mistakes.MassesOf(lambda M, J: np.linalg.inv(J.T @ np.linalg.inv(M) @ J)),
+            "Say what each factor does to a wrench.",
+        ),
+        Wrong(
             "M⁻¹ twice",
             "M is inverted once between J and Jᵀ.",
             mistakes.MassesOf(lambda M, J: np.linalg.inv(J @ np.linalg.inv(M @ M) @ J.T)),
@@ -437,7 +452,7 @@ WORKSPACE_IMPEDANCE = Problem(
             (
                 Loop(
                     lk.Hold(MODEL.pose(READY), 2.0),
-                    {"model": MODEL, "stiffness": K, "damping": D},
+                    {"model": MODEL, "stiffness": EVEN, "damping": D},
                     plant=PLANT,
                     things=(lk.Push((0.0, 9.0, 0.0), start=0.5),),
                     q0=READY + 0.05,
@@ -463,7 +478,7 @@ WORKSPACE_IMPEDANCE = Problem(
     wrong=(
         Wrong(
             "the felt push cancelled",
-            "Your law takes away what the torque sensors feel, so the arm does not give way: whoever "
+            "Your law takes away what the torque sensors feel, so the arm does not give way: one who "
             "pushes meets a wall. An impedance needs no sensor: the push moves the tip, and the "
             "springs and dampers answer.",
             mistakes.Feeling(-1.0),
@@ -698,6 +713,34 @@ WORKSPACE_IMPEDANCE = Problem(
             mistakes.TipTerms(lambda J, L, a, D, K, C, g, M: J.T @ (L @ a + D + K + J @ g) + C),
             "A torque is not a wrench.",
         ),
+        Wrong(
+            "springs along the tool's axes",
+            "R K Rᵀ e turns the springs into the tool's axes. `stiffness` is along the world's "
+            "axes, as the error is: K e.",
+            mistakes.AlongTheTool(),
+            "A stiffness belongs to axes; name them.",
+        ),
+        Wrong(
+            "springs and dampers along the tool's axes",
+            "R K Rᵀ e and R D Rᵀ ė turn springs and dampers into the tool's axes. `stiffness` and "
+            "`damping` are along the world's axes, as the errors are: K e and D ė.",
+            mistakes.AlongTheTool(dampers=True),
+            "A stiffness belongs to axes; name them.",
+        ),
+        Wrong(
+            "a damper at the joints",
+            "-q̇ brakes every joint, and the tip feels it beside the dampers that were asked for. "
+            "To brake the elbow alone, project the torque: (I - Jᵀ J̄ᵀ) τ, with J̄ = M⁻¹ Jᵀ Λ.",
+            mistakes.damps_the_joints,
+            "Ask of each torque whether the tip feels it.",
+        ),
+        Wrong(
+            "a torque behind the projector of speeds",
+            "The tip feels what you add for the elbow. I - J⁺ J is for joint speeds, and a torque "
+            "goes through M first. For torques the projector is I - Jᵀ J̄ᵀ, with J̄ = M⁻¹ Jᵀ Λ.",
+            mistakes.brakes_behind_speeds,
+            "Two null spaces: one of speeds, one of torques.",
+        ),
     ),
     variants=(
         variants.impedance_by_terms,
@@ -931,6 +974,17 @@ SHAPED_IMPEDANCE = Problem(
             mistakes.ShapedTerms(
                 lambda J, L, M, a, v, D, K, F, C, g: (
                     J.T @ (M @ (a + np.linalg.inv(L) @ (D + K + F) - v) - F) + C + g
+                )
+            ),
+            "Say which inertia the arm has, and which it should show.",
+        ),
+        Wrong(
+            "the factor upside down",
+            "The factor before springs, dampers and wrench is Λ M_d⁻¹. Yours is M_d Λ⁻¹, so a "
+            "tip that should feel heavy feels light.",
+            mistakes.ShapedTerms(
+                lambda J, L, M, a, v, D, K, F, C, g: (
+                    J.T @ (L @ (a - v) + M @ np.linalg.inv(L) @ (D + K + F) - F) + C + g
                 )
             ),
             "Say which inertia the arm has, and which it should show.",

@@ -136,14 +136,15 @@ def pose_moves(random: Random) -> Iterator[Call]:
         q = near(random)
         turn = random.uniform(least, most, 3) * random.choice((-1.0, 1.0), 3)
         x = pose_sample(q, off * random.uniform(-1.0, 1.0, 3), turn, random.uniform(-0.2, 0.2, 6))
-        yield call(state(q), x, MODEL, kp=3.0, damping=0.004)
+        yield call(state(q, random.uniform(-0.5, 0.5, 7)), x, MODEL, kp=3.0, damping=0.004)
 
 
 def pose_stretched(random: Random) -> Iterator[Call]:
     """Other stretched poses."""
     q = STRETCHED + random.uniform(-0.03, 0.03, 7)
     x = pose_sample(q, random.uniform(-0.03, 0.03, 3))
-    yield call(state(q), x, MODEL, kp=2.0, damping=random.uniform(0.002, 0.005))
+    dq = random.uniform(-0.5, 0.5, 7)
+    yield call(state(q, dq), x, MODEL, kp=2.0, damping=random.uniform(0.002, 0.005))
 
 
 def pose_run(shift: Any, turn: Any) -> Loop:

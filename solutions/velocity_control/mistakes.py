@@ -249,6 +249,33 @@ class WorkspaceLaw:
         return lk.JointVelocity(J_inv @ (target.twist + kp * e))
 
 
+@dataclass(frozen=True)
+class Measured:
+    """The workspace law with the speed that the joints have.
+
+    Attributes:
+        law: The speed, of J's damped inverse, the target's twist, kp times the error, J and dq.
+    """
+
+    law: Callable[..., Any]
+
+    def __call__(
+        self, state: lk.State, target: lk.PoseSample, model: lk.Model, *, kp: Any, damping: float
+    ) -> lk.JointVelocity:
+        """The command."""
+        J, e = model.tip_jacobian(state.q), lk.se3.pose_error(target.pose, model.pose(state.q))
+        J_inv = damped_inverse(J, damping)
+        return lk.JointVelocity(self.law(J_inv, target.twist, kp * e, J, state.dq))
+
+
+def jacobian_of_ready(
+    state: lk.State, target: lk.PoseSample, model: lk.Model, *, kp: Any, damping: float
+) -> lk.JointVelocity:
+    """One Jacobian for all poses, that of the ready pose."""
+    J = model.tip_jacobian(model.robot.ready)
+    return _law(state, target, J, _turn(state, target), kp, damping, 1.0)
+
+
 def by_the_transpose(
     state: lk.State, target: lk.PoseSample, model: lk.Model, *, kp: Any, damping: float
 ) -> lk.JointVelocity:

@@ -341,8 +341,9 @@ DECAY_RATE = Problem(
         ),
         Wrong(
             "the one forgotten",
-            "Before de/dt stand 1 and kd. With kd alone the rate would be infinite without D.",
-            mistakes.Rate(lambda kp, kd: kp / kd if kd else 1e9),
+            "Before de/dt stand 1 and kd. With kd alone the rate would be infinite without D; at "
+            "kd = 0 yours divides by zero.",
+            mistakes.Rate(lambda kp, kd: kp / kd),
             "Put kd = 0: what is left is kp.",
         ),
         Wrong(
@@ -526,7 +527,7 @@ WORKSPACE_VELOCITY_PD = Problem(
                     damping=0.003,
                 ),
                 call(
-                    state(ASKEW),
+                    state(ASKEW, MOVING),
                     pose_sample(
                         ASKEW, CENTIMETRES, (0.3, -0.2, 0.25), (0.1, 0.0, -0.05, 0.0, 0.2, 0.3)
                     ),
@@ -543,7 +544,7 @@ WORKSPACE_VELOCITY_PD = Problem(
             "the elbow almost straight",
             (
                 call(
-                    state(STRETCHED),
+                    state(STRETCHED, MOVING),
                     pose_sample(STRETCHED, CENTIMETRES),
                     MODEL,
                     kp=2.0,
@@ -606,6 +607,41 @@ WORKSPACE_VELOCITY_PD = Problem(
             "over kp. What is added to the correction is target.twist itself, not target.dtwist.",
             mistakes.no_twist,
             "Feedback waits for an error; feed-forward does not.",
+        ),
+        Wrong(
+            "an error of the twist for the feed-forward",
+            "The measured twist, J q̇, is subtracted from the target's, so in steady motion the "
+            "tip is told to stand still. Command target.twist as it is; this law has no D.",
+            mistakes.Measured(lambda J_inv, V, e, J, dq: J_inv @ (V - J @ dq + e)),
+            "A difference of speeds is feedback, and needs a gain.",
+        ),
+        Wrong(
+            "a D without a gain",
+            "The error of the twist, target.twist - J q̇, is added with the factor 1, which halves "
+            "how fast the error dies away. This law has no D: leave it out.",
+            mistakes.Measured(lambda J_inv, V, e, J, dq: J_inv @ (2.0 * V - J @ dq + e)),
+            "In a velocity loop D brakes the very speed that closes the error.",
+        ),
+        Wrong(
+            "the measured speed for the feed-forward",
+            "The correction is added to the measured joint speeds, so it piles up at every tick. "
+            "The tip should move with the target's twist, not with the speed it has already.",
+            mistakes.Measured(lambda J_inv, V, e, J, dq: dq + J_inv @ e),
+            "An integrator too many.",
+        ),
+        Wrong(
+            "the measured speed added",
+            "state.dq is added to the command, so the command piles up at every tick. The "
+            "target's twist already says how fast to move.",
+            mistakes.Measured(lambda J_inv, V, e, J, dq: dq + J_inv @ (V + e)),
+            "An integrator too many.",
+        ),
+        Wrong(
+            "the Jacobian of the ready pose",
+            "The Jacobian is taken at the ready pose, but it changes with the angles: take it at "
+            "state.q in every call.",
+            mistakes.jacobian_of_ready,
+            "A Jacobian belongs to one pose.",
         ),
         Wrong(
             "the damping ignored",

@@ -150,6 +150,8 @@ def test_who_has_too_few_accepted_answers_gets_a_page_and_a_mark(course, solved,
     assert students.count("work of yours that the examiner chooses") == ASKED
     assert "Three functions" not in students
     assert examiners.count("no other accepted function") == ASKED
+    assert says(course, "defence", "bob", "--mark", "0,0,1") == 0
+    assert capsys.readouterr().out == "bob: 1 point for the defence\n"
     assert says(course, "defence", "bob", "--mark", "2,0,1") == 0
     assert [mark.score for mark in marks_of(course, DEFENCE)] == [3.0]
 

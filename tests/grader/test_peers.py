@@ -21,8 +21,8 @@ from labkit.errors import LabkitError
 from labkit.grader.grading.grade import rejection
 from labkit.grader.grading.results import Answer, Results
 from labkit.grader.marks.table import marks_of
-from labkit.grader.nbgrader.gradebook import record
-from labkit.grader.peers.readers import handed_out, readers, sheet_of, without_names
+from labkit.grader.nbgrader.gradebook import open_gradebook, record
+from labkit.grader.peers.readers import handed_out, names_of_class, readers, sheet_of, without_names
 from labkit.grader.students.class_list import Student
 from labkit.grader.terms.release import release
 
@@ -67,6 +67,21 @@ def test_names_go_from_a_text():
     assert said == 'author 1 and author 2 (author 1): my_arm("author 1") adapts, bobbing.'
 
 
+def test_names_of_the_class_go_and_its_words_stay():
+    """A word that is a login or a name too stays, unless it is written as a name; so do numbers."""
+    people = [
+        Student("force", "Mark", "Force", "m.force@uni.org", "300", id_number="1234567"),
+        Student("in", "Eve", "Li", login="in", github="eve-codes"),
+    ]
+    text = (
+        'The force in m; eve LI, Mark, EVE-CODES and m.force@uni.org mark 300 runs: my_arm("force")'
+    )
+    assert names_of_class(people).sub("X", f"{text}, 1234567") == (
+        'The force in m; X, X, X and X mark 300 runs: my_arm("X"), X'
+    )
+    assert names_of_class([]).sub("X", text) == text
+
+
 @pytest.fixture(scope="module")
 def course(tmp_path_factory):
     """A class of four in three teams whose reports are handed in, graded and marked."""
@@ -78,9 +93,7 @@ def course(tmp_path_factory):
     bundle = Bundle.of(course, NAME)
     for author in ("ada", "eve", "zoe"):
         notebook = json.loads(given)
-        claim = (
-            f"We, {author.title()} and friends: **our** arm <b>sags</b> ![x](http://e.org/p.png)"
-        )
+        claim = f"We, {author.title()}, not Zoe: **our** arm <b>sags</b> ![x](http://e.org/p.png)"
         cell_of(notebook, "claim_and_prediction")["source"] = claim
         code = {"cell_type": "code", "id": "own-1", "metadata": {}, "execution_count": 1,
                 "source": f'mine = lk.my_arm("{author}")',
@@ -137,6 +150,7 @@ def test_reports_go_out_and_reviews_come_back_without_names(course, monkeypatch,
         assert not re.findall(r"\b(?:ada|bob|eve|zoe)(?:son)?\b", sheet, re.IGNORECASE)
         for hidden in ("<b>", "![x]", "script", "kestrel"):
             assert hidden not in sheet
+        assert "#*" not in sheet and "not somebody: **our**" in sheet
         assert "&lt;b>sags" in sheet and sheet.count(PNG) == 2 and "0 | 1 | 2 | 3" in sheet
         notebook = json.loads(sheet)
         forms = [cell for cell in notebook["cells"] if cell["cell_type"] == "raw"]
@@ -163,3 +177,23 @@ def test_reports_go_out_and_reviews_come_back_without_names(course, monkeypatch,
         assert "reader 1 says &lt;i&gt;why" in heard or not read_by[author]
         assert not re.findall("Ada|Bob|Eve", heard)
     assert read_by.total() == 5
+
+
+def test_who_is_forgotten_takes_no_mark_from_their_team(course, capsys):
+    """Bob has his mark from Ada's report: when she goes it is his, and so is what stands in it."""
+    with open_gradebook(course) as book:
+        for cell in book.find_submission(NAME, "ada").notebooks[0].grades:
+            if cell.auto_score is None:
+                cell.manual_score, cell.needs_manual_grade = 1.5, False
+        book.db.commit()
+    before = {mark.student: mark for mark in marks_of(course, NAME)}["bob"]
+    assert before.author == "ada" and before.score > 0
+    capsys.readouterr()
+    for more, says in ([], "would move"), (["--yes"], "moved"):
+        assert typed(course, "term", "forget", "--student", "ada", *more) == 0
+        said = f"{says} to bob, with its mark, which is the team's: submitted/ada/{NAME}\n"
+        assert said in capsys.readouterr().out
+    marks = {mark.student: mark for mark in marks_of(course, NAME)}
+    assert (marks["bob"].score, marks["bob"].author) == (before.score, "")
+    assert marks["bob"].lines == before.lines and "ada" not in marks
+    assert not list(course.root.glob("[!s]*/ada")) and not (course.submitted / "ada").exists()

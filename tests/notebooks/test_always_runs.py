@@ -91,7 +91,7 @@ def test_solved_in_a_kernel(name, tmp_path, monkeypatch):
     for cell in notebook.cells:
         for output in cell.get("outputs", ()):
             assert output.output_type != "stream" or output.name == "stdout", output
-            replays += "Replay" in output.get("data", {}).get("text/plain", "")
+            replays += "lk-saved" in output.get("data", {}).get("text/html", "")
             if "image/png" in output.get("data", {}):
                 alt = output.metadata["image/png"]["alt"]
                 assert len(alt) > 40

@@ -60,11 +60,13 @@ def test_nobody_else_is_harmed(graded, released):
 def test_every_verb_does_its_work(graded):
     """Grade, feedback, export and class-report end well, with a row and a page for each.
 
-    An export says by its exit code that a mark is missing: of texts that wait for a person.
+    An export says by its exit code that a mark is missing: of texts that wait for a person; and
+    grade that a notebook is of another assignment, as one attacker's may be.
     """
     of = graded.of
-    waits = "give it by hand" in of.printed
-    assert of.codes == {"grade": 0, "feedback": 0, "export": int(waits), "class-report": 0}
+    waits, other = ("give it by hand" in of.printed), ("of another assignment" in of.printed)
+    codes = {"grade": int(other), "feedback": 0, "export": int(waits), "class-report": 0}
+    assert of.codes == codes
     everybody = {*of.attackers, *of.accomplices, *HONEST}
     assert everybody <= of.marks.keys()
     assert everybody <= of.pages.keys()

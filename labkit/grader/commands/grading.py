@@ -186,7 +186,7 @@ def defence(course: Course, student: str, mark: list[int] | None) -> int:
 
     if mark is not None:
         give_mark(course, student, mark)
-        print(f"{student}: {sum(mark)} points for the defence")
+        print(f"{student}: {how_many(sum(mark), 'point')} for the defence")
         return 0
     asked = draw(course, student)
     path = write_page(course, student, asked)

@@ -59,7 +59,14 @@ def term(
 
     The law may say how long marks must be kept.
     """  # noqa: D301
-    from ..terms.forget import entries_of, forget, left_by_hand, places_of, unknown
+    from ..terms.forget import (
+        entries_of,
+        forget,
+        left_by_hand,
+        places_of,
+        shared_reports,
+        unknown,
+    )
     from ..terms.older import relocate
     from ..terms.term import about, archives, new_term, old_rules, refuse_running, restore, running
 
@@ -89,7 +96,7 @@ def term(
     else:
         if (student is None) == (older is None):
             raise LabkitError("say what to forget: --older YEARS, or --student NAME")
-        entries, by_hand = [], []
+        entries, by_hand, shared = [], [], []
         if student is None:
             found = [one.folder for one in archives(course, older or 0.0)]
             by_hand = [str(one) for one in archives(course) if one.ended is None]
@@ -98,9 +105,14 @@ def term(
             if not (found or entries):
                 raise unknown(course, student)
             by_hand = list(left_by_hand(course, student))
+            shared = shared_reports(course, student)
         if yes:
             forget(course, found, entries, student or "")
         done, changed = ("deleted", "no more in") if yes else ("would go", "would go from")
+        for one, name, mate in shared:
+            place = (one.submitted / str(student) / name).relative_to(course.root)
+            says = "moved" if yes else "would move"
+            print(f"{says} to {mate}, with its mark, which is the team's: {place}")
         tell((f"{done}: {path.relative_to(course.root)}" for path in found), sys.stdout)
         tell((f"{changed} {path.relative_to(course.root)}" for path in entries), sys.stdout)
         tell(by_hand, sys.stdout)

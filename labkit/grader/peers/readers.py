@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import partial
 from pathlib import Path
 
@@ -27,6 +27,8 @@ EACH = 2
 """So many reports each student reads."""
 LEAST_NAME = 3
 """A name with fewer letters stays in a text; "An" and "Li" are words and symbols too."""
+LEAST_NUMBER = 5
+"""A number with fewer digits stays too; a report has many numbers."""
 LONGEST_COMMENT = 2000
 _FORM = re.compile(r"^\s*level\s*[:=]\s*([0-3])\b.*?^\s*comment\s*[:=](.*)", re.I | re.M | re.S)
 
@@ -111,13 +113,35 @@ def without_names(text: str, people: Sequence[Student], who: str) -> str:
     Names, logins, addresses and numbers go, whatever their letters' case.
     """
     for number, one in enumerate(people, 1):
-        names = [one.id, one.login, one.email, one.id_number, one.github, one.name, one.team]
-        names += [one.first_name, one.last_name, *re.split(r"[\W_]+", one.id)]
-        known = sorted({x for x in names if len(x) >= LEAST_NAME}, key=len, reverse=True)
-        if known:
-            any_of = "|".join(map(re.escape, known))
-            text = re.sub(rf"(?<!\w)(?:{any_of})(?!\w)", f"{who} {number}", text, flags=re.I)
+        text = re.sub(
+            rf"(?<!\w)(?:{_any_of(_known(one))})(?!\w)", f"{who} {number}", text, flags=re.I
+        )
     return text
+
+
+def names_of_class(people: Iterable[Student]) -> re.Pattern[str]:
+    """Finds what names anybody of a class.
+
+    One word alone, such as "Mark" or the login "force", is a name where it begins with a capital
+    letter or is in quotation marks; all else, such as a whole name, whatever its letters' case.
+    """
+    known = {x for one in people for x in _known(replace(one, team=""))}
+    words = {x for x in known if x.isalpha()}
+    capital = _any_of({x[0].upper() + x[1:] for x in words})
+    quoted = rf"(?<=[\"'`])(?i:{_any_of(words)})(?=[\"'`])"
+    return re.compile(rf"(?<!\w)(?:(?i:{_any_of(known - words)})|{capital})(?!\w)|{quoted}")
+
+
+def _known(one: Student) -> set[str]:
+    """What a student is known by and a text is searched for."""
+    names = [one.id, one.login, one.email, one.id_number, one.lms_user_id, one.github, one.name]
+    names += [one.team, one.first_name, one.last_name, *re.split(r"[\W_]+", one.id)]
+    return {x for x in names if len(x) >= (LEAST_NUMBER if x.isdigit() else LEAST_NAME)}
+
+
+def _any_of(names: Iterable[str]) -> str:
+    """A pattern for any of some texts, the longest first; for none, one that finds nothing."""
+    return "|".join(map(re.escape, sorted(names, key=len, reverse=True))) or "(?!)"
 
 
 def handed_out(course: Course, assignment: str, student: str) -> Path:

@@ -27,7 +27,15 @@ from ..pseudonyms import pseudonyms
 from ..students.class_list import Student
 from ..students.roster import read_roster
 from ..submission import Submission
-from .readers import handed_out, of_class, readers, sheet_of, team_of, without_names
+from .readers import (
+    handed_out,
+    names_of_class,
+    of_class,
+    readers,
+    sheet_of,
+    team_of,
+    without_names,
+)
 
 FORM = "level: \ncomment: "
 HEAD = """# Review of two reports
@@ -58,9 +66,10 @@ def hand_out(course: Course, assignment: str) -> Iterator[str | Failure]:
     if not rubric:
         raise LabkitError(f"{assignment} has no rubric, so there is nothing to review by")
     told: dict[str, list[dict[str, Any]]] = {}
+    anybody = names_of_class(roster.students)
     for team, author in list(reports.items()):
         members = team_of(author, people, roster)
-        step = partial(_report, course, assignment, author, members, cells)
+        step = partial(_report, course, assignment, author, members, anybody, cells)
         done = for_student(author, step)
         if isinstance(done, Failure):
             del reports[team]
@@ -99,6 +108,7 @@ def _report(
     assignment: str,
     author: str,
     team: Sequence[Student],
+    anybody: re.Pattern[str],
     released: Iterable[Mapping[str, Any]],
 ) -> list[dict[str, Any]]:
     """What a team wrote: the cells that are not the release's, and the headings between them."""
@@ -111,10 +121,10 @@ def _report(
     for cell in read_cells(Path(f"{assignment}.ipynb"), data):
         text = clean_text(cell["source"]).strip()
         kind = known.get(text, "own") if text else "walk"
-        if kind == "brief":
+        if kind == "brief" and text.startswith("#"):
             told.append(v4.new_markdown_cell("#" + text.partition("\n")[0]))
         elif kind == "own" and grade_id(cell) not in answers:
-            text = without_names(text, team, "author")
+            text = anybody.sub("somebody", without_names(text, team, "author"))
             code = cell["cell_type"] == "code"
             shown = (
                 as_typed(text, "python") if code else _PICTURE.sub("", text.replace("<", "&lt;"))

@@ -11,10 +11,12 @@ from pathlib import Path
 
 from nbgrader.api import Gradebook
 
+from ...course.authoring.bundle import Bundle
 from ...course.authoring.layout import Course
 from ...course.own_arm import HANDLES, Arms
 from ...errors import LabkitError
 from ..atomic import write
+from ..marks.table import marks_of
 from ..nbgrader.gradebook import quiet_database
 from ..pseudonyms import FILE as KEY
 from ..pseudonyms import pseudonym
@@ -24,6 +26,7 @@ from ..students.identity import FILE as LMS
 from ..students.identity import all_lms_users, alone, save_lms_users
 from ..students.roster import FILE as ROSTER
 from ..students.roster import Roster, read_roster, same_name, save_roster
+from ..students.settle import bring
 from ..submission import is_name, meant
 from .older import relocate
 from .term import archives
@@ -64,20 +67,46 @@ def entries_of(course: Course, student: str) -> list[Path]:
     return [path for term in _terms(course) for path, _ in _entries(term, student)]
 
 
+def shared_reports(course: Course, student: str) -> list[tuple[Course, str, str]]:
+    """Reports that a student handed in for a team: the term, the assignment, and who gets it.
+
+    Raises:
+        LabkitError: It cannot be read who has their mark from this student's report.
+    """
+    found = []
+    for term in _terms(course):
+        one = read_roster(term).get(student)
+        names = [path.stem for path in sorted(term.bundle.glob("*.json"))] if one else []
+        for name in names if one and one.team else ():
+            if Bundle.of(term, name).is_report:
+                mates = [mark.student for mark in marks_of(term, name) if mark.author == student]
+                found += [(term, name, mate) for mate in mates[:1]]
+    return found
+
+
 def forget(
     course: Course, found: Sequence[Path], entries: Sequence[Path] = (), student: str = ""
 ) -> None:
     """Delete what `places_of` found, or archived terms, and what `entries_of` found.
 
+    A report from which others have their mark goes to the first of them before that.
+
     Raises:
-        LabkitError: Somebody is collecting, or a file of the whole class is damaged.
+        LabkitError: Somebody is collecting, or a file of the whole class is damaged; or the team's
+            report cannot be moved.
     """
     with alone(course):
+        for term, name, mate in shared_reports(course, student) if student else ():
+            if bring(term, name, {student: mate}):
+                raise LabkitError(
+                    f"{student} handed in {name} for {mate} too, who has other files in "
+                    f"{term.root / 'attempts' / mate / name}; move these away and type it again"
+                )
         for path in found:
             if path.is_dir() and not path.is_symlink():
                 shutil.rmtree(path)
             else:
-                path.unlink()
+                path.unlink(missing_ok=True)
         for term in _terms(course) if entries else ():
             for _, delete in _entries(term, student):
                 delete()
