@@ -19,7 +19,7 @@ from .marking import Tried
 from .probes import arrays, ask, exchanges, variations
 from .question import Call, Case, Question
 from .relations import Parts, all_near, related, same_form
-from .verdict import Misconception, Outcome, Verdict
+from .verdict import Kind, Misconception, Outcome, Verdict
 
 Function = Callable[..., Any]
 LONGEST = 3.0
@@ -37,6 +37,8 @@ def diagnosed(question: Question, verdict: Verdict, tried: Tried, function: Func
     """
     if verdict.mistake or verdict.outcome not in (Outcome.WRONG, Outcome.ERROR):
         return verdict
+    if any(test.difference and test.difference.kind is Kind.TYPE for test in verdict.tests):
+        return verdict  # a velocity where a torque is asked: its numbers tell nothing
     says = cause(question, tried.answers, function)
     return replace(verdict, mistake=Misconception("", says)) if says else verdict
 

@@ -110,3 +110,21 @@ def test_nothing_is_said_of_what_is_not_seen():
     """Of an answer without any relation to the right one nothing is said, nor of a right one."""
     assert seen(SCALED, lambda x, d: np.array([np.cos(x + d), 1.3])) == ""
     assert seen(SCALED, lambda x, d: np.array([x, x * x]) / d) == ""
+
+
+def test_the_numbers_of_another_command_tell_nothing():
+    """Of a velocity where a torque is asked its kind is told, and nothing of its numbers."""
+    torque = Problem(
+        "torque",
+        1,
+        "Give it.",
+        lambda state, target, *, kp, kd: lk.JointTorque(law(state, target, kp=kp, kd=kd)),
+        LAW.trials,
+        judge=Close(),
+    )
+
+    def lost(state, target, *, kp, kd):
+        return kp * (target.position - state.q)
+
+    assert "stays the same" in seen(torque, lambda *s, **k: lk.JointTorque(lost(*s, **k)))
+    assert seen(torque, lambda *s, **k: lk.JointVelocity(lost(*s, **k))) == ""
