@@ -52,17 +52,28 @@ def remedy(error: BaseException) -> str:
     if "matmul" in text and (sizes := re.search(r"size (\d+) is different from (\d+)", text)):
         b, a = sizes.groups()
         return f"left of the @ are {a} columns, right of it {b} rows; these must be equal"
+    if "could not be broadcast together" in text:
+        return _unequal(re.findall(r"\((\d[\d,]*)\)", text))
     if isinstance(error, TypeError) and "argument" in text and "()" in text:
         return "leave the names in the function's first line as they were given"
     return next((todo for words, todo in _REMEDIES.items() if words in text), "")
+
+
+def _unequal(shapes: list[str]) -> str:
+    """What to do about arrays of different sizes; only a matrix can have been meant for @."""
+    says = "+, - and * go element by element, so sizes must be equal"
+    sizes = [shape.strip(",") for shape in shapes]
+    if any("," in size for size in sizes):
+        return f"{says}; the product of matrices is @"
+    if sorted(sizes) == ["6", "7"]:
+        return f"{says}: a velocity of the tip has 6 numbers, one of the joints 7; J goes between"
+    return says
 
 
 _ARRAYS = {"State": "state.q", "Sample": "target.position", "PoseSample": "target.pose"}
 """What is mostly meant where one of these is used as an array."""
 _REMEDIES = {
     "does not have enough dimensions": "@ needs arrays on both sides; for a number write *",
-    "operands could not be broadcast": "+, - and * go element by element, so sizes must be equal; "
-    "the product of matrices is @",
     "broadcast input array from shape (3,1)": "a column, (3, 1), is used as a vector, (3,); "
     "write .ravel()",
     "Singular matrix": "a matrix has an inverse only if its rank equals its size; J is (6, 7), so "

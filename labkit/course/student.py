@@ -280,7 +280,7 @@ def use(
         desk().stand_ins.pop(name, None)
         return yours or function
     if anyway and wrong:
-        print(f"[anyway] {name}: yours is not right yet, and drives the arm all the same.")
+        print(f"[anyway] {name}: yours is not right yet, and is used all the same.")
         return desk().stand_ins.give(name, WRONG, yours or function, shell())
     text = f"[stand-in] {name}: yours is replaced here by a stand-in ({HEADS[verdict.outcome]})."
     if wrong:

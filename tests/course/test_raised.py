@@ -26,6 +26,11 @@ def writes():
         (lambda: np.eye(4) @ np.zeros(3), "left of the @ are 4 columns, right of it 3 rows"),
         (lambda: 2.0 @ np.zeros(3), "for a number write *"),
         (lambda: np.zeros((7, 6)) * np.zeros((6, 6)), "the product of matrices is @"),
+        (
+            lambda: np.zeros(6) + np.zeros(7),
+            "a velocity of the tip has 6 numbers, one of the joints 7",
+        ),
+        (lambda: np.zeros(3) - np.zeros(7), "so sizes must be equal"),
         (lambda: np.linalg.inv(np.zeros((6, 7))), "only square matrices"),
         (lambda: FIXED(2.0), "is a * missing"),
         (lambda: writes(1), "leave the names in the function's first line"),
