@@ -21,7 +21,7 @@ DEFENCE = "09_defence"
 CUP = "10_cup"
 """The Baxter Cup, an assignment of the gradebook that has no points but extra credit."""
 UNRELEASED = (DEFENCE, CUP)
-"""Assignments without a notebook of the course's."""
+"""Assignments that have no notebook to release."""
 
 
 @dataclass(frozen=True)

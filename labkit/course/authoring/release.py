@@ -60,8 +60,8 @@ def prepare(course: Course, name: str, seed: int) -> Prepared:
 
     Raises:
         UnknownName: No such assignment.
-        LabkitError: A question withholds what there is not, pays without work or takes one mistake
-            for another.
+        LabkitError: A question withholds a tool that does not exist, gives points for no work, or
+            cannot tell two known mistakes apart.
     """
     problems = {problem.name: problem for problem in course.problems(name)}
     questions = {key: problem.question(seed) for key, problem in problems.items()}
