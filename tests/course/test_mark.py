@@ -65,6 +65,15 @@ def test_a_mistake_is_named_only_by_all_its_answers():
     assert mark(DOUBLE, double).mistake is None
 
 
+def test_a_mistake_that_is_wrong_where_the_answer_is_right_is_not_its_name():
+    """An answer 1 part in 10^5 off a mistake is not that mistake where only it is accepted."""
+    nearly = lambda x: 2.0 * x * (1.0 + 1e-5) if x > 0 else 5.0  # noqa: E731
+    given = fingerprint(DOUBLE, nearly)
+    question = replace(DOUBLE, mistakes=(replace(DOUBLE.mistakes[0], answers=given),))
+    assert mark(question, nearly).mistake.name == "squared"
+    assert mark(question, lambda x: 2.0 * x if x > 0 else 5.0).mistake is None
+
+
 def test_a_mistake_may_be_an_exception():
     """A function that raises where a known mistake raises is that mistake."""
     question = replace(
