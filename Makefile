@@ -41,8 +41,8 @@ dev: for-all .venv/.dev ## make the environment, .venv, and nothing else
 quick: for-all .venv/.dev ## the quick tests, with Python alone
 	@PATH="$(CURDIR)/$(BIN):$$PATH" $(BIN)/python -m pytest -n 2 --quick -m "not slow and not soak" --ignore tests/book --ignore tests/replay --ignore tests/soak
 
-soak: for-tests .venv/.dev ## the long suites, whole: fuzz, attacks, kills, large classes
-	@PATH="$(CURDIR)/$(BIN):$$PATH" $(BIN)/python -m pytest -n 2 --dist loadgroup -m "soak or not soak" tests/soak
+soak: for-tests .venv/.dev browser ## what the gate leaves out: all fuzz, attacks, kills, large classes, pages
+	@PATH="$(CURDIR)/$(BIN):$$PATH" $(BIN)/python -m pytest -n 2 --dist loadgroup -m soak
 
 lab: .venv/.student ## open the notebooks of this checkout; students start theirs from the zip
 	@PATH="$(CURDIR)/$(BIN):$$PATH" $(BIN)/jupyter lab --notebook-dir assignments $(if $(AS_ROOT),--allow-root)

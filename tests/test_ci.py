@@ -107,3 +107,19 @@ def test_chromium_is_the_systems_or_playwrights_but_no_snap(tmp_path, monkeypatc
         chromium.program()
     own.write_text("")
     assert chromium.program() == str(own)
+
+
+def test_what_shares_a_group_shares_a_worker(tmp_path):
+    """The pytest and the xdist that are pinned agree on what a group is."""
+    where = tmp_path / "where"
+    (tmp_path / "test_group.py").write_text(
+        "import os, pytest\n"
+        "@pytest.mark.xdist_group('one')\n"
+        "@pytest.mark.parametrize('k', range(6))\n"
+        "def test_it(k):\n"
+        f"    open({str(where)!r}, 'a').write(os.environ['PYTEST_XDIST_WORKER'] + ' ')\n"
+    )
+    command = [sys.executable, "-m", "pytest", "-q", "-n", "2", "--dist", "loadgroup", "."]
+    subprocess.run(command, cwd=tmp_path, check=True, capture_output=True)
+    workers = where.read_text().split()
+    assert len(workers) == 6 and len(set(workers)) == 1

@@ -9,7 +9,7 @@ import pytest
 from book_pages import in_order
 from pypdf import PdfReader
 
-pytestmark = pytest.mark.slow
+pytestmark = [pytest.mark.slow, pytest.mark.xdist_group("print")]
 ALIVE = "script:not([src]), button, input, select, canvas, video, details:not([open])"
 
 

@@ -13,6 +13,8 @@ from labkit.course.authoring.layout import Course
 from labkit.course.authoring.solved import inlined
 from labkit.grader.terms.release import release
 
+pytestmark = pytest.mark.xdist_group("nbgrader marks")
+
 COURSE = Course.here(Path(__file__))
 NAME = "00_warmup"
 

@@ -26,6 +26,8 @@ from labkit.grader.peers.readers import handed_out, names_of_class, readers, she
 from labkit.grader.students.class_list import Student
 from labkit.grader.terms.release import release
 
+pytestmark = pytest.mark.xdist_group("peers")
+
 NAME = "08_report"
 PNG = "iVBORw0KGgo="
 CLASS = "Login,First name,Last name,Email address,Team\n" + "".join(

@@ -17,7 +17,7 @@ from tests.synthetic import expected_file
 from tests.synthetic.__main__ import main
 from tests.synthetic.rehearsal import rehearse
 
-pytestmark = pytest.mark.slow  # whole classes are graded
+pytestmark = [pytest.mark.slow, pytest.mark.xdist_group("rehearsal")]  # whole classes are graded
 
 NAME, COUNT = "00_warmup", 6
 

@@ -13,6 +13,8 @@ from handmade import ROOT
 
 from labkit.grader.terms.student_bundle import NOT_FOR_STUDENTS, student_bundle
 
+pytestmark = pytest.mark.xdist_group("student bundle")
+
 ALONE = """
 import sys
 sys.meta_path = [finder for finder in sys.meta_path if "Editable" not in str(finder)]

@@ -33,7 +33,7 @@ from labkit.grader.submission import students
 from labkit.grader.terms.term import archive
 from tests.synthetic import make_class
 
-pytestmark = pytest.mark.slow  # whole classes are graded
+pytestmark = [pytest.mark.slow, pytest.mark.xdist_group("term")]  # whole classes are graded
 
 NAME = "01_paths"
 

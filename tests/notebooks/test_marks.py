@@ -16,6 +16,8 @@ from labkit.course.marking import mark, recognise
 COURSE = Course.here(Path(__file__))
 NAMES = [name for name in COURSE.names() if COURSE.problems(name)]
 PROBLEMS = [problem for name in NAMES for problem in COURSE.problems(name)]
+SAMPLE = {"open_loop", "joint_velocity_pd", "shaped_impedance"}
+"""Of the questions for which the arm runs, those that are drawn twice in the gate too."""
 POINTS = dict.fromkeys(NAMES, 20) | {"00_warmup": 10}
 
 each = pytest.mark.parametrize(
@@ -100,15 +102,32 @@ def test_right_answers_written_otherwise_are_accepted(problem):
         assert verdict.outcome is Outcome.RIGHT, (variant, verdict.tests)
 
 
+def runs_the_arm(problem):
+    """Whether a question takes more than calls of a function."""
+    return any(not isinstance(case, Call | Choice) for t in problem.trials for case in t.public)
+
+
 @pytest.mark.slow
-@each
+@pytest.mark.parametrize(
+    "problem",
+    [
+        pytest.param(
+            p,
+            id=p.name,
+            marks=[
+                pytest.mark.xdist_group(f"marks {p.name}"),
+                *([pytest.mark.soak] if runs_the_arm(p) and p.name not in SAMPLE else []),
+            ],
+        )
+        for p in PROBLEMS
+    ],
+)
 def test_seeds_agree(problem):
     """Every draw of the hidden cases gives the same marks to the answer, mistakes and variants.
 
     Twenty draws of calls; two where the arm has to run, whose twenty the report card makes.
     """
-    cases = [case for test in question_of(problem, 0).tests for case in test.cases]
-    draws = 20 if all(isinstance(case, Call | Choice) for case in cases) else 2
+    draws = 2 if runs_the_arm(problem) else 20
     functions = (problem.answer, *(w.function for w in problem.wrong), *problem.variants)
     marks = {tuple(verdict_of(problem, draw, f).earned for f in functions) for draw in range(draws)}
     assert len(marks) == 1

@@ -18,6 +18,8 @@ from labkit.course.notebook import source_notebook
 from labkit.course.serialize import encode
 from labkit.grader.terms.release import FORBIDDEN, release
 
+pytestmark = pytest.mark.xdist_group("release")
+
 COURSE = Course.here(Path(__file__))
 NAMES = COURSE.names()
 OTHER_SEED = 77

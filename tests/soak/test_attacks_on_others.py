@@ -12,6 +12,8 @@ from soak.attacks.place import SEED, full_marks, place, release_into
 from soak.attacks.sets import ATTACKS, GOALS, SAMPLE
 from soak.attacks.undefended import COMMANDS, WINS, undefended
 
+pytestmark = pytest.mark.xdist_group("attacks on others")
+
 soak = pytest.mark.soak
 SETS = {"sample": SAMPLE, "all": ATTACKS}
 

@@ -20,6 +20,8 @@ from soak.attacks.undefended import COMMANDS
 from labkit.__main__ import main
 from tests.synthetic import differences, make_class
 
+pytestmark = pytest.mark.xdist_group("hostile class")
+
 WORST = (
     "others: half a character in a comment",
     "others: numbers to the end of the scale",
