@@ -140,8 +140,8 @@ def test_killed_worker(part):
 STOPS = [
     ("SIGTERM", 7),
     ("SIGINT", 7),
-    ("SIGHUP", 7),
     ("SIGKILL", 4),
+    pytest.param("SIGHUP", 7, marks=pytest.mark.soak),
     pytest.param("SIGTERM", 3, marks=pytest.mark.soak),
     pytest.param("SIGKILL", 7, marks=pytest.mark.soak),
 ]

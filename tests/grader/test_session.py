@@ -128,9 +128,15 @@ def test_a_polynomial_has_few_coefficients():
 DEAF = "import signal as s\n    for k in (14, 24, 27): s.signal(k, s.SIG_IGN)\n    while True: pass"
 
 
-@pytest.mark.parametrize(
-    "body", ["while True: pass", "import time; time.sleep(1000)", "sum(range(10**12))", DEAF]
-)
+ENDLESS = [
+    "while True: pass",
+    DEAF,
+    pytest.param("import time; time.sleep(1000)", marks=pytest.mark.soak),
+    pytest.param("sum(range(10**12))", marks=pytest.mark.soak),
+]
+
+
+@pytest.mark.parametrize("body", ENDLESS)
 def test_an_endless_question_is_asked_no_more(body, solved, bundle, sandbox, asked):
     """Whether it computes or waits, after a few lost calls no other one is put, and it is said."""
     put(solved, "circle", f"def circle(s, start, centre):\n    {body}")
