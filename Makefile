@@ -25,7 +25,7 @@ demo: for-grading .venv/.course ## release, grade a small class, build the book,
 	@PATH="$(CURDIR)/$(BIN):$$PATH" $(BIN)/python .ci/demo.py
 
 test: for-tests .venv/.dev browser lint types test-313 ## everything: style, types, all tests, a second Python
-	@PATH="$(CURDIR)/$(BIN):$$PATH" $(BIN)/python -m pytest -n 2 --dist loadgroup
+	@PATH="$(CURDIR)/$(BIN):$$PATH" $(BIN)/python -m pytest -n 2 --dist loadgroup --no-loadscope-reorder
 
 test-313: .venv-313/.made ## on Python 3.13 without PyBullet: the lab, Run All, a report card
 	@$(SECOND)/python -m labkit report-card --draws 1 --to build/report-card-313 & card=$$!; \
@@ -42,7 +42,7 @@ quick: for-all .venv/.dev ## the quick tests, with Python alone
 	@PATH="$(CURDIR)/$(BIN):$$PATH" $(BIN)/python -m pytest -n 2 --quick -m "not slow and not soak" --ignore tests/book --ignore tests/replay --ignore tests/soak
 
 soak: for-tests .venv/.dev browser ## what the gate leaves out: all fuzz, attacks, kills, large classes, pages
-	@PATH="$(CURDIR)/$(BIN):$$PATH" $(BIN)/python -m pytest -n 2 --dist loadgroup -m soak
+	@PATH="$(CURDIR)/$(BIN):$$PATH" $(BIN)/python -m pytest -n 2 --dist loadgroup --no-loadscope-reorder -m soak
 
 lab: .venv/.student ## open the notebooks of this checkout; students start theirs from the zip
 	@PATH="$(CURDIR)/$(BIN):$$PATH" $(BIN)/jupyter lab --notebook-dir assignments $(if $(AS_ROOT),--allow-root)
