@@ -127,7 +127,7 @@ def test_what_cannot_be_asked_or_marked_is_a_sentence(course, solved, capsys):
         (["zoe"], "there is no student 'zoe'"),
         (["bbo"], "name of the student's folder; did you mean bob?"),
         (["ada-lovelce"], "name of the student's folder; did you mean Ada-Lovelace?"),
-        (["eve"], "eve has 0; 01_paths: handed in and not graded"),
+        (["eve"], "eve has 0; 01_paths: handed in but not graded"),
         (["bob", "--mark", "2,3"], "2,3 is not a mark; give 3 whole numbers from 0 to 3"),
         (["bob", "--mark", "2,3,4"], "2,3,4 is not a mark"),
         (["bob", "--mark", "2,3,x"], "2,3,x is not a mark"),

@@ -58,7 +58,7 @@ def report(
     marks = [mark for mark in marks if not mark.absent]
     counted = [mark for mark in marks if mark.result and (mark.lines or not mark.missing)]
     results = [mark.result for mark in counted if mark.result]
-    who = {r.student: _as_text(called(r.student)) for r in results}
+    who = {r.student: _escape(called(r.student)) for r in results}
     graded = [r for r in results if not r.unanswered]
     rejected = [r for r in results if r.unanswered]
     times = sorted(((r.seconds.get("all", 0.0), who[r.student]) for r in graded), reverse=True)
@@ -68,7 +68,7 @@ def report(
         handed_in=len(marks),
         left_out=len(marks) - len(counted),
         open=sum(bool(mark.open) for mark in counted),
-        rejected=[f"{who[r.student]}: {_as_text(r.unanswered)}" for r in rejected],
+        rejected=[f"{who[r.student]}: {_escape(r.unanswered)}" for r in rejected],
         graded=len(graded),
         scores=sorted(
             float(m.score) for m in counted if m.raw is not None and m.result not in rejected
@@ -77,13 +77,13 @@ def report(
         mean=mean,
         median=median,
         changed=any(x.automatic not in (None, x.score) for mark in counted for x in mark.lines),
-        questions=(questions := list(_questions(graded))),
-        can=list(_can(questions, asked)),
-        texts={q.name: _brief(q) for q in asked},
-        believed=list(_believed(graded, asked, fewest, truths or {})),
-        mistakes=list(_mistakes(graded, problems)),
+        questions=(questions := list(_question_rows(graded))),
+        can=list(_outcome_rows(questions, asked)),
+        texts={q.name: _short_question(q) for q in asked},
+        believed=list(_prediction_rows(graded, asked, fewest, truths or {})),
+        mistakes=list(_mistake_rows(graded, problems)),
         count=lambda n: f"<{fewest}" if 0 < n < fewest else n,
-        tools=list(_tools(graded, who)),
+        tools=list(_tool_lines(graded, who)),
         doubtful=list(common_failures(graded)),
         slow_limit=f"{SLOW:g}",
         slow=[f"{name}: {seconds:.0f} s" for seconds, name in times if seconds > SLOW],
@@ -92,7 +92,7 @@ def report(
     return text.rstrip() + "\n"
 
 
-def for_jplag(results: Sequence[Result], folder: Path, called: Callable[[str], str]) -> int:
+def write_for_jplag(results: Sequence[Result], folder: Path, called: Callable[[str], str]) -> int:
     """Write the answers as JPlag wants them, a folder for each student; returns how many."""
     count = 0
     for result in results:
@@ -112,7 +112,7 @@ class _QuestionRow(NamedTuple):
     """Of the points, on average; None where the question has none."""
 
 
-def _questions(graded: Sequence[Result]) -> Iterator[_QuestionRow]:
+def _question_rows(graded: Sequence[Result]) -> Iterator[_QuestionRow]:
     verdicts: dict[str, list[Verdict]] = defaultdict(list)
     for result in graded:
         for question in result.questions:
@@ -123,7 +123,7 @@ def _questions(graded: Sequence[Result]) -> Iterator[_QuestionRow]:
         yield _QuestionRow(name, [count[x] for x in COUNTED], mean(shares) if shares else None)
 
 
-def _can(rows: Sequence[_QuestionRow], asked: Sequence[Question]) -> Iterator[_Row]:
+def _outcome_rows(rows: Sequence[_QuestionRow], asked: Sequence[Question]) -> Iterator[_Row]:
     """For each outcome of the course, what the questions say that are evidence of it."""
     shares = {row.name: row.share for row in rows if row.share is not None}
     for outcome, says in OUTCOMES.items():
@@ -134,7 +134,7 @@ def _can(rows: Sequence[_QuestionRow], asked: Sequence[Question]) -> Iterator[_R
             yield {"says": says, "questions": text, "share": share}
 
 
-def _believed(
+def _prediction_rows(
     graded: Sequence[Result], asked: Sequence[Question], fewest: int, truths: Mapping[str, Any]
 ) -> Iterator[_Row]:
     """For each prediction, what is true and what the class committed to, the commonest first."""
@@ -146,7 +146,7 @@ def _believed(
             counts = Counter(form.words(x) for x in values if not form.problem(x))
             truth = form.words(truths[question.name]) if question.name in truths else ""
             common = [
-                f"{n} x {_as_text(words)}{', which is true' * (words == truth)}"
+                f"{n} x {_escape(words)}{', which is true' * (words == truth)}"
                 for words, n in counts.most_common()
                 if n >= fewest
             ]
@@ -170,7 +170,7 @@ def _committed(source: str) -> Any:
     return None
 
 
-def _mistakes(graded: Sequence[Result], problems: Mapping[str, Problem]) -> Iterator[_Row]:
+def _mistake_rows(graded: Sequence[Result], problems: Mapping[str, Problem]) -> Iterator[_Row]:
     """How many made each known mistake, and what to say of it, the commonest first."""
     verdicts = (question.verdict for result in graded for question in result.questions)
     made = Counter((v.name, v.mistake.name) for v in verdicts if v.mistake)
@@ -180,7 +180,7 @@ def _mistakes(graded: Sequence[Result], problems: Mapping[str, Problem]) -> Iter
         yield {"students": count, "question": name, "name": mistake, "say": say}
 
 
-def _tools(graded: Sequence[Result], who: Mapping[str, str]) -> Iterator[str]:
+def _tool_lines(graded: Sequence[Result], who: Mapping[str, str]) -> Iterator[str]:
     """What each student used that a question withholds, and what in a cell needs a look."""
     for result in graded:
         verdicts = [question.verdict for question in result.questions]
@@ -191,12 +191,12 @@ def _tools(graded: Sequence[Result], who: Mapping[str, str]) -> Iterator[str]:
             yield f"{who[result.student]}, worth a look: {'; '.join(result.tricks[:20])}"
 
 
-def _brief(question: Question) -> str:
+def _short_question(question: Question) -> str:
     """What a question asks, in a cell of a table; predictions have a section of their own."""
     is_prediction = isinstance(question.judge, Form)
     return "see below" if is_prediction else " ".join(question.asks.split()).replace("|", r"\|")
 
 
-def _as_text(text: str) -> str:
+def _escape(text: str) -> str:
     """A line in which Markdown sees no markup."""
     return re.sub(r"([\\`*\[\]<>|&])", r"\\\1", clean_line(text))

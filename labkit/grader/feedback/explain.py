@@ -33,7 +33,7 @@ from ..sandbox.limits import Limits, slowness
 from ..submission import Submission, none_of
 from .page import page
 
-_ALONE = "all cases are laid open here, so this page is for instructors and not for students"
+_PRIVATE = "all cases are laid open here, so this page is for instructors and not for students"
 
 
 def explain(course: Course, student: str, question: str, assignment: str | None = None) -> str:
@@ -81,7 +81,7 @@ def _by_a_person(assignment: str, question: str, mark: Mark, result: Result) -> 
             "This why is not one of those that are drawn for a person to mark, so it has its "
             f"points for being there. A mark that you give counts instead, {where}."
         )
-    yield _head(mark, line)
+    yield _heading(mark, line)
     yield wrapped(says)
     if line.comment:
         yield f"\nComment: {line.comment}"
@@ -98,12 +98,12 @@ def _by_the_grader(
         name = bundle.data["assignment"]
         raise LabkitError(f"{question} is newer than the mark; type: labkit grade {name}")
     shown = before.verdict
-    again = _again(course, student, _laid_open(bundle.of_student(student), question))
+    again = _grade_again(course, student, _with_cases_public(bundle.of_student(student), question))
     now = again.questions[0].verdict
     lines = tuple(line for line in mark.lines if line.name == question)
     line = lines[0] if lines else MarkLine(question, shown.points, shown.earned)
-    yield _head(mark, line)
-    yield from map(wrapped, _judged(bundle, student, question, result))
+    yield _heading(mark, line)
+    yield from map(wrapped, _judging_notes(bundle, student, question, result))
     yield "\nWhat the student has read, and may be shown:"
     yield from (wrapped(f"Note: {note}.") for note in before.notes)
     yield from map(wrapped, summary(shown))
@@ -134,14 +134,14 @@ def _by_the_grader(
         yield from map(wrapped, summary(now))
     if line.comment:
         yield f"\nComment: {line.comment}"
-    yield f"\nThe answer:\n{_where_it_breaks(before.source) or '(none)'}"
+    yield f"\nThe answer:\n{_with_syntax_error(before.source) or '(none)'}"
     file = course.build / "explain" / student / f"{question}.html"
     head = replace(mark, lines=lines, penalty=0.0, late="", raw=line.score, points=line.points)
-    write(file, page(replace(again, notes=(*again.notes, _ALONE)), head))
+    write(file, page(replace(again, notes=(*again.notes, _PRIVATE)), head))
     yield f"\nNumbers and runs, for you alone: {file}"
 
 
-def _where_it_breaks(source: str) -> str:
+def _with_syntax_error(source: str) -> str:
     """An answer; if Python cannot read it, the error is beside its line."""
     try:
         parsed(source)
@@ -155,14 +155,14 @@ def _where_it_breaks(source: str) -> str:
     return source
 
 
-def _head(mark: Mark, line: MarkLine) -> str:
+def _heading(mark: Mark, line: MarkLine) -> str:
     """Whose mark for what, and where it comes from."""
     given = "no mark" if line.score is None else f"{line.score:g}"
     origin = f" ({line.origin})" if line.origin else ""
     return f"{mark.student}, {line.name}: {given} of {line.points:g}{origin}"
 
 
-def _judged(bundle: Bundle, student: str, name: str, result: Result) -> Iterator[str]:
+def _judging_notes(bundle: Bundle, student: str, name: str, result: Result) -> Iterator[str]:
     """By which arm a question about one's own is judged, and how near a number has to be."""
     judge = next(q.judge for q in bundle.questions if q.name == name)
     if isinstance(judge, Measured | Found | Telling):
@@ -173,7 +173,7 @@ def _judged(bundle: Bundle, student: str, name: str, result: Result) -> Iterator
         yield from (note for note in result.notes if note == PUBLIC_ARM)
 
 
-def _laid_open(bundle: Bundle, name: str) -> Bundle:
+def _with_cases_public(bundle: Bundle, name: str) -> Bundle:
     """One question of a bundle, every case of it public."""
     question = next(q for q in bundle.questions if q.name == name)
     tests = tuple(
@@ -183,7 +183,7 @@ def _laid_open(bundle: Bundle, name: str) -> Bundle:
     return Bundle({**bundle.data, "questions": [question_data(replace(question, tests=tests))]})
 
 
-def _again(course: Course, student: str, bundle: Bundle) -> Result:
+def _grade_again(course: Course, student: str, bundle: Bundle) -> Result:
     """Grade what a bundle asks of a submission, and keep nothing of it."""
     submission = Submission.of(course, bundle.data["assignment"], student)
     data, note, why = submission.read()
