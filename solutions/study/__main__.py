@@ -68,7 +68,7 @@ def main() -> None:
     text = tables(rows) + claims(judged)
     (folder / "tables.md").write_text(text)
     drawn, shot = [], []
-    if not options.no_pictures:  # on this machine, for they write files
+    if not options.no_pictures:  # on this machine, because they write files
         where["dask"] = None
         drawn = done(pictures.draw, pictures.grid(folder), "figures")
         shot = done(pictures.shoot, pictures.film_grid(folder), "films")
