@@ -1,4 +1,4 @@
-"""What people write in notebook 07 instead."""
+"""Mistakes that people make in notebook 07."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What notebook 07 asks."""
+"""The questions of notebook 07."""
 
 from __future__ import annotations
 

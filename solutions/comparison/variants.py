@@ -1,4 +1,4 @@
-"""Right answers of notebook 07, in another form."""
+"""Right answers to notebook 07 in other forms."""
 
 from __future__ import annotations
 

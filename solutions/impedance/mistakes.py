@@ -1,4 +1,4 @@
-"""What people write in notebook 05 instead."""
+"""Mistakes that people make in notebook 05."""
 
 from __future__ import annotations
 
@@ -70,7 +70,7 @@ def energy_for_force(
 
 @dataclass(frozen=True)
 class OneMass:
-    """The mass with its parts weighed: 1 is right, 0 left out, -1 reversed.
+    """The mass with weighted terms; 1 is right, 0 omits a term, -1 reverses it.
 
     Attributes:
         spring: Of the spring.
@@ -313,7 +313,7 @@ class AlongTheTool:
 
 @dataclass(frozen=True)
 class TipLaw:
-    """The impedance with its parts weighed: 1 is right, 0 left out, -1 reversed.
+    """The impedance with weighted terms; 1 is right, 0 omits a term, -1 reverses it.
 
     Attributes:
         e: Of the error.
@@ -370,7 +370,7 @@ class TipLaw:
 
 @dataclass(frozen=True)
 class ShapedLaw:
-    """The shaped impedance with its parts weighed: 1 is right, 0 left out, -1 reversed.
+    """The shaped impedance with weighted terms; 1 is right, 0 omits a term, -1 reverses it.
 
     Attributes:
         e: Of the errors of pose and twist.

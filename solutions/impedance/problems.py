@@ -1,4 +1,4 @@
-"""What notebook 05 asks."""
+"""The questions of notebook 05."""
 
 from __future__ import annotations
 

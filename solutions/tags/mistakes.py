@@ -1,4 +1,4 @@
-"""What people write in notebook 06 instead."""
+"""Mistakes that people make in notebook 06."""
 
 from __future__ import annotations
 
