@@ -437,7 +437,7 @@ class Loop:
 
     Attributes:
         rest: Numerator and denominator, given kp and lag.
-        delay: Factor of the delay.
+        delay: The delay, given delay and lag.
         close: A function of the finished loop.
     """
 
