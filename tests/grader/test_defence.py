@@ -66,7 +66,7 @@ def test_a_defence_from_the_draw_to_the_term_s_table(course, solved, capsys):
 
     page = write_page(course, "ada", asked)
     before = page.read_text()
-    students, _, examiners = before.partition("For the examiner alone")
+    students, _, examiners = before.partition("For the examiner only")
     assert "handed in</th>" not in students and examiners.count("handed in</th>") == ASKED
     await_mark(course, "ada", asked)
     (mark,) = marks_of(course, DEFENCE)
@@ -145,7 +145,7 @@ def test_who_has_too_few_accepted_answers_gets_a_page_and_a_mark(course, solved,
     out = " ".join(capsys.readouterr().out.split())
     assert "bob has 0 accepted answers that a mistake can be put into, and 3 are needed" in out
     students, _, examiners = (
-        (course.build / "defence/bob.html").read_text().partition("For the examiner alone")
+        (course.build / "defence/bob.html").read_text().partition("For the examiner only")
     )
     assert students.count("work of yours that the examiner chooses") == ASKED
     assert "Three functions" not in students

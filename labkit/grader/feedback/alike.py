@@ -13,7 +13,7 @@ from itertools import combinations
 from ...course.verdict import Outcome
 from ..grading.results import Result
 
-LONG = 3
+SHORT = 3
 """Answers of no more lines than this are often identical by chance, and are not compared."""
 
 
@@ -23,7 +23,7 @@ def same_text(graded: Sequence[Result], who: Mapping[str, str]) -> Iterator[str]
     for result in graded:
         for q in result.questions:
             lines = [line for line in q.source.splitlines() if line.strip()]
-            if len(lines) > LONG and q.verdict.outcome is not Outcome.NOT_ATTEMPTED:
+            if len(lines) > SHORT and q.verdict.outcome is not Outcome.NOT_ATTEMPTED:
                 by_text[q.verdict.name, q.source.strip()].add(who[result.student])
     shared = [(name, those) for (name, _), those in by_text.items() if len(those) > 2]
     common = {frozenset(x & y) for (_, x), (_, y) in combinations(shared, 2)}

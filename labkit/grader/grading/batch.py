@@ -28,9 +28,9 @@ from .worker import Task, grade_submission
 FAILURE_RATE_ALERT = 0.3
 """If a larger share of the class fails a test, the run asks whether the test is to blame."""
 MIN_ATTEMPTS = 5
-"""With fewer attempts at a question than this, its tests are not called into doubt."""
+"""With fewer attempts at a question than this, none of its tests is called into doubt."""
 MIN_FAILURES = 3
-"""With fewer failures than this, such as two students making one known mistake, neither."""
+"""With fewer failures of a test, such as two of one known mistake, the test is not doubted."""
 PROGRESS_INTERVAL = 15.0
 """Seconds between two progress reports."""
 

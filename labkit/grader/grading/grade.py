@@ -134,7 +134,7 @@ def _cut_to_budget(result: Result) -> Result:
         if isinstance(x, str):
             return budget.take(x) if theirs else x
         if isinstance(x, dict):
-            order = sorted(x, key=lambda name: name != "source")  # before its outcome
+            order = sorted(x, key=lambda name: name != "source")  # source first
             return {name: cut(x[name], names, theirs or name in names) for name in order}
         return [cut(y, names, theirs) for y in x] if isinstance(x, list | tuple) else x
 

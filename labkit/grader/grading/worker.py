@@ -147,7 +147,7 @@ def close_sandbox() -> None:
 
 @lru_cache(maxsize=4)
 def _bundle(course: Course, assignment: str, key: str, arms: str) -> Bundle:
-    """The bundle with a given hash; ``arms`` makes a bundle read earlier outdated."""
+    """The bundle with a given hash; with other ``arms`` it is read again, not cached."""
     bundle = Bundle.of(course, assignment)
     if bundle.data["hash"] != key:
         raise LabkitError(f"{assignment} was released again while it was being graded; grade again")

@@ -13,7 +13,7 @@ from typing import Any
 from . import confine, seccomp
 
 KILL_ATTEMPTS = 50
-"""How often a user's processes are killed before the attempt counts as failed."""
+"""How often the grader tries to kill a user's processes before it gives up."""
 
 
 class Bare:

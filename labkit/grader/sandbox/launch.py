@@ -46,7 +46,7 @@ class SandboxProcess:
 
     Args:
         connection: The connection to the process.
-        kill: Asks its forkserver to kill all that the process started and, if ``whole``, itself.
+        kill: Makes the forkserver kill all that it started and, if ``whole``, the process, too.
     """
 
     def __init__(self, connection: Connection, kill: Callable[..., Any]) -> None:
@@ -104,7 +104,7 @@ class Sandbox:
                 stderr=self._log,
                 env=variables,
                 process_group=0,
-                preexec_fn=self._count_apart,
+                preexec_fn=self._set_own_limits,
             )
         except OSError as error:
             raise NoIsolation(f"no sandbox: {error}; try: {INSTALL}") from None
@@ -113,7 +113,7 @@ class Sandbox:
                 end.close()
         self._wait_until_ready()
 
-    def _count_apart(self) -> None:
+    def _set_own_limits(self) -> None:
         """Give the new process limits of its own, as its memory is not the worker's."""
         _, most = resource.getrlimit(resource.RLIMIT_DATA)
         resource.setrlimit(resource.RLIMIT_DATA, (most, most))

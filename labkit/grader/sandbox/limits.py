@@ -34,7 +34,7 @@ class Limits:
         question: The time for all calls of a question, without what the simulator needs.
         wall: The time for all cells and calls.
         grace: The time that a process has to stop by itself before it is killed.
-        patience: How many times as long as it may compute code may wait, on a busy machine.
+        patience: How many times longer code may wait than compute, for a busy machine.
         memory: The memory of each process, in addition to what was loaded before.
         files: The size of the temporary folder, and of one file.
         output: The number of characters that all cells together may print.

@@ -49,11 +49,11 @@ def hint(name: str, level: int = 1) -> None:
 
 
 class NoOwnArm(Exception):
-    """A cell runs the student's own arm, whose measured values they have written down."""
+    """Raised if a cell runs the student's own arm, which the sandbox does not have."""
 
 
 def my_arm(*_: Any, **__: Any) -> None:
-    """Stop the cell, as there is no arm of a student here."""
+    """Stop a cell that runs the student's own arm."""
     raise NoOwnArm
 
 
