@@ -78,7 +78,7 @@ def main() -> None:
         "rows": rows,
         "gains": gains,
         "noise": noise,
-        "verdicts": [v.told() for v in judged],
+        "verdicts": [v.as_data() for v in judged],
         "figures": [_without(row, "folder") for row in drawn],
         "films": [_without(row, "folder") for row in shot],
     }

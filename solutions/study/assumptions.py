@@ -98,7 +98,7 @@ def difference(rows: Sequence[Row], claim: str, **names: Any) -> float | None:
     return sides[0] - sides[1]
 
 
-def kept() -> Mapping[str, list[Row]]:
+def recorded() -> Mapping[str, list[Row]]:
     """The recorded rows, under "assumptions" and "gains"."""
     found: Mapping[str, list[Row]] = json.loads(KEPT.read_text())
     return found

@@ -64,7 +64,7 @@ class Interval:
             return Outcome.UNDECIDED
         return Outcome.HELD if self.mean > 0.0 else Outcome.DID_NOT_HOLD
 
-    def told(self) -> dict[str, Any]:
+    def as_data(self) -> dict[str, Any]:
         """The interval as JSON data, with the outcome in words."""
         return {**vars(self), "outcome": self.outcome.value}
 
@@ -93,13 +93,13 @@ class Finding:
             f"{x.units} {x.of}{'; alone: ' * bool(alone)}{alone})"
         )
 
-    def told(self) -> dict[str, Any]:
+    def as_data(self) -> dict[str, Any]:
         """The finding as JSON data."""
-        alone = [task.told() for task in self.tasks]
+        alone = [task.as_data() for task in self.tasks]
         return {
             "claim": self.claim,
             "unit": self.unit,
-            "overall": self.overall.told(),
+            "overall": self.overall.as_data(),
             "tasks": alone,
         }
 

@@ -38,7 +38,7 @@ MAKERS = (
 """Modules that record runs; ``labkit release`` comes after them."""
 
 Answer = Callable[..., Any]
-Told = Mapping[str, Mapping[str, Any]]
+Verdicts = Mapping[str, Mapping[str, Any]]
 """For each "assignment/question/answer" the points, each test's outcome and the mistake's name."""
 
 
@@ -51,18 +51,18 @@ def answers(problem: Problem) -> Iterator[tuple[str, Answer]]:
         yield wrong.name, wrong.function
 
 
-def verdicts(course: Course, names: tuple[str, ...]) -> Told:
+def verdicts(course: Course, names: tuple[str, ...]) -> Verdicts:
     """The verdict on each known answer of some assignments."""
     found = {}
     for name in names:
         for problem in course.problems(name):
             question = problem.question(PUBLIC_SEED)
             for label, function in answers(problem):
-                found[f"{name}/{problem.name}/{label}"] = told(mark(question, function))
+                found[f"{name}/{problem.name}/{label}"] = as_data(mark(question, function))
     return found
 
 
-def told(verdict: Verdict) -> Mapping[str, Any]:
+def as_data(verdict: Verdict) -> Mapping[str, Any]:
     """The part of a verdict that is recorded, as JSON data."""
     return {
         "earned": verdict.earned,
@@ -71,7 +71,7 @@ def told(verdict: Verdict) -> Mapping[str, Any]:
     }
 
 
-def changes(before: Told, after: Told) -> Iterator[str]:
+def changes(before: Verdicts, after: Verdicts) -> Iterator[str]:
     """A sentence for each verdict that has changed."""
     for key in sorted({*before, *after}):
         old, new = before.get(key), after.get(key)

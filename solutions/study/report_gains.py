@@ -92,7 +92,7 @@ def procedure(plant: str, joint: int) -> Mapping[str, Any]:
     return asdict(replace(found, steps=())) | {"steps": steps}
 
 
-def kept() -> Mapping[str, list[Row]]:
+def recorded() -> Mapping[str, list[Row]]:
     """The recorded rows, under "table_1" and "procedure"."""
     found: Mapping[str, list[Row]] = json.loads(KEPT.read_text())
     return found
