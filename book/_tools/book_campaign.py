@@ -95,4 +95,4 @@ def _judged(rows: list[dict[str, Any]]) -> dict[str, Any]:
     asked = [cell for cell in campaign.noise_grid(seeds) if cell["Kd"] in (0.0, 0.5, 1.0)]
     noise = work_through(campaign.derivative, asked, jobs=JOBS)
     verdicts = claims.verdicts(rows, gains, noise)
-    return {"rows": rows, "verdicts": [v.told() for v in verdicts]}
+    return {"rows": rows, "verdicts": [v.as_data() for v in verdicts]}

@@ -56,7 +56,7 @@ def evidence() -> HTML:
 
 def hangs() -> HTML:
     """Which verdicts on the line turn over with which assumption."""
-    rows = assumptions.kept()["assumptions"]
+    rows = assumptions.recorded()["assumptions"]
     names, claims = list(assumptions.plants()), list(assumptions.CLAIMS)
     base = [assumptions.difference(rows, c, assumption="as assumed") for c in claims]
     _, ax = plt.subplots(figsize=(5.4, 7.4))
@@ -79,7 +79,7 @@ def hangs() -> HTML:
     ax.tick_params(length=0)
     ax.spines[:].set_visible(False)
     sure = [c for c, d in zip(claims, base, strict=True) if _verdict(d) and not turned[c]]
-    gains = assumptions.kept()["gains"]
+    gains = assumptions.recorded()["gains"]
     error = {gain: _mean(gains, position_gain=gain) for gain in {r["position_gain"] for r in gains}}
     joint, torque = (
         _mean(rows, controller=controller, assumption="as assumed")
@@ -169,7 +169,7 @@ def _crosses(error: dict[float, float], level: float) -> float:
 
 def table_1() -> HTML:
     """The report's gains as printed, run."""
-    rows = report_gains.kept()["table_1"]
+    rows = report_gains.recorded()["table_1"]
 
     def shown(controller: str, task: str, plant: str) -> str:
         (row,) = pick(rows, controller=controller, task=task, plant=plant)
@@ -201,7 +201,7 @@ def table_1() -> HTML:
 
 def tuning() -> HTML:
     """The report's procedure on s0, on both arms."""
-    found = report_gains.kept()["procedure"]
+    found = report_gains.recorded()["procedure"]
     _, ax = plt.subplots(figsize=(6.2, 3.0))
     ends = {}
     for k, row in enumerate(found):

@@ -184,11 +184,11 @@ def impedance() -> None:
     moved = -metrics.tip_error(log)[-1, :3]
     stiffness = float(force[1] / moved[1])
     holds(abs(stiffness / 300.0 - 1.0) < 0.02, "the arm is as stiff as commanded, sensor or not")
-    rigid, soft = (row["Kp"] for row in report_gains.kept()["procedure"])
+    rigid, soft = (row["Kp"] for row in report_gains.recorded()["procedure"])
     numbers({"procedure_rigid": rigid, "procedure_soft": soft}, ".2g")
     halved = [
         next(step[2] for step in row["steps"] if step[3] == "half of that")
-        for row in report_gains.kept()["procedure"]
+        for row in report_gains.recorded()["procedure"]
     ]
     number("left_rigid", halved[0], ".2g")
     claim(

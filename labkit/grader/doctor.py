@@ -88,7 +88,7 @@ def sandbox() -> Iterator[Finding]:
             failed = str(process.connection.read(30.0).get("error", "it did not answer"))
             yield Finding("sandbox", not failed, failed or made.level)
             counted = made.group is not None
-            says = made.group.says if made.group else (
+            says = made.group.description if made.group else (
                 "no cgroup here: memory is limited for each process, not for all together; "
                 "grade as root, or under `systemd-run --user --scope -p Delegate=yes`; "
                 "a container's own --memory and --pids-limit hold for it as a whole"

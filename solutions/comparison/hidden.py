@@ -21,20 +21,20 @@ RIGHT = lk.Model("right")
 ON_THE_LINE = read_trials(LINE)
 UNSEEN = read_trials(Path(__file__).with_name("trials.json"))
 UNSEEN_LIMIT = 3.9
-"""Worst error allowed on unseen cases, in [mm]: without D gains of 12.4 to 38 reach it."""
+"""The largest error allowed on unseen cases, in [mm], met by gains of 12.4 to 38 without D."""
 RESERVE = 1.3
-"""This multiple of the chosen Kp must reach it too, which leaves 12.4 to 29."""
+"""This multiple of the chosen Kp must meet the limit, too, which leaves 12.4 to 29."""
 LINE_LIMIT = 3.5
-"""Worst error allowed on the line, in [mm]: gains that pass unseen leave 3.0 there at most."""
+"""The largest error allowed on the line, in [mm]; gains that pass unseen cases leave up to 3.0."""
 FAR = 1.6
-"""This multiple of the chosen Kp must reach it too; gains that pass unseen leave 2.8 then."""
+"""This multiple of the chosen Kp must meet it, too; gains that pass unseen cases then leave 2.8."""
 
 
 def stiffer(trials: Trials, factor: float) -> Trials:
     """The same trials where each Kp does what ``factor`` times Kp did.
 
-    On an arm that takes `factor` times as long for everything, its path included, gains per second
-    do just that.  What lies beyond the recorded gains is lost.
+    Gains per second have this effect on an arm that takes `factor` times as long for everything,
+    its path included.  Trials beyond the recorded gains are lost.
     """
     if factor == 1.0:
         return trials
@@ -46,15 +46,15 @@ def stiffer(trials: Trials, factor: float) -> Trials:
 
 
 SLOW = 4.0
-"""How much slower the arm is that a student may try: too slow for any gains to serve both."""
+"""How much slower the arm is that a student may try, too slow for any gains to suit both arms."""
 
 
 def drawn_log(
     random: Random, rows: int, error: Any, *, moving: bool, model: lk.Model = MODEL
 ) -> lk.Log:
-    """A short log whose tip misses its target by a given error, (3,) in [m].
+    """A short log in which the tip is off its target by a given error, (3,) in [m].
 
-    An arm that moves is tilted as well; the tilt does not count as an error of position.
+    If the arm moves, it is also tilted, which does not count as an error of position.
     """
     q0 = model.robot.ready
     q = q0 + (random.uniform(-0.2, 0.2, (rows, 7)) if moving else np.zeros((rows, 7)))
@@ -80,12 +80,12 @@ def drawn_log(
 
 
 def still_logs(random: Random) -> Iterator[Call]:
-    """An arm at rest beside its target."""
+    """An arm at rest near its target."""
     yield call(drawn_log(random, 4, random.uniform(-0.02, 0.02, 3), moving=False), MODEL)
 
 
 def moving_logs(random: Random) -> Iterator[Call]:
-    """An arm that moves, with an error that does not."""
+    """A moving arm with a constant error."""
     for _ in range(2):
         yield call(drawn_log(random, 6, random.uniform(-0.02, 0.02, 3), moving=True), MODEL)
 
@@ -126,7 +126,7 @@ def margins(random: Random) -> Iterator[Call]:
 
 
 def no_delay(random: Random) -> Iterator[Call]:
-    """A lag alone."""
+    """Only a lag."""
     yield call(random.uniform(0.01, 0.08), 0.0, random.uniform(30.0, 75.0))
 
 
@@ -144,12 +144,12 @@ def unseen_cases(random: Random) -> Iterator[Choice]:
 
 
 def with_reserve(random: Random) -> Iterator[Choice]:
-    """The same, with a larger Kp than the one chosen."""
+    """The unseen cases with a larger Kp than the chosen one."""
     yield from _unseen(random, RESERVE)
 
 
 def _unseen(random: Random, reserve: float) -> Iterator[Choice]:
-    """For the arm whose line may be tried, and for one about a quarter as quick."""
+    """Cases of the arm whose line may be tried, and of one about a quarter as fast."""
     for slow in (1.0, random.uniform(3.6, 3.8)):
         line, unseen = stiffer(ON_THE_LINE, slow), stiffer(UNSEEN, slow * reserve)
         yield Choice(line, {"worst_mm": UNSEEN_LIMIT}, unseen)
@@ -162,7 +162,7 @@ def _pairs(random: Random, n: int, shift: float) -> tuple[list[float], list[floa
 
 
 def pairs(random: Random) -> Iterator[Call]:
-    """Other seeds, other numbers of them."""
+    """Other numbers of seeds."""
     for n in (2, 3, 5, 10):
         yield call(*_pairs(random, n, random.uniform(-1.0, 1.0)))
 

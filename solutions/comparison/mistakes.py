@@ -1,4 +1,4 @@
-"""What people write in notebook 07 instead."""
+"""Mistakes that people make in notebook 07."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ from .answers import open_loop, paired_difference
 
 
 def mean_of_components(log: lk.Log, model: lk.Model) -> float:
-    """The mean goes over the three components too: too small by the root of three."""
+    """The mean over the three components, too, which is too small by the root of three."""
     e = [
         T[:3, 3] - model.pose(q)[:3, 3]
         for q, T in zip(log.q, log.target.pose, strict=True)  # type: ignore[union-attr]
@@ -28,7 +28,7 @@ def mean_of_components(log: lk.Log, model: lk.Model) -> float:
 
 
 def last_row_for_all(log: lk.Log, model: lk.Model) -> float:
-    """The tip from the last joint angles, whatever the row: what the report's plots show."""
+    """The tip from the last joint angles in every row, as in the plots of the report."""
     p = model.pose(log.q[-1])[:3, 3]
     e = [T[:3, 3] - p for T in log.target.pose]  # type: ignore[union-attr]
     return float(np.sqrt(np.mean(np.sum(np.square(e), axis=1))))
@@ -60,36 +60,36 @@ def without_the_root(log: lk.Log, model: lk.Model) -> float:
 
 
 def in_millimetres(log: lk.Log, model: lk.Model) -> float:
-    """A thousand times too large."""
+    """The error in millimetres, a thousand times too large."""
     return 1e3 * float(np.sqrt(without_the_root(log, model)))
 
 
 def not_a_mean(log: lk.Log, model: lk.Model) -> float:
-    """The root of the sum: it grows with the length of the run."""
+    """The root of the sum, which grows with the length of the run."""
     return float(np.linalg.norm(_errors(log, model)))
 
 
 def whole_poses(log: lk.Log, model: lk.Model) -> float:
-    """The poses subtracted whole: sixteen numbers, nine of them a rotation's."""
+    """The difference of whole poses, in which nine of sixteen numbers are those of a rotation."""
     poses = log.target.pose  # type: ignore[union-attr]
     e = [T - model.pose(q) for q, T in zip(log.q, poses, strict=True)]
     return float(np.sqrt(np.mean(np.sum(np.square(e), axis=(1, 2)))))
 
 
 def one_row_late(log: lk.Log, model: lk.Model) -> float:
-    """The target of each row beside the tip of the row before."""
+    """Compares the target of each row with the tip of the previous row."""
     poses = log.target.pose  # type: ignore[union-attr]
     e = [T[:3, 3] - model.pose(q)[:3, 3] for q, T in zip(log.q[:-1], poses[1:], strict=True)]
     return float(np.sqrt(np.mean(np.sum(np.square(e), axis=1))))
 
 
 def length_of_the_mean(log: lk.Log, model: lk.Model) -> float:
-    """Errors that cancel before their length is taken."""
+    """The length of the mean error, in which errors cancel."""
     return float(np.linalg.norm(_errors(log, model).mean(axis=0)))
 
 
 def always_the_left_arm(log: lk.Log, model: lk.Model) -> float:
-    """A model of its own, whatever it is given."""
+    """Uses its own model and ignores the given one."""
     return float(np.sqrt(without_the_root(log, _LEFT)))
 
 
@@ -98,13 +98,13 @@ _LEFT = lk.Model("left")
 
 @dataclass(frozen=True)
 class LoopWithout:
-    """The loop with a factor left out or turned over.
+    """The loop with a factor omitted or inverted.
 
     Attributes:
         kp: Power of the gain.
         lag: Power of the lag.
-        delay: Factor of the delay; below 0 it is turned over.
-        order: Of Padé's approximation.
+        delay: Factor of the delay; a negative one inverts it.
+        order: Order of Padé's approximation.
     """
 
     kp: float = 1.0
@@ -122,13 +122,13 @@ class LoopWithout:
 
 
 def no_integrator(kp: float, lag: float, delay: float) -> Any:
-    """From command to speed: the integrator to the angle is missing."""
+    """The loop from command to speed, without the integrator to the angle."""
     loop = control.tf([kp], [lag, 1.0])
     return loop * control.tf(*control.pade(delay, 4)) if delay else loop
 
 
 def closed_loop(kp: float, lag: float, delay: float) -> Any:
-    """The closed loop, which margins cannot be read from."""
+    """The closed loop, from which margins cannot be read."""
     loop = control.tf([kp], [lag, 1.0, 0.0] if lag else [1.0, 0.0])
     return control.feedback(loop * control.tf(*control.pade(delay, 4)) if delay else loop)
 
@@ -139,7 +139,7 @@ def delay_forgotten(kp: float, lag: float, delay: float) -> Any:
 
 
 def delay_as_a_lag(kp: float, lag: float, delay: float) -> Any:
-    """The delay as one more lag: 45 degrees at 1/delay and never more than 90."""
+    """The delay as another lag, with 45 degrees at 1/delay and never more than 90."""
     return control.tf([kp], [1.0, 0.0]) * control.tf([1.0], [lag, 1.0]) * control.tf(1, [delay, 1])
 
 
@@ -160,12 +160,12 @@ def margin_in_radians(lag: float, delay: float, margin_deg: float) -> float:
 
 
 def without_the_delay(lag: float, delay: float, margin_deg: float) -> float:
-    """Forgets the delay: the gain comes out too large."""
+    """Forgets the delay, so the gain is too large."""
     return _kp(lag, 0.0, radians(margin_deg))
 
 
 def lag_free_gain(lag: float, delay: float, margin_deg: float) -> float:
-    """Finds the right frequency, then takes it for the gain."""
+    """Finds the right frequency, and returns it as the gain."""
 
     def left(w: float) -> float:
         return pi / 2 - atan(lag * w) - delay * w - radians(margin_deg)
@@ -175,12 +175,12 @@ def lag_free_gain(lag: float, delay: float, margin_deg: float) -> float:
 
 @dataclass(frozen=True)
 class GainAt:
-    """The right frequency, and another gain there.
+    """The right frequency with another gain.
 
     Attributes:
-        power: Of the right gain: -1 is the loop's gain itself.
-        lag: Power of the lag's share.
-        integrator: Power of the integrator's share.
+        power: Power of the right gain; -1 is the gain of the loop itself.
+        lag: Power of the contribution of the lag.
+        integrator: Power of the contribution of the integrator.
     """
 
     power: float = 1.0
@@ -195,7 +195,7 @@ class GainAt:
 
 
 def phase_mixed(lag: float, delay: float, margin_deg: float) -> float:
-    """The delay's phase in radians among degrees."""
+    """Adds the phase of the delay in radians to degrees."""
 
     def left(w: float) -> float:
         return float(90.0 - np.degrees(atan(lag * w)) - delay * w - margin_deg)
@@ -224,7 +224,7 @@ class Lowest:
     """The gain with the lowest error on the line, of its worst seed.
 
     Attributes:
-        share: Of it.
+        share: Factor of the gain.
     """
 
     share: float = 1.0
@@ -239,7 +239,7 @@ class Lowest:
 
 @dataclass(frozen=True)
 class Typed:
-    """Gains that nobody tried.
+    """Gains that were not tried.
 
     Attributes:
         Kp: Proportional gain.
@@ -255,12 +255,12 @@ class Typed:
 
 
 def as_soft_as_possible(runner: Callable[..., float]) -> tuple[float, float]:
-    """Plays so safe that nothing is followed."""
+    """Gains so small that the arm does not follow."""
     return 2.0, 0.0
 
 
 def unpaired(errors_a: Sequence[float], errors_b: Sequence[float]) -> tuple[float, float]:
-    """Treats the two rows as strangers: the seeds' spread swallows the difference."""
+    """Ignores the pairs, so the spread of the seeds hides the difference."""
     a, b = np.asarray(errors_a, dtype=float), np.asarray(errors_b, dtype=float)
     n = len(a)
     spread = np.sqrt(a.var(ddof=1) / n + b.var(ddof=1) / n)
@@ -274,21 +274,21 @@ def deviation_of_one(errors_a: Sequence[float], errors_b: Sequence[float]) -> tu
 
 
 def normal_quantile(errors_a: Sequence[float], errors_b: Sequence[float]) -> tuple[float, float]:
-    """1.96, as if five seeds were many."""
+    """The normal quantile, 1.96, as if five seeds were many."""
     d = np.asarray(errors_a, dtype=float) - np.asarray(errors_b, dtype=float)
     return float(d.mean()), float(1.96 * d.std(ddof=1) / np.sqrt(len(d)))
 
 
 @dataclass(frozen=True)
 class Interval:
-    """A paired interval with something else in it.
+    """A paired interval with other parts.
 
     Attributes:
-        quantile: Of Student's t.
-        given: What is taken off n, in the deviation's denominator.
-        freedom: What is taken off n, for Student's t.
-        sign: Of the difference.
-        share: Of the half width.
+        quantile: The quantile of Student's t.
+        given: The number subtracted from n in the standard deviation.
+        freedom: The number subtracted from n for the degrees of freedom.
+        sign: Factor of the difference.
+        share: Factor of the half width.
     """
 
     quantile: float = 0.975
@@ -308,19 +308,19 @@ class Interval:
 def ends_of_the_interval(
     errors_a: Sequence[float], errors_b: Sequence[float]
 ) -> tuple[float, float]:
-    """Its two ends instead of middle and half width."""
+    """The two ends of the interval instead of its middle and half width."""
     mean, half = paired_difference(errors_a, errors_b)
     return mean - half, mean + half
 
 
 def without_students_t(errors_a: Sequence[float], errors_b: Sequence[float]) -> tuple[float, float]:
-    """The standard error alone."""
+    """Only the standard error."""
     d = np.subtract(errors_a, errors_b)
     return float(d.mean()), float(d.std(ddof=1) / np.sqrt(len(d)))
 
 
 def plain_deviation(errors_a: Sequence[float], errors_b: Sequence[float]) -> tuple[float, float]:
-    """The standard deviation alone."""
+    """Only the standard deviation."""
     d = np.subtract(errors_a, errors_b)
     return float(d.mean()), float(d.std(ddof=1))
 
@@ -330,7 +330,7 @@ class VerdictsBy:
     """Verdicts by an interval that is not the right one.
 
     Attributes:
-        interval: Mean and half width, of two rows.
+        interval: Mean and half width, given two rows.
     """
 
     interval: Callable[..., tuple[float, float]]
@@ -346,7 +346,7 @@ class VerdictsBy:
 
 
 def always_decided(table: Mapping[str, Any]) -> dict[str, str]:
-    """Looks at the sign alone."""
+    """Uses only the sign of the difference."""
     return {
         claim: "holds" if np.mean(a) > np.mean(b) else "does not hold"
         for claim, (a, b) in table.items()
@@ -362,7 +362,7 @@ def by_majority(table: Mapping[str, Any]) -> dict[str, str]:
 
 
 def the_other_way_round(table: Mapping[str, Any]) -> dict[str, str]:
-    """Takes the larger error for the better one."""
+    """Takes the larger error as the better one."""
     found = {}
     for claim, (a, b) in table.items():
         mean, half = paired_difference(b, a)
@@ -373,18 +373,18 @@ def the_other_way_round(table: Mapping[str, Any]) -> dict[str, str]:
 
 
 def t_of_five(errors_a: Sequence[float], errors_b: Sequence[float]) -> tuple[float, float]:
-    """2.776, however many pairs there are."""
+    """The quantile 2.776 for any number of pairs."""
     d = np.subtract(errors_a, errors_b)
     return float(d.mean()), float(2.776 * d.std(ddof=1) / np.sqrt(len(d)))
 
 
 def never_decided(table: Mapping[str, Any]) -> dict[str, str]:
-    """Takes no risk."""
+    """Says "undecided" for every claim."""
     return dict.fromkeys(table, "undecided")
 
 
 def ten_percent(table: Mapping[str, Any]) -> dict[str, str]:
-    """A threshold for the means, whatever their spread."""
+    """A threshold for the means, ignoring their spread."""
     found = {}
     for claim, (a, b) in table.items():
         ratio = np.mean(a) / np.mean(b)
@@ -401,10 +401,10 @@ def sorted_first(table: Mapping[str, Any]) -> dict[str, str]:
 
 @dataclass(frozen=True)
 class Rms:
-    """The right errors, and another number made of them.
+    """Another number from the right errors.
 
     Attributes:
-        number: Of the errors, shape (rows, 3).
+        number: The number, given the errors, shape (rows, 3).
     """
 
     number: Callable[[Array], Any]
@@ -420,25 +420,25 @@ def rms(errors: Array) -> Any:
 
 
 def from_the_first_target(log: lk.Log, model: lk.Model) -> float:
-    """All rows beside the first target."""
+    """The distance of every row from the first target."""
     p = log.target.pose[0][:3, 3]  # type: ignore[union-attr]
     return float(rms(np.array([p - model.pose(q)[:3, 3] for q in log.q])))
 
 
 def from_the_first_tip(log: lk.Log, model: lk.Model) -> float:
-    """How far the tip went, whatever its target."""
+    """The distance that the tip moved, ignoring its target."""
     p = model.pose(log.q[0])[:3, 3]
     return float(rms(np.array([p - model.pose(q)[:3, 3] for q in log.q])))
 
 
 @dataclass(frozen=True)
 class Loop:
-    """The loop with another factor in the place of the lag and the integrator.
+    """The loop with another factor instead of the lag and the integrator.
 
     Attributes:
-        rest: Numerator and denominator, of kp and lag.
-        delay: Of the delay.
-        close: What is made of the loop in the end.
+        rest: Numerator and denominator, given kp and lag.
+        delay: The delay, given delay and lag.
+        close: A function of the finished loop.
     """
 
     rest: Callable[[float, float], tuple[list[float], list[float]]]
@@ -453,7 +453,7 @@ class Loop:
 
 
 def plain_loop(kp: float, lag: float) -> tuple[list[float], list[float]]:
-    """What is right: kp / (s (lag s + 1))."""
+    """The right loop, kp / (s (lag s + 1))."""
     return [kp], [lag, 1.0, 0.0]
 
 
@@ -462,8 +462,8 @@ class Margin:
     """The gain of another phase, or another gain at the right one.
 
     Attributes:
-        phase: Phase left at w, in [rad], of w, lag, delay and margin.
-        gain: The gain there, of w, lag and delay.
+        phase: The phase left at w, in [rad], given w, lag, delay and margin.
+        gain: The gain at w, given w, lag and delay.
     """
 
     phase: Callable[[float, float, float, float], float] = lambda w, lag, delay, margin: (
@@ -487,9 +487,9 @@ class Paired:
     """A mean and a half width of the differences, or of something else.
 
     Attributes:
-        of: What is made of the two rows.
-        half: The half width, of it.
-        mean: The middle, of it.
+        of: The values, given the two rows.
+        half: The half width, given the values.
+        mean: The middle, given the values.
     """
 
     of: Callable[[Array, Array], Array] = np.subtract
@@ -511,7 +511,7 @@ def half_of(d: Array) -> float:
 
 
 def two_intervals(errors_a: Sequence[float], errors_b: Sequence[float]) -> tuple[float, float]:
-    """The half widths of both rows added."""
+    """The sum of the half widths of both rows."""
     a, b = np.asarray(errors_a, dtype=float), np.asarray(errors_b, dtype=float)
     return float(a.mean() - b.mean()), half_of(a) + half_of(b)
 
@@ -519,7 +519,7 @@ def two_intervals(errors_a: Sequence[float], errors_b: Sequence[float]) -> tuple
 def unpaired_with_more_freedom(
     errors_a: Sequence[float], errors_b: Sequence[float]
 ) -> tuple[float, float]:
-    """Two strangers, with 2 n - 2 degrees of freedom."""
+    """An unpaired interval with 2 n - 2 degrees of freedom."""
     mean, half = unpaired(errors_a, errors_b)
     n = len(errors_a)
     return mean, float(half * student.ppf(0.975, 2 * n - 2) / student.ppf(0.975, n - 1))
@@ -530,8 +530,8 @@ class Said:
     """The right verdicts in other words.
 
     Attributes:
-        words: What is said for "holds", "does not hold" and "undecided".
-        sure: Whether it is decided, of the differences; None is right.
+        words: The words for "holds", "does not hold" and "undecided".
+        sure: Whether the verdict is decided, given the differences; None is right.
     """
 
     words: tuple[Any, Any, Any] = ("holds", "does not hold", "undecided")

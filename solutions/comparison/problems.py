@@ -1,4 +1,4 @@
-"""What notebook 07 asks."""
+"""The questions of notebook 07."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ _TEN_PAIRS = [
 ]
 _PAIRS = (call([4.0, 2.0, 6.0, 3.0, 5.0], _SEEDS), call(*_TEN_PAIRS[::-1]))
 _NEAR_THE_EDGE = [3.1, 2.7, 5.2, 3.45, 4.4], [3.5, 2.7, 5.7, 3.45, 4.5]
-"""Rows that differ from `_SEEDS` by 2.6 and by 4.5 standard errors; 2.78 decide."""
+"""Rows that differ from `_SEEDS` by 2.6 and by 4.5 standard errors; the threshold is 2.78."""
 _345 = np.array([0.003, 0.004, 0.012])
 
 RMS_ERROR = Problem(

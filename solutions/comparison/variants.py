@@ -1,4 +1,4 @@
-"""Right answers of notebook 07, in another form."""
+"""Right answers to notebook 07 in other forms."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ def rms_vectorised(log: lk.Log, model: lk.Model) -> Any:
 
 
 def loop_from_s(kp: float, lag: float, delay: float) -> Any:
-    """Written with the symbol s, and a Padé of another order."""
+    """Written with the symbol s, and a Padé approximation of another order."""
     s = control.tf("s")
     loop = kp / (s * (lag * s + 1))
     num, den = control.pade(delay, 6) if delay else ([1.0], [1.0])
@@ -49,7 +49,7 @@ def margin_by_search(lag: float, delay: float, margin_deg: float) -> float:
 
 
 def by_doubling(runner: Callable[..., float]) -> list[float]:
-    """Doubles Kp while that does not hurt, and gives half of the last one."""
+    """Doubles Kp while the error does not grow, and returns half of the last one."""
     Kp = 5.0
     while runner(2.0 * Kp, 0.0, 0) < 1.2 * runner(Kp, 0.0, 0):
         Kp *= 2.0
@@ -57,7 +57,7 @@ def by_doubling(runner: Callable[..., float]) -> list[float]:
 
 
 def by_bisection(runner: Callable[..., float]) -> Any:
-    """Bisects for the edge on two seeds, and gives two fifths of it."""
+    """Finds the limit by bisection on two seeds, and returns two fifths of it."""
     low, high = 4.0, 100.0
     for _ in range(8):
         middle = sqrt(low * high)
@@ -79,7 +79,7 @@ def paired_by_hand(errors_a: Sequence[float], errors_b: Sequence[float]) -> Any:
 
 
 def verdicts_by_comprehension(table: Mapping[str, Any]) -> Any:
-    """In one expression, from the signs of the interval's two ends."""
+    """In one expression, from the signs of the two ends of the interval."""
     words = {2: "holds", -2: "does not hold"}
     return {
         claim: words.get(

@@ -26,18 +26,18 @@ def _mass(random: Random, *, push: bool, off: bool, moving: bool) -> Call:
 
 
 def pushed(random: Random) -> Iterator[Call]:
-    """At rest on its target, pushed."""
+    """A mass that rests at its target and is pushed."""
     yield _mass(random, push=True, off=False, moving=False)
 
 
 def let_go(random: Random) -> Iterator[Call]:
-    """Off its target, at rest."""
+    """A mass at rest that is off its target."""
     for _ in range(2):
         yield _mass(random, push=False, off=True, moving=False)
 
 
 def everything_of_one_mass(random: Random) -> Iterator[Call]:
-    """Pushed, off and moving."""
+    """A mass that is pushed, off its target and moving."""
     for _ in range(4):
         yield _mass(random, push=True, off=True, moving=True)
 
@@ -81,7 +81,7 @@ def _tip(
     twist: float = 0.0,
     ddx: float = 0.0,
 ) -> tuple[lk.Model, lk.State, lk.PoseSample]:
-    """A state, and a target for its tip, off by so much."""
+    """A state, and a target at a given distance from its tip."""
     model = _model(random)
     q, dq = _angles(random, model), speed * random.uniform(-1.0, 1.0, 7)
     T = model.pose(q)
@@ -131,13 +131,13 @@ def leading_target(random: Random) -> Iterator[Call]:
 
 
 def everything_at_the_tip(random: Random) -> Iterator[Call]:
-    """All at once."""
+    """All of these at the same time."""
     for _ in range(4):
         yield _law(random, shift=0.05, turn=0.3, speed=1.0, twist=0.5, ddx=2.0)
 
 
 def pushed_arms(random: Random) -> Iterator[Case]:
-    """From an offset and under a push, the other arm too."""
+    """Runs from an offset and under a push, also with the other arm."""
     side: Any = random.choice(["left", "right"])
     plant = lk.Plant(armature=0.05, viscous=0.7)
     model = lk.Model(side, plant)
@@ -159,7 +159,7 @@ def pushed_arms(random: Random) -> Iterator[Case]:
 
 
 def _shaped(random: Random, *, times: float, wrench: float, moving: bool) -> Call:
-    """With M_d as ``times`` the arm's own inertia; 0 takes another M_d."""
+    """A case with M_d as ``times`` the arm's own inertia; 0 takes another M_d."""
     what = {"speed": 1.0, "twist": 0.5, "ddx": 2.0} if moving else {}
     model, state, target = _tip(random, shift=0.05, turn=0.2, **what)
     inertia = times * model.operational_inertia(state.q)
@@ -170,24 +170,24 @@ def _shaped(random: Random, *, times: float, wrench: float, moving: bool) -> Cal
 
 
 def untouched(random: Random) -> Iterator[Call]:
-    """Nobody pushes."""
+    """Arms that nobody pushes."""
     yield _shaped(random, times=0.0, wrench=0.0, moving=False)
 
 
 def as_heavy_as_it_is(random: Random) -> Iterator[Call]:
-    """Its own inertia, pushed."""
+    """Pushed arms that keep their own inertia."""
     for _ in range(2):
         yield _shaped(random, times=1.0, wrench=10.0, moving=False)
 
 
 def twice_as_heavy(random: Random) -> Iterator[Call]:
-    """Heavier and lighter, pushed."""
+    """Pushed arms with a larger and a smaller inertia."""
     for times in (2.0, 0.5):
         yield _shaped(random, times=times, wrench=10.0, moving=False)
 
 
 def everything_shaped(random: Random) -> Iterator[Call]:
-    """Any inertia, pushed, off and moving."""
+    """Arms with any inertia, pushed, off their target and moving."""
     for _ in range(4):
         yield _shaped(random, times=0.0, wrench=10.0, moving=True)
 
@@ -203,25 +203,25 @@ def _stiffness(random: Random, coupled: float) -> Any:
 
 
 def straight_springs(random: Random) -> Iterator[Call]:
-    """Axes that do not mix."""
+    """Stiffnesses without coupling between the axes."""
     yield _pushes(random, _stiffness(random, 0.0), np.zeros(3), 0.0, 12)
 
 
 def coupled_springs(random: Random) -> Iterator[Call]:
-    """Axes that mix, not quite symmetric."""
+    """Stiffnesses with coupling, not quite symmetric."""
     for _ in range(2):
         yield _pushes(random, _stiffness(random, 1.0), np.zeros(3), 0.0, 12)
 
 
 def springs_with_offset(random: Random) -> Iterator[Call]:
-    """A force at rest."""
+    """Springs with a force at zero displacement."""
     for _ in range(2):
         offset = random.uniform(-5.0, 5.0, 3)
         yield _pushes(random, _stiffness(random, 0.0), offset, 0.0, 12)
 
 
 def measured_springs(random: Random) -> Iterator[Call]:
-    """All of it, with noise in the force."""
+    """Coupled springs with an offset, and noise in the force."""
     for rows in (8, 20, 60):
         offset = random.uniform(-5.0, 5.0, 3)
         yield _pushes(random, _stiffness(random, 1.0), offset, 0.5, rows)

@@ -1,4 +1,4 @@
-"""What people write in notebook 05 instead."""
+"""Mistakes that people make in notebook 05."""
 
 from __future__ import annotations
 
@@ -16,12 +16,12 @@ from . import answers as right
 def spring_pushes_away(
     state: Any, target: Any, force: float, *, m: float, b: float, k: float
 ) -> float:
-    """The spring's sign turned."""
+    """The spring with the other sign."""
     return right.msd(state, target, force, m=m, b=b, k=-k)
 
 
 def force_twice(state: Any, target: Any, force: float, *, m: float, b: float, k: float) -> float:
-    """The outside force once with the springs and once more beside them (the report's eq. 19)."""
+    """The external force twice, with the springs and again outside (the report's eq. 19)."""
     return right.msd(state, target, force, m=m, b=b, k=k) + force
 
 
@@ -35,52 +35,52 @@ def hand_pushed_back(
 def damps_all_motion(
     state: Any, target: Any, force: float, *, m: float, b: float, k: float
 ) -> float:
-    """The damper tied to the wall instead of to the target."""
+    """A damper against the fixed world, not against the target's velocity."""
     return right.msd(state, target, force, m=m, b=b, k=k) - b * float(target[1]) / m
 
 
 def forgets_the_targets_acceleration(
     state: Any, target: Any, force: float, *, m: float, b: float, k: float
 ) -> float:
-    """A mass that always comes late."""
+    """No feed-forward of acceleration, so the mass always lags."""
     return right.msd(state, (*target[:2], 0.0), force, m=m, b=b, k=k)
 
 
 def force_not_acceleration(
     state: Any, target: Any, force: float, *, m: float, b: float, k: float
 ) -> float:
-    """Gives a force where an acceleration is asked."""
+    """Returns a force instead of an acceleration."""
     return m * right.msd(state, target, force, m=m, b=b, k=k)
 
 
 def spring_to_the_origin(
     state: Any, target: Any, force: float, *, m: float, b: float, k: float
 ) -> float:
-    """The spring tied to the origin, the damper to the target."""
+    """A spring to the origin and a damper to the target."""
     return right.msd(state, (0.0, *target[1:]), force, m=m, b=b, k=k)
 
 
 def energy_for_force(
     state: Any, target: Any, force: float, *, m: float, b: float, k: float
 ) -> float:
-    """The spring's energy in the place of its force."""
+    """The energy of the spring instead of its force."""
     energy = 0.5 * k * float(target[0] - state[0]) ** 2
     return right.msd(state, target, force + energy, m=m, b=b, k=0.0)
 
 
 @dataclass(frozen=True)
 class OneMass:
-    """The mass with its parts weighed: 1 is right, 0 left out, -1 reversed.
+    """The mass with weighted terms; 1 is right, 0 omits a term, -1 reverses it.
 
     Attributes:
-        spring: Of the spring.
-        damper: Of the damper.
-        force: Of the hand's force.
-        feed: Of the target's acceleration.
-        per_mass: Of the target's acceleration, divided by the mass.
-        follows: Of all that is the target's.
-        power: Of the mass that divides.
-        swapped: Whether spring and damper are.
+        spring: Factor of the spring.
+        damper: Factor of the damper.
+        force: Factor of the hand's force.
+        feed: Factor of the target's acceleration.
+        per_mass: Factor of the target's acceleration, divided by the mass.
+        follows: Factor of all that belongs to the target.
+        power: Power of the mass in the denominator.
+        swapped: Whether stiffness and damping are exchanged.
     """
 
     spring: float = 1.0
@@ -109,44 +109,44 @@ def inverse_of_the_wrong(M: Any, J: Any) -> Any:
 
 
 def each_axis_alone(M: Any, J: Any) -> Any:
-    """The right matrix without what is beside its diagonal."""
+    """Only the diagonal of the right matrix."""
     return np.diag(np.diag(right.operational_inertia(M, J)))
 
 
 def numbers_turned_over(M: Any, J: Any) -> Any:
-    """1 divided by each number of the mobility."""
+    """The reciprocal of each entry of the mobility."""
     return 1.0 / (J @ np.linalg.inv(M) @ J.T)
 
 
 def j_m_jt(M: Any, J: Any) -> Any:
-    """Looks right: six by six, symmetric."""
+    """J M J^T, which is 6 by 6 and symmetric, as the right matrix is."""
     return J @ M @ J.T
 
 
 def pseudo_inverses(M: Any, J: Any) -> Any:
-    """True for six joints; with seven it holds the elbow still."""
+    """With pseudo-inverses, which is right for six joints; with seven the elbow is fixed."""
     J_inv = np.linalg.pinv(J)
     return J_inv.T @ M @ J_inv
 
 
 def mobility(M: Any, J: Any) -> Any:
-    """Stops before the last inverse."""
+    """The mobility, without the last inverse."""
     return J @ np.linalg.inv(M) @ J.T
 
 
 def inverse_by_element(M: Any, J: Any) -> Any:
-    """Python's 1 / M, number by number."""
+    """NumPy's 1 / M, entry by entry."""
     return np.linalg.inv(J @ (1.0 / np.asarray(M)) @ J.T)
 
 
 def diagonal_only(M: Any, J: Any) -> Any:
-    """The joints as if none shook the others."""
+    """The joints as if they were not coupled."""
     return right.operational_inertia(np.diag(np.diag(M)), J)
 
 
 @dataclass(frozen=True)
 class Feeling:
-    """The right law, and so much of the torque that the sensors feel."""
+    """The right law plus a share of the torque that the sensors measure."""
 
     share: float
 
@@ -167,7 +167,7 @@ class Feeling:
 def plus_in_front(
     state: lk.State, target: lk.PoseSample, model: lk.Model, *, stiffness: Any, damping: Any
 ) -> lk.JointTorque:
-    """The spring with the report's plus (eq. 21): it pushes away."""
+    """The spring with the plus sign of the report (eq. 21), which pushes away."""
     return right.workspace_impedance(state, target, model, stiffness=-stiffness, damping=damping)
 
 
@@ -186,7 +186,7 @@ def joint_inertia_for_tip(
 def no_drift(
     state: lk.State, target: lk.PoseSample, model: lk.Model, *, stiffness: Any, damping: Any
 ) -> lk.JointTorque:
-    """Forgets that the tip speeds up while the joints turn evenly."""
+    """Forgets that the tip accelerates even at constant joint speeds."""
     q, dq = state.q, state.dq
     tau = right.workspace_impedance(state, target, model, stiffness=stiffness, damping=damping)
     drift = model.operational_inertia(q) @ model.tip_jacobian_rate(q, dq) @ dq
@@ -245,7 +245,7 @@ def _euler(T: Any) -> Any:
 def springs_inside(
     state: lk.State, target: lk.PoseSample, model: lk.Model, *, stiffness: Any, damping: Any
 ) -> lk.JointTorque:
-    """Computed torque at the tip: the springs multiplied with the inertia."""
+    """Computed torque at the tip, with the springs multiplied by the inertia."""
     q, dq = state.q, state.dq
     J = model.tip_jacobian(q)
     e, de = lk.se3.pose_error(target.pose, model.pose(q)), target.twist - J @ dq
@@ -258,7 +258,7 @@ def springs_inside(
 def brakes_the_motion(
     state: lk.State, target: lk.PoseSample, model: lk.Model, *, stiffness: Any, damping: Any
 ) -> lk.JointTorque:
-    """The damper tied to the room, not to the target."""
+    """A damper against the fixed world, not against the target's velocity."""
     tau = right.workspace_impedance(state, target, model, stiffness=stiffness, damping=damping)
     pull = damping * np.asarray(target.twist)
     return lk.JointTorque(tau.value - model.tip_jacobian(state.q).T @ pull)
@@ -275,7 +275,7 @@ def damps_the_joints(
 def brakes_behind_speeds(
     state: lk.State, target: lk.PoseSample, model: lk.Model, *, stiffness: Any, damping: Any
 ) -> lk.JointTorque:
-    """A damper of the elbow behind I - pinv(J) J, the projector of speeds: the tip feels it."""
+    """A damper of the elbow behind I - pinv(J) J, the projector for speeds, so the tip feels it."""
     tau = right.workspace_impedance(state, target, model, stiffness=stiffness, damping=damping)
     J = model.tip_jacobian(state.q)
     return lk.JointTorque(tau.value - 2.0 * (state.dq - np.linalg.pinv(J) @ (J @ state.dq)))
@@ -286,7 +286,7 @@ class AlongTheTool:
     """The impedance with springs along the tool's axes.
 
     Attributes:
-        dampers: Whether the dampers are too.
+        dampers: Whether the dampers are along the tool's axes, too.
     """
 
     dampers: bool = False
@@ -313,21 +313,21 @@ class AlongTheTool:
 
 @dataclass(frozen=True)
 class TipLaw:
-    """The impedance with its parts weighed: 1 is right, 0 left out, -1 reversed.
+    """The impedance with weighted terms; 1 is right, 0 omits a term, -1 reverses it.
 
     Attributes:
-        e: Of the error.
-        turn: Of the error of orientation.
-        de: Of the error of the twist.
-        feed: Of the target's acceleration.
-        drift: Of the acceleration that comes by itself.
-        coriolis: Of C.
-        weight: Of g.
-        power: Of the tip's inertia.
-        swapped: Whether stiffness and damping are.
-        pinv: Whether the pseudo-inverse takes the place of the transpose.
-        body: Whether the Jacobian is the tool's.
-        tool: Whether the error of orientation is in the tool's axes; 2 is that of position too.
+        e: Factor of the error.
+        turn: Factor of the orientation error.
+        de: Factor of the error of the twist.
+        feed: Factor of the target's acceleration.
+        drift: Factor of the acceleration J' dq.
+        coriolis: Factor of C.
+        weight: Factor of g.
+        power: Power of the tip's inertia.
+        swapped: Whether stiffness and damping are exchanged.
+        pinv: Whether the pseudo-inverse replaces the transpose.
+        body: Whether the Jacobian is that of the tool's axes.
+        tool: Whether the orientation error is in the tool's axes; 2 means that of position, too.
     """
 
     e: float = 1.0
@@ -370,18 +370,18 @@ class TipLaw:
 
 @dataclass(frozen=True)
 class ShapedLaw:
-    """The shaped impedance with its parts weighed: 1 is right, 0 left out, -1 reversed.
+    """The shaped impedance with weighted terms; 1 is right, 0 omits a term, -1 reverses it.
 
     Attributes:
-        e: Of the errors of pose and twist.
-        inside: Of the wrench that speeds the tip up.
-        outside: Of the hand's share of the work.
-        feed: Of the target's acceleration.
-        drift: Of the acceleration that comes by itself.
-        coriolis: Of C.
-        weight: Of g.
-        pinv: Whether the pseudo-inverse takes the place of the transpose.
-        for_own: Whether the wanted inertia stands where the arm's own belongs.
+        e: Factor of the errors of pose and twist.
+        inside: Factor of the wrench that accelerates the tip.
+        outside: Factor of the hand's share of the force.
+        feed: Factor of the target's acceleration.
+        drift: Factor of the acceleration J' dq.
+        coriolis: Factor of C.
+        weight: Factor of g.
+        pinv: Whether the pseudo-inverse replaces the transpose.
+        for_own: Whether the desired inertia replaces the arm's own.
     """
 
     e: float = 1.0
@@ -485,7 +485,7 @@ def own_inertia(
     stiffness: Any,
     damping: Any,
 ) -> lk.JointTorque:
-    """Keeps the arm's own inertia, whatever is asked."""
+    """Keeps the arm's own inertia, ignoring the desired one."""
     return right.workspace_impedance(state, target, model, stiffness=stiffness, damping=damping)
 
 
@@ -499,7 +499,7 @@ def the_reports_equation(
     stiffness: Any,
     damping: Any,
 ) -> lk.JointTorque:
-    """Equation 19: the wrench outside, and inside once more as if it were an acceleration."""
+    """The report's equation 19, with the wrench outside and again inside as an acceleration."""
     tau = force_forgotten(
         state, target, wrench, model, inertia=inertia, stiffness=stiffness, damping=damping
     )
@@ -517,7 +517,7 @@ def hand_works_twice(
     stiffness: Any,
     damping: Any,
 ) -> lk.JointTorque:
-    """The motors give all the torque, and the hand its own on top."""
+    """The motors give the whole torque, to which the hand adds its own."""
     tau = right.shaped_impedance(
         state, target, wrench, model, inertia=inertia, stiffness=stiffness, damping=damping
     )
@@ -536,32 +536,32 @@ def through_the_origin(force: Any, displacement: Any) -> Any:
 
 
 def compliance(force: Any, displacement: Any) -> Any:
-    """Metres for a newton instead of newtons for a metre."""
+    """Metres per newton instead of newtons per metre."""
     return np.linalg.inv(right.apparent_stiffness(force, displacement))
 
 
 def transposed(force: Any, displacement: Any) -> Any:
-    """What `lstsq` gives, as it comes: the rows are K's columns."""
+    """The result of `lstsq` as it is, whose rows are the columns of K."""
     return right.apparent_stiffness(force, displacement).T
 
 
 def other_regression(force: Any, displacement: Any) -> Any:
-    """Fits the displacement to the force and inverts: the noise is in the force."""
+    """Fits the displacement to the force and inverts, although the noise is in the force."""
     return np.linalg.inv(right.apparent_stiffness(displacement, force))
 
 
 def arm_against_hand(force: Any, displacement: Any) -> Any:
-    """The force by the arm: a stiffness below zero."""
+    """The force by the arm, which makes the stiffness negative."""
     return -right.apparent_stiffness(force, displacement)
 
 
 def transposed_through_the_origin(force: Any, displacement: Any) -> Any:
-    """What `lstsq` gives without an offset, as it comes."""
+    """The result of `lstsq` without an offset, as it is."""
     return through_the_origin(force, displacement).T
 
 
 def regression_of_the_displacement(force: Any, displacement: Any) -> Any:
-    """Fits the displacement to the force: metres for a newton."""
+    """Fits the displacement to the force, in metres per newton."""
     return right.apparent_stiffness(displacement, force)
 
 
@@ -571,13 +571,13 @@ def diagonal_of_the_fit(force: Any, displacement: Any) -> Any:
 
 
 def made_symmetric(force: Any, displacement: Any) -> Any:
-    """The mean of the fit and its transpose: what is measured need not be symmetric."""
+    """The mean of the fit and its transpose, although a measured K need not be symmetric."""
     K = right.apparent_stiffness(force, displacement)
     return (K + K.T) / 2.0
 
 
 def in_millimetres(force: Any, displacement: Any) -> Any:
-    """Newtons for a millimetre."""
+    """Newtons per millimetre."""
     return right.apparent_stiffness(force, displacement) / 1e3
 
 
@@ -589,11 +589,11 @@ def axis_by_axis_fit(force: Any, displacement: Any) -> Any:
 
 @dataclass(frozen=True)
 class TipTerms:
-    """Another torque of the impedance's terms.
+    """Another torque from the terms of the impedance.
 
     Attributes:
-        law: The torque, of J, the tip's inertia, acceleration wanted, D de, K e, C dq, g and model,
-            state and target.
+        law: The torque, given J, the tip's inertia, the desired acceleration, D de, K e, C dq, g,
+            model, state and target.
     """
 
     law: Callable[..., Any]
@@ -618,12 +618,12 @@ class TipTerms:
 
 @dataclass(frozen=True)
 class ShapedTerms:
-    """Another torque of the shaped impedance's terms.
+    """Another torque from the terms of the shaped impedance.
 
     Attributes:
-        law: The torque, of J, the tip's inertia, the wanted one, the acceleration wanted, J' dq,
-            D de, K e, the wrench, C dq and g.
-        tool: Which errors are in the tool's axes: 1 the turn, 2 both.
+        law: The torque, given J, the tip's inertia, the desired one, the desired acceleration, J'
+            dq, D de, K e, the wrench, C dq and g.
+        tool: Which errors are in the tool's axes: 1 for the orientation, 2 for both.
     """
 
     law: Callable[..., Any]
@@ -654,7 +654,7 @@ class ShapedTerms:
 
 
 def shaped(J: Any, L: Any, M: Any, a: Any, drift: Any, P: Any, F: Any, C: Any, g: Any) -> Any:
-    """The right torque, of the pull P = D de + K e."""
+    """The right torque, given the pull P = D de + K e."""
     return J.T @ (L @ (a + np.linalg.inv(M) @ (P + F) - drift) - F) + C + g
 
 
@@ -663,7 +663,7 @@ class FitOf:
     """Another fit.
 
     Attributes:
-        of: K, of force and displacement, each of shape (n, 3).
+        of: K, given force and displacement, each of shape (n, 3).
     """
 
     of: Callable[[Any, Any], Any]
@@ -680,16 +680,16 @@ def solved(x: Any, F: Any) -> Any:
 
 
 def about(x: Any) -> Any:
-    """Without its mean."""
+    """The values minus their mean."""
     return x - x.mean(axis=0)
 
 
 @dataclass(frozen=True)
 class MassesOf:
-    """Another matrix of M and J.
+    """Another matrix from M and J.
 
     Attributes:
-        of: Of both.
+        of: The matrix, given M and J.
     """
 
     of: Callable[[Any, Any], Any]
@@ -707,10 +707,11 @@ def root(A: Any) -> Any:
 
 @dataclass(frozen=True)
 class Hanging:
-    """Another sum of the mass's forces.
+    """Another sum of the forces on the mass.
 
     Attributes:
-        of: The acceleration, of the hand's, damper's and spring's force, the mass and the target's.
+        of: The acceleration, given the forces of hand, damper and spring, the mass and the
+            target's acceleration.
     """
 
     of: Callable[..., float]

@@ -1,4 +1,4 @@
-"""What notebook 05 asks."""
+"""The questions of notebook 05."""
 
 from __future__ import annotations
 
@@ -48,7 +48,7 @@ def _shaped(inertia: object, wrench: object, *, moving: float = 0.0) -> Call:
 
 
 def _at_tip(answer: Callable[..., lk.JointTorque]) -> Callable[..., TipTorque]:
-    """The torque that an answer gives, with what a torque does to the tip there."""
+    """The torque that an answer returns, and the effect of a torque on the tip there."""
 
     def expected(state: lk.State, *args: Any, **gains: Any) -> TipTorque:
         model: lk.Model = args[-1]

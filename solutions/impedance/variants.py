@@ -1,4 +1,4 @@
-"""Right answers of notebook 05, in another form."""
+"""Right answers to notebook 05 in other forms."""
 
 from __future__ import annotations
 
@@ -62,7 +62,7 @@ def impedance_by_terms(
 def impedance_by_parts(
     state: lk.State, target: lk.PoseSample, model: lk.Model, *, stiffness: Any, damping: Any
 ) -> Any:
-    """Position and orientation apart, the logarithm written out."""
+    """Position and orientation separately, with the logarithm written out."""
     q, dq = state.q, state.dq
     T, J = model.pose(q), model.tip_jacobian(q)
     turn = lk.se3.rotation_log(target.pose[:3, :3] @ T[:3, :3].T)
@@ -76,7 +76,7 @@ def impedance_by_parts(
 def impedance_by_khatib(
     state: lk.State, target: lk.PoseSample, model: lk.Model, *, stiffness: Any, damping: Any
 ) -> Any:
-    """All of the tip's equation of motion, its Coriolis part included, brought over by J^T."""
+    """By the tip's equation of motion, with its Coriolis term, transformed by J^T."""
     T, J, drift, M, c, g = terms(state, model)
     L = np.linalg.inv(J @ np.linalg.inv(M) @ J.T)
     mu = L @ (J @ np.linalg.solve(M, c) - drift)
@@ -87,7 +87,7 @@ def impedance_by_khatib(
 def impedance_by_pseudo_inverse(
     state: lk.State, target: lk.PoseSample, model: lk.Model, *, stiffness: Any, damping: Any
 ) -> Any:
-    """The shortest joint acceleration for the tip's, through M; springs and dampers by J^T."""
+    """The smallest joint acceleration for that of the tip, times M; springs and dampers by J^T."""
     T, J, drift, M, c, g = terms(state, model)
     F = stiffness * lk.se3.pose_error(target.pose, T) + damping * (target.twist - J @ state.dq)
     ddq = np.linalg.pinv(J) @ (target.dtwist - drift)
@@ -114,7 +114,7 @@ def shaped_by_pseudo_inverse(
     stiffness: Any,
     damping: Any,
 ) -> Any:
-    """The shortest joint acceleration for the tip's, through M, and the hand's share taken off."""
+    """The smallest joint acceleration for that of the tip, times M, minus the hand's share."""
     T, J, drift, M, c, g = terms(state, model)
     F = stiffness * lk.se3.pose_error(target.pose, T) + damping * (target.twist - J @ state.dq)
     a = target.dtwist + np.linalg.solve(inertia, F + wrench) - drift

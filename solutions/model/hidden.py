@@ -20,7 +20,7 @@ ROUGH = lk.Plant(name="rough", armature=0.05, viscous=FRICTION)
 ROUGH_MODEL = lk.Model("left", ROUGH)
 
 TIRED = 0.55
-"""The share of their torque that hot motors still give, so that quick lifts meet the limits."""
+"""The share of their torque that hot motors have left, so that fast lifts reach the limits."""
 
 
 def anywhere(random: Random) -> Any:
@@ -29,14 +29,14 @@ def anywhere(random: Random) -> Any:
 
 
 def joints(q: Any) -> Any:
-    """Axes, origins and tip at ``q``: what `jacobian` is given."""
+    """Axes, origins and tip at ``q``, the arguments of `jacobian`."""
     parts = MODEL.links(q)
     axes, origins = (np.array([part.T_wl[:3, k] for part in parts]) for k in (2, 3))
     return axes, origins, MODEL.pose(q)[:3, 3]
 
 
 def bodies(q: Any) -> Any:
-    """Masses, inertias, rotations and Jacobians of the links: what `mass_matrix` is given."""
+    """Masses, inertias, rotations and Jacobians of the links, the arguments of `mass_matrix`."""
     parts = MODEL.links(q)
     return (
         np.array([part.mass for part in parts]),
@@ -47,7 +47,7 @@ def bodies(q: Any) -> Any:
 
 
 def weights(q: Any) -> Any:
-    """Masses and Jacobians of the links: what `gravity` is given."""
+    """Masses and Jacobians of the links, the arguments of `gravity`."""
     masses, _, _, jacobians = bodies(q)
     return masses, jacobians
 
@@ -88,7 +88,7 @@ def lifts(random: Random) -> Iterator[Call]:
 
 
 def gentle_lifts(random: Random) -> Iterator[Call]:
-    """Slower lifts within the limits, one hindered by a hand and one helped."""
+    """Slower lifts within the limits, one against a hand and one with its help."""
     for sign in (-1.0, 1.0):
         way, duration = random.uniform(0.3, 0.4), random.uniform(0.75, 0.85)
         hand = sign * random.uniform(8.0, 12.0)
@@ -100,11 +100,11 @@ def lift(way: float, duration: float, kp: float, hand: float = 0.0, rows: int = 
     """A torque-controlled lift of the rough arm, computed from the equations of motion.
 
     Args:
-        way: How far shoulder and elbow turn, in [rad].
-        duration: Of the motion wanted, in [s]; the arm is given as long again to settle.
+        way: The angle by which shoulder and elbow turn, in [rad].
+        duration: The duration of the motion in [s]; then the arm has the same time to settle.
         kp: Position gain, in [1/s^2].
-        hand: The largest torque of somebody's hand on the shoulder meanwhile, in [N m].
-        rows: Of the log.
+        hand: The largest torque of a hand on the shoulder during the motion, in [N m].
+        rows: The number of rows in the log.
     """
     q = q0 = ROUGH_MODEL.robot.ready
     turn = way * np.array([0.3, 1.0, 0.0, -1.2, 0.0, 0.2, 1.35])

@@ -1,4 +1,4 @@
-"""What people write in notebook 02 instead."""
+"""Mistakes that people make in notebook 02."""
 
 from __future__ import annotations
 
@@ -60,7 +60,7 @@ def half_of_it(masses: Any, inertias: Any, rotations: Any, com_jacobians: Any) -
 
 
 def falls_faster(masses: Any, com_jacobians: Any) -> Array:
-    """The torque of gravity, not the one that holds against it."""
+    """The torque of gravity, not the one that balances it."""
     return -gravity(masses, com_jacobians)
 
 
@@ -113,12 +113,12 @@ def kinetic_only(log: lk.Log, model: lk.Model) -> Array:
 
 
 def commanded_torque(log: lk.Log, model: lk.Model) -> Array:
-    """The torque that was asked for, not the one that the motors gave."""
+    """The commanded torque, not the one that the motors gave."""
     return np.asarray(power_balance(log, model) + np.sum((log.tau - log.command) * log.dq, axis=1))
 
 
 def motors_minus_energy(log: lk.Log, model: lk.Model) -> Array:
-    """The difference the other way round."""
+    """The difference with the other sign."""
     return -power_balance(log, model)
 
 
@@ -128,7 +128,7 @@ def absolute(log: lk.Log, model: lk.Model) -> Array:
 
 
 def friction_alone(log: lk.Log, model: lk.Model) -> Array:
-    """What friction takes, by its formula."""
+    """The power of friction by its formula."""
     return np.asarray(-np.sum(np.asarray(log.plant.viscous) * log.dq**2, axis=1))
 
 
@@ -155,7 +155,7 @@ def rows_swapped(masses: Any, inertias: Any, rotations: Any, com_jacobians: Any)
 
 
 def without_g(masses: Any, com_jacobians: Any) -> Array:
-    """Kilograms for newtons."""
+    """Kilograms instead of newtons."""
     return gravity(masses, com_jacobians) / 9.81
 
 
@@ -186,7 +186,7 @@ def product_by_element(axes: Any, origins: Any, tip: Any) -> Array:
 
 
 def unit_arms(axes: Any, origins: Any, tip: Any) -> Array:
-    """The moment arms made one long."""
+    """The moment arms scaled to length 1."""
     arms = tip - np.asarray(origins)
     return _columns(axes, arms / np.linalg.norm(arms, axis=1)[:, None])
 
@@ -204,15 +204,15 @@ def joints_reversed(axes: Any, origins: Any, tip: Any) -> Array:
 
 @dataclass(frozen=True)
 class Kinetic:
-    """The mass matrix with its parts weighed.
+    """The mass matrix with weighted terms.
 
     Attributes:
-        power: Of the masses.
-        inertia: In the world's axes, of that in the link's and R.
+        power: Power of the masses.
+        inertia: The inertia in the world's axes, given that in the link's and R.
         mass: Whether the inertia is multiplied with the mass.
-        linear: Of the linear part.
-        angular: Of the angular part.
-        whole: Whether the mass goes with all six rows.
+        linear: Factor of the linear part.
+        angular: Factor of the angular part.
+        whole: Whether all six rows are multiplied with the mass.
     """
 
     power: float = 1.0
@@ -234,12 +234,12 @@ class Kinetic:
 
 
 def last_link_only(masses: Any, inertias: Any, rotations: Any, com_jacobians: Any) -> Array:
-    """The last link for the sum of all."""
+    """The last link instead of the sum over all."""
     return mass_matrix(masses[-1:], inertias[-1:], rotations[-1:], com_jacobians[-1:])
 
 
 def beside_left_out(masses: Any, inertias: Any, rotations: Any, com_jacobians: Any) -> Array:
-    """The diagonal alone."""
+    """Only the diagonal."""
     return np.diag(np.diag(mass_matrix(masses, inertias, rotations, com_jacobians)))
 
 
@@ -248,11 +248,11 @@ class Weights:
     """Gravity by another row, or with other masses.
 
     Attributes:
-        row: Of each Jacobian.
-        mass: What each weighs, of its mass and all masses.
+        row: The row of each Jacobian.
+        mass: The mass of each link, given its mass and all masses.
         g: The acceleration of gravity.
         size: Whether the sign is lost.
-        last: Before which link it ends.
+        last: The link before which the sum ends.
     """
 
     row: Callable[[Array], Array] = lambda J: J[2]
@@ -277,8 +277,8 @@ class Slopes:
 
     Attributes:
         terms: Weights of dM_ij/dq_k, dM_ik/dq_j and dM_jk/dq_i.
-        h: Step of the differences.
-        along: Which speed they are multiplied with: of k, j or i.
+        h: The step of the differences.
+        along: The index of the speed that multiplies them, k, j or i.
     """
 
     terms: tuple[float, float, float] = (1.0, 1.0, -1.0)
@@ -297,14 +297,14 @@ class Slopes:
 
 @dataclass(frozen=True)
 class Balance:
-    """The power balance with its parts weighed: 1 is right, 0 left out, -1 reversed.
+    """The power balance with weighted terms; 1 is right, 0 omits a term, -1 reverses it.
 
     Attributes:
-        kinetic: Of the kinetic energy.
-        potential: Of the potential energy.
-        power: Of the motors' power.
-        growth: The energy's growth, of the energy and the times.
-        by: What the torques are multiplied with, of the log.
+        kinetic: Factor of the kinetic energy.
+        potential: Factor of the potential energy.
+        power: Factor of the motors' power.
+        growth: The growth of the energy, given the energy and the times.
+        by: The factor of the torques, given the log.
     """
 
     kinetic: float = 1.0

@@ -1,4 +1,4 @@
-"""What notebook 02 asks."""
+"""The questions of notebook 02."""
 
 from __future__ import annotations
 

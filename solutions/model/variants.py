@@ -1,4 +1,4 @@
-"""Right answers of notebook 02, in another form."""
+"""Right answers to notebook 02 in other forms."""
 
 from __future__ import annotations
 

@@ -41,7 +41,7 @@ def bang_bang_all(random: Random) -> Iterator[Call]:
 
 
 def trapezoid_long(random: Random) -> Iterator[Call]:
-    """Ways long enough to cruise."""
+    """Distances long enough to cruise."""
     for _ in range(3):
         v, a = random.uniform(0.1, 0.5), random.uniform(0.3, 2.0)
         d = random.uniform(1.5, 4.0) * v * v / a
@@ -51,7 +51,7 @@ def trapezoid_long(random: Random) -> Iterator[Call]:
 
 
 def trapezoid_short(random: Random) -> Iterator[Call]:
-    """Ways too short to reach v_max: one of a centimetre, one on which a single ramp has room."""
+    """Distances too short for v_max: one centimetre, and one with room for a single ramp."""
     for share in (None, random.uniform(0.05, 0.4), random.uniform(0.6, 0.9)):
         v, a = random.uniform(0.5, 0.8), random.uniform(0.5, 2.0)
         d = 0.01 if share is None else share * v * v / a
@@ -61,7 +61,7 @@ def trapezoid_short(random: Random) -> Iterator[Call]:
 
 
 def trapezoid_all(random: Random) -> Iterator[Call]:
-    """Whole motions, long and short, and what lies outside them."""
+    """Whole motions, long and short, with times before and after them."""
     for d in (random.uniform(0.4, 0.9), random.uniform(0.06, 0.09)):
         for t in np.linspace(-0.4, 6.0, 12):
             yield call(t, d, 0.25, 0.6)
@@ -82,7 +82,7 @@ def circle_height(random: Random) -> Iterator[Call]:
 
 
 def circle_yaw(random: Random) -> Iterator[Call]:
-    """Starts turned all round the centre."""
+    """Starts at all angles around the centre."""
     for yaw in (2.3, -2.9, *random.uniform(-np.pi, np.pi, 2)):
         c = random.uniform((0.5, -0.3, 0.0), (0.8, 0.3, 0.3))
         r = random.uniform(0.05, 0.3)
@@ -90,7 +90,7 @@ def circle_yaw(random: Random) -> Iterator[Call]:
 
 
 def circle_all(random: Random) -> Iterator[Call]:
-    """Any start and centre, the return included."""
+    """Any start and centre, including the return to the start."""
     for s in (0.0, *random.uniform(0.0, 1.0, 4), 1.0):
         c = random.uniform((0.5, -0.3, 0.0), (0.8, 0.3, 0.3))
         yield call(s, c + random.uniform(-0.3, 0.3, 3), c)
@@ -128,7 +128,7 @@ def compose_circle(random: Random) -> Iterator[Call]:
 
 
 def compose_all(random: Random) -> Iterator[Call]:
-    """Any path on any schedule, before its start and after its end too."""
+    """Any path on any schedule, also before its start and after its end."""
     for path in (_line(random), _circle(random)):
         for T in random.uniform(1.0, 6.0, 2):
             for x in (-0.2, *random.uniform(0.0, 1.0, 3), 1.3):
@@ -148,7 +148,7 @@ def segment_inside(random: Random) -> Iterator[Call]:
 
 
 def segment_ends(random: Random) -> Iterator[Call]:
-    """The very start, before it, the end, and after it."""
+    """The start and the end, and times before and after them."""
     durations = _durations(random)
     total = sum(durations)
     for t in (0.0, -0.5, total, total + random.uniform(0.1, 5.0)):
@@ -156,7 +156,7 @@ def segment_ends(random: Random) -> Iterator[Call]:
 
 
 def segment_joints(random: Random) -> Iterator[Call]:
-    """The joints between segments, where the later one is on."""
+    """The joints between segments, where the later one is active."""
     for durations in ([0.5, 1.0, 0.25, 2.0], [2.0, 0.5]):
         for k in range(1, len(durations)):
             yield call(durations, sum(durations[:k]))

@@ -1,4 +1,4 @@
-"""What people write in notebook 01 instead."""
+"""Mistakes that people make in notebook 01."""
 
 from __future__ import annotations
 
@@ -59,12 +59,12 @@ def always_cruises(
 def speeds_up_all_the_way(
     t: float, distance: float, v_max: float, a_max: float
 ) -> tuple[float, float, float]:
-    """Over a short distance the speed that it would have if it never braked."""
+    """The peak speed over a short distance as if the motion never braked."""
     return _ramps(t, distance, min(v_max, sqrt(2.0 * distance * a_max)), a_max)
 
 
 def _ramps(t: float, distance: float, v_max: float, a_max: float) -> tuple[float, float, float]:
-    """The trapezoid whose speed is v_max, whether its ramps have room or not."""
+    """The trapezoid whose speed is v_max, even if there is no room for its ramps."""
     ramp = v_max / a_max
     duration = distance / v_max + ramp
     if t < 0.0:
@@ -84,7 +84,7 @@ def _ramps(t: float, distance: float, v_max: float, a_max: float) -> tuple[float
 def limits_on_s(
     t: float, distance: float, v_max: float, a_max: float
 ) -> tuple[float, float, float]:
-    """Takes the limits for limits of s, so the way's length does not matter."""
+    """Takes the limits as limits of s, so the length of the path does not matter."""
     from .answers import trapezoid
 
     return trapezoid(t, 1.0, v_max, a_max)
@@ -106,7 +106,7 @@ def height_of_the_centre(s: float, start: Any, centre: Any) -> lk.Sample:
 
 
 def starts_at_angle_zero(s: float, start: Any, centre: Any) -> lk.Sample:
-    """Forgets the angle at which the start stands."""
+    """Forgets the angle of the start."""
     p, c = np.array(start, dtype=float), np.array(centre, dtype=float)
     r, w = float(np.hypot(*(p - c)[:2])), 2.0 * pi
     out = r * np.array([cos(w * s), sin(w * s), 0.0])
@@ -115,7 +115,7 @@ def starts_at_angle_zero(s: float, start: Any, centre: Any) -> lk.Sample:
 
 
 def rates_without_two_pi(s: float, start: Any, centre: Any) -> lk.Sample:
-    """Derivatives by the angle, not by s: the inner derivative is missing."""
+    """Derivatives with respect to the angle, without the inner derivative."""
     x, dx, ddx = circle(s, start, centre)
     return lk.Sample(x, dx / (2.0 * pi), ddx / (4.0 * pi**2))
 
@@ -135,14 +135,14 @@ def forgets_the_square(path: Path, scaling: Scaling, t: float) -> lk.Sample:
 
 
 def time_for_s(path: Path, scaling: Scaling, t: float) -> lk.Sample:
-    """Asks the path at t instead of at s(t)."""
+    """Evaluates the path at t instead of at s(t)."""
     _, ds, dds = scaling(t)
     x, dx, ddx = path(t)
     return lk.Sample(x, dx * ds, ddx * ds**2 + dx * dds)
 
 
 def sums_through_the_segment(durations: Sequence[float], t: float) -> tuple[int, float]:
-    """Takes off the segment's own duration too (the report's equation 15)."""
+    """Subtracts the segment's own duration, too (the report's equation 15)."""
     index, total = 0, durations[0]
     while index < len(durations) - 1 and t >= total:
         index += 1
@@ -193,7 +193,7 @@ def still_but_accelerated(t: float, duration: float) -> tuple[float, float, floa
 
 
 def way_for_s(t: float, distance: float, v_max: float, a_max: float) -> tuple[float, float, float]:
-    """The way in metres, never divided by its length."""
+    """The distance in metres, never divided by the length of the path."""
     from .answers import trapezoid
 
     s, ds, dds = trapezoid(t, distance, v_max, a_max)
@@ -201,7 +201,7 @@ def way_for_s(t: float, distance: float, v_max: float, a_max: float) -> tuple[fl
 
 
 def clockwise(s: float, start: Any, centre: Any) -> lk.Sample:
-    """Goes round the other way."""
+    """Goes round in the opposite direction."""
     x, dx, ddx = circle(-s, start, centre)
     return lk.Sample(x, -dx, ddx)
 
@@ -219,12 +219,12 @@ def half_an_arctangent(s: float, start: Any, centre: Any) -> lk.Sample:
 
 
 def arccosine_of_the_start(s: float, start: Any, centre: Any) -> lk.Sample:
-    """The angle from its cosine, as if no start lay on the side of smaller y."""
+    """The angle from its cosine, which is wrong for a start with smaller y than the centre."""
     return circle(s, [start[0], centre[1] + abs(start[1] - centre[1]), start[2]], centre)
 
 
 def still_by_s(path: Path, scaling: Scaling, t: float) -> lk.Sample:
-    """The path at s(t), its derivatives still those by s."""
+    """The path at s(t), but with the derivatives with respect to s."""
     return path(scaling(t)[0])
 
 
@@ -236,7 +236,7 @@ def schedule_twice(path: Path, scaling: Scaling, t: float) -> lk.Sample:
 
 
 def starts_anew_after_the_end(durations: Sequence[float], t: float) -> tuple[int, float]:
-    """Takes every duration off, so that after the end the last segment begins again."""
+    """Subtracts every duration, so that after the end the last segment starts again."""
     for index, duration in enumerate(durations):
         if t < duration:
             return index, t
@@ -246,19 +246,19 @@ def starts_anew_after_the_end(durations: Sequence[float], t: float) -> tuple[int
 
 @dataclass(frozen=True)
 class Bang:
-    """Bang-bang with its parts weighed: 1 is right, 0 left out, -1 reversed.
+    """Bang-bang with weighted terms; 1 is right, 0 omits a term, -1 reverses it.
 
     Attributes:
-        a: Of the acceleration 4 / T^2.
-        power: Of T in it.
-        half: Of the one halves in s.
-        ds: Of the speed while braking.
-        dds: Of the acceleration while braking.
-        before: Whether it rests before the start.
+        a: Factor of the acceleration 4 / T^2.
+        power: Power of T in the acceleration.
+        half: Factor of the halves in s.
+        ds: Factor of the speed while braking.
+        dds: Factor of the acceleration while braking.
+        before: Whether the motion rests before the start.
         after: Whether it rests after the end.
-        end: Where it rests then.
-        left: Seconds that are left, of t and T.
-        brake: (s, ds, dds) while braking, of t, T and a; None takes the right ones.
+        end: The value at which it rests after the end.
+        left: The seconds that are left, given t and T.
+        brake: (s, ds, dds) while braking, given t, T and a; None takes the right ones.
     """
 
     a: float = 1.0
@@ -300,25 +300,25 @@ def speed_of_the_middle_kept(t: float, T: float, a: float) -> tuple[float, float
 
 
 def half_the_way_lost(t: float, T: float, a: float) -> tuple[float, float, float]:
-    """The way of the second half alone."""
+    """Only the distance of the second half."""
     since = t - T / 2.0
     return a * T / 2.0 * since - a * since**2 / 2.0, a * (T - t), -a
 
 
 @dataclass(frozen=True)
 class Ramps:
-    """The trapezoid with its parts weighed: 1 is right, 0 left out, -1 reversed.
+    """The trapezoid with weighted terms; 1 is right, 0 omits a term, -1 reverses it.
 
     Attributes:
-        ramp: Of the ramp in the duration.
-        offset: Of half the ramp, by which the cruise is late.
-        half: Of the one half in the ramps' way.
-        ds: Of the speed while braking.
-        dds: Of the acceleration while braking.
-        top: Of the peak speed over a short distance.
-        reach: Of the shortest way on which v_max is reached.
-        cruise: Acceleration while cruising, as a share of a_max.
-        brakes: Whether it brakes at all.
+        ramp: Factor of the ramp in the duration.
+        offset: Factor of half the ramp, by which the cruise is late.
+        half: Factor of the half in the length of the ramps.
+        ds: Factor of the speed while braking.
+        dds: Factor of the acceleration while braking.
+        top: Factor of the peak speed over a short distance.
+        reach: Factor of the shortest distance on which v_max is reached.
+        cruise: The acceleration while cruising, as a share of a_max.
+        brakes: Whether the motion brakes at all.
     """
 
     ramp: float = 1.0
@@ -356,17 +356,17 @@ class Ramps:
 
 @dataclass(frozen=True)
 class Spoke:
-    """The circle by angles, with its parts weighed: 1 is right, 0 left out, -1 reversed.
+    """The circle by angles, with weighted terms; 1 is right, 0 omits a term, -1 reverses it.
 
     Attributes:
-        start: Of the start's angle.
-        rates: Of the start's angle in the derivatives.
-        turn: Of the 2 pi.
-        radius: Of the radius.
-        power: Of the radius.
-        centre: Of the centre.
-        about_start: Whether it goes round the start.
-        mirrored: Whether sine and cosine change places.
+        start: Factor of the start's angle.
+        rates: Factor of the start's angle in the derivatives.
+        turn: Factor of 2 pi.
+        radius: Factor of the radius.
+        power: Power of the radius.
+        centre: Factor of the centre.
+        about_start: Whether the circle is around the start.
+        mirrored: Whether sine and cosine are exchanged.
     """
 
     start: float = 1.0
@@ -400,16 +400,16 @@ class Spoke:
 
 @dataclass(frozen=True)
 class Chained:
-    """The chain rule with its parts weighed: 1 is right, 0 left out, -1 reversed.
+    """The chain rule with weighted terms; 1 is right, 0 omits a term, -1 reverses it.
 
     Attributes:
-        bend: Of ddx ds^2.
-        along: Of dx dds.
+        bend: Factor of ddx ds^2.
+        along: Factor of dx dds.
         velocity: Power of ds in the velocity.
-        late: Of dx ds in the acceleration, which does not belong there.
-        cross: Of ddx dds, which does not belong there.
-        plain: Whether the acceleration is the path's.
-        dds_first: Whether ds and dds change places.
+        late: Factor of dx ds in the acceleration, which does not belong there.
+        cross: Factor of ddx dds, which does not belong there.
+        plain: Whether the acceleration is that of the path.
+        dds_first: Whether ds and dds are exchanged.
     """
 
     bend: float = 1.0
@@ -432,15 +432,15 @@ class Chained:
 
 @dataclass(frozen=True)
 class Segments:
-    """Segments in a row, with other ends.
+    """A sequence of segments with other rules at their ends.
 
     Attributes:
-        joint: Whether the earlier one is on where two meet.
-        local: What is given of the time, of t, when it began and how long it lasts.
-        after: (index, local_time) after the end, of n, t and the last duration; None is right.
-        before: The same before the start.
-        first: The index of the first one.
-        swapped: Whether the two answers change places.
+        joint: Whether the earlier segment is active where two meet.
+        local: The local time, given t and the start and the duration of the segment.
+        after: (index, local_time) after the end, given n, t and the last duration; None is right.
+        before: (index, local_time) before the start, given the same.
+        first: The index of the first segment.
+        swapped: Whether the two answers are exchanged.
     """
 
     joint: bool = False
@@ -451,7 +451,7 @@ class Segments:
     swapped: bool = False
 
     def __call__(self, durations: Sequence[float], t: float) -> Any:
-        """Which one, and for how long."""
+        """The segment, and the time in it."""
         n, begun, found = len(durations), 0.0, (0, t)
         if t < 0.0 and self.before:
             return self.before(n, t, durations[0])

@@ -1,4 +1,4 @@
-"""What notebook 01 asks."""
+"""The questions of notebook 01."""
 
 from __future__ import annotations
 

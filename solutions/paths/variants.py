@@ -1,4 +1,4 @@
-"""Right answers of notebook 01, in another form."""
+"""Right answers to notebook 01 in other forms."""
 
 from __future__ import annotations
 
@@ -58,7 +58,7 @@ def circle_by_rotation(s: float, start: Any, centre: Any) -> Any:
 
 
 def circle_tuple(s: float, start: Any, centre: Any) -> Any:
-    """Polar, a plain tuple of lists."""
+    """Polar coordinates, as a tuple of lists."""
     r = np.hypot(start[0] - centre[0], start[1] - centre[1])
     a = np.arctan2(start[1] - centre[1], start[0] - centre[0]) + 2 * np.pi * s
     w = 2 * np.pi
@@ -83,7 +83,7 @@ def segment_by_searchsorted(durations: Sequence[float], t: float) -> Any:
 
 
 def segment_by_walking(durations: Sequence[float], t: float) -> Any:
-    """Walks along until the segment's end lies ahead."""
+    """Walks along the segments until one ends later."""
     begun = 0.0
     for k, duration in enumerate(durations):
         if t < begun + duration or k == len(durations) - 1:
@@ -93,8 +93,8 @@ def segment_by_walking(durations: Sequence[float], t: float) -> Any:
 
 
 class Witness:
-    """A callable object, just after the middle."""
+    """A callable object that returns a time just after the middle."""
 
     def __call__(self, theta: float, duration: float) -> float:
-        """Half of the duration, and a little."""
+        """A little more than half of the duration."""
         return 0.5 * duration * (1 + 1e-9)

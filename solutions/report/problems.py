@@ -1,4 +1,4 @@
-"""What notebook 08 asks of functions: nothing; people mark it."""
+"""Notebook 08 has no questions for tests, because people mark it."""
 
 from labkit.course.authoring.problem import Problem
 

@@ -1,1 +1,1 @@
-"""Studies of the course's makers: the reference controllers, the tasks, and what compares them."""
+"""Studies by the authors of the course: reference controllers, tasks and comparisons."""

@@ -68,7 +68,7 @@ def main() -> None:
     text = tables(rows) + claims(judged)
     (folder / "tables.md").write_text(text)
     drawn, shot = [], []
-    if not options.no_pictures:  # on this machine, for they write files
+    if not options.no_pictures:  # on this machine, because they write files
         where["dask"] = None
         drawn = done(pictures.draw, pictures.grid(folder), "figures")
         shot = done(pictures.shoot, pictures.film_grid(folder), "films")
@@ -78,7 +78,7 @@ def main() -> None:
         "rows": rows,
         "gains": gains,
         "noise": noise,
-        "verdicts": [v.told() for v in judged],
+        "verdicts": [v.as_data() for v in judged],
         "figures": [_without(row, "folder") for row in drawn],
         "films": [_without(row, "folder") for row in shot],
     }

@@ -1,8 +1,8 @@
-"""Which verdicts hang on which assumption: ``python -m solutions.study.assumptions``.
+"""Which verdicts depend on which assumption: ``python -m solutions.study.assumptions``.
 
-Each number of the plant that nobody measured goes to the least and to the most that is plausible
-(`labkit.plant.EVIDENCE`), alone, the gains staying as they are; then every method follows the
-line again.  A verdict that turns over hangs on that number.
+Each number of the plant that nobody measured is set to the least and to the largest plausible value
+(`labkit.plant.EVIDENCE`), one at a time and with the same gains; then every method follows the line
+again.  If a verdict changes, it depends on that number.
 """
 
 from __future__ import annotations
@@ -27,16 +27,16 @@ from .grid import Meter, Row, cells, pick, work_through
 KEPT = Path(__file__).with_name("assumptions.json")
 CONTROLLERS = (*FIVE, BASELINE)
 TOGETHER = ("joint_damping",)
-"""Belongs to another number, with which it goes."""
+"""Numbers that change together with another one."""
 GAINS = (10.0, 14.0, 20.0, 30.0, 45.0, 60.0, 100.0)
-"""Of the position mode, in [1/s]: what no source gives and much hangs on."""
+"""Gains of the position mode, in [1/s], which no source gives and on which much depends."""
 CLAIMS: Mapping[str, tuple[Sequence[str], Sequence[str]]] = {
     "joint velocity over workspace velocity": (("workspace velocity",), ("joint velocity",)),
     "joint impedance over workspace impedance": (("workspace impedance",), ("joint impedance",)),
     "the three over both impedances": (IMPEDANCE, THREE),
     **{f"built-in method over {controller}": ((controller,), (BASELINE,)) for controller in FIVE},
 }
-"""The first's error minus the second's: positive where the claim, "better than", is true."""
+"""For each claim "b over a", the controllers a and b; it is true if a has the larger error."""
 
 
 def plants() -> dict[str, Plant]:
@@ -61,7 +61,7 @@ def trial(controller: str, assumption: str, seed: int) -> Mapping[str, Any]:
 
 
 def gain(controller: str, position_gain: float, seed: int) -> Mapping[str, Any]:
-    """The same with a gain of the position mode."""
+    """The job for one gain of the position mode; see `trial`."""
     return _line(controller, replace(BAXTER, position_gain=position_gain), seed)
 
 
@@ -86,7 +86,7 @@ def grid(seeds: int) -> list[Row]:
 
 
 def difference(rows: Sequence[Row], claim: str, **names: Any) -> float | None:
-    """What speaks for a claim, mean over the seeds, in [mm]; None if an arm was lost."""
+    """The mean difference for a claim over the seeds, in [mm]; None if a run was stopped."""
     sides = []
     for controllers in CLAIMS[claim]:
         here = [
@@ -98,8 +98,8 @@ def difference(rows: Sequence[Row], claim: str, **names: Any) -> float | None:
     return sides[0] - sides[1]
 
 
-def kept() -> Mapping[str, list[Row]]:
-    """The rows that were recorded: "assumptions" and "gains"."""
+def recorded() -> Mapping[str, list[Row]]:
+    """The recorded rows, under "assumptions" and "gains"."""
     found: Mapping[str, list[Row]] = json.loads(KEPT.read_text())
     return found
 
@@ -127,6 +127,6 @@ def main() -> None:
 
 
 if __name__ == "__main__":
-    from solutions.study import assumptions  # by its own name, so that workers find the jobs
+    from solutions.study import assumptions  # by its full name, so that workers find the jobs
 
     assumptions.main()

@@ -1,10 +1,10 @@
 """The campaign on every engine: ``python -m solutions.study.both_engines [--seeds 5] [--compare]``.
 
-Each engine's campaign goes to ``build/ENGINE/campaign.json``, and each but the first is compared
-with the first.  Two agree if every claim has the same verdict, over the tasks and on each of them,
-and every number that the comparison shows is the same to 5 % or to 0.1 mm (for times, to a tick of
-the clock).  The exit status is 1 if they do not.  The outcome goes to engines.json beside this
-file, for the book.
+The campaign of each engine is written to ``build/ENGINE/campaign.json``, and each but the first is
+compared with the first.  Two engines agree if every claim has the same verdict, over all tasks and
+on each of them, and if the numbers in the comparison differ by at most 5 % or 0.1 mm (times by a
+tick of the clock).  If they do not agree, the exit status is 1.  The outcome is written to
+engines.json beside this file, for the book.
 """
 
 from __future__ import annotations
@@ -26,16 +26,16 @@ from labkit.sim import ENGINES, installed
 from .claims import TICK
 
 KEPT = Path(__file__).with_name("engines.json")
-"""What the book tells of the last comparison."""
+"""The outcome of the last comparison, for the book."""
 SHARE, LEAST = 0.05, {"s": TICK}
-"""How far a number may differ: relative to the larger, or in its unit (0.1 for all others)."""
+"""How much a number may differ, relative to the larger one or in its unit (default 0.1)."""
 
 
 def engines() -> list[str]:
     """The engines to compare: all that are installed.
 
     Raises:
-        LabkitError: Only one is.
+        LabkitError: Only one engine is installed.
     """
     found = installed()
     if len(found) < 2:
@@ -47,11 +47,11 @@ def engines() -> list[str]:
 
 
 def differences(a: Mapping[str, Any], b: Mapping[str, Any]) -> Iterator[str]:
-    """In a sentence each, what two campaigns do not agree on.
+    """A sentence for each number or verdict on which two campaigns do not agree.
 
     Args:
-        a: Of one engine, as `campaign` writes it.
-        b: Of the other.
+        a: The campaign of one engine, as `campaign` writes it.
+        b: The campaign of the other engine.
     """
     for one, other in zip(a["verdicts"], b["verdicts"], strict=True):
         for x, y in zip((one["overall"], *one["tasks"]), (other["overall"], *other["tasks"]),
@@ -69,7 +69,7 @@ def differences(a: Mapping[str, Any], b: Mapping[str, Any]) -> Iterator[str]:
 
 
 def agreement(a: Mapping[str, Any], b: Mapping[str, Any]) -> dict[str, float]:
-    """How many claims were judged, how many alike, on how many runs, and the farthest errors."""
+    """The numbers of claims, of equal verdicts and of runs, and the two errors farthest apart."""
     pairs = list(zip(a["verdicts"], b["verdicts"], strict=True))
     means = [_means(found["rows"]) for found in (a, b)]
     alike = sum(x["overall"]["outcome"] == y["overall"]["outcome"] for x, y in pairs)
@@ -79,7 +79,7 @@ def agreement(a: Mapping[str, Any], b: Mapping[str, Any]) -> dict[str, float]:
 
 
 def _farthest(told: Mapping[str, float]) -> tuple[float, float]:
-    """By this the pair of engines is chosen that the book tells of: the worst."""
+    """The key by which the worst pair of engines is chosen for the book."""
     return told["claims"] - told["alike"], told["farthest_mm"]
 
 
@@ -88,7 +88,7 @@ def _apart(x: float, y: float, least: float) -> bool:
 
 
 def _means(rows: list[dict[str, Any]]) -> dict[tuple[str, ...], float]:
-    """Each number of the comparison's tables: its mean over the seeds."""
+    """The mean over the seeds of each number in the tables of the comparison."""
     cells: dict[tuple[str, ...], list[float]] = {}
     for row in rows:
         for name in ("late_rms_mm", "late_max_mm"):
@@ -98,7 +98,7 @@ def _means(rows: list[dict[str, Any]]) -> dict[tuple[str, ...], float]:
 
 
 def main() -> int:
-    """Run all, compare, say what differs."""
+    """Run the campaigns, compare them, and print the differences."""
     parser = argparse.ArgumentParser(
         prog="python -m solutions.study.both_engines", description=__doc__
     )

@@ -1,9 +1,9 @@
 """The report's comparison, run honestly: ``make campaign``.
 
-Seven methods follow every task, on the ideal arm and on Baxter's, over seeds.  A seed draws where
-the arm begins (about 10 mm off the path), the measurement noise and the ticks that come late; one
-seed means the same start for every method, so their differences can be taken in pairs.  The gains
-are in `gains`; `claims` judges what the report claimed of the outcome.
+Seven methods follow every task, on the ideal arm and on Baxter's, with several seeds.  A seed
+decides where the arm starts (about 10 mm off the path), the measurement noise and which ticks are
+late.  With one seed every method starts at the same place, so differences can be taken in pairs.
+The gains are in `gains`; `claims` judges what the report claimed about the outcome.
 """
 
 from __future__ import annotations
@@ -55,12 +55,12 @@ FIVE = (
     "joint impedance",
     "workspace impedance",
 )
-"""The report's order: figures 4 to 7, 8 to 11, and so on."""
+"""The order of the report: figures 4 to 7, 8 to 11, and so on."""
 CONTROLLERS = (*FIVE, FEED_FORWARD, BASELINE)
 
 
 def grid(seeds: int, controllers: Sequence[str] = CONTROLLERS) -> list[dict[str, Any]]:
-    """The campaign's cells: 7 controllers, every task, 2 plants, the seeds."""
+    """The cells of the campaign: 7 controllers, all tasks, 2 plants, the seeds."""
     return cells(controller=controllers, task=TASKS, plant=("ideal", "baxter"), seed=range(seeds))
 
 
@@ -70,7 +70,7 @@ def _chase(kind: str, seed: int) -> Chase:
 
 
 def chase(controller: str, seed: int) -> Chase:
-    """The tag task: of the report's kind for the baseline, which cannot follow a moving goal."""
+    """The tag task; for the baseline, which cannot follow a moving goal, as in the report."""
     return _chase(BASELINE if controller == BASELINE else "", seed)
 
 
@@ -82,7 +82,7 @@ def _path(name: str) -> Task:
 
 
 def task_of(name: str, controller: str, seed: int) -> Task:
-    """A task by name; made once, for its inverse kinematics takes a moment."""
+    """A task by name, made once, because its inverse kinematics takes a moment."""
     if name == "tag":
         return chase(controller, seed).task
     return _path(name)
@@ -90,8 +90,8 @@ def task_of(name: str, controller: str, seed: int) -> Task:
 
 @cache
 def built_in(name: str) -> Any:
-    """The baseline's own schedule along a task's path, planned as MoveIt does."""
-    from . import baseline  # an extra that only these runs need
+    """The schedule of the baseline along the path of a task, planned as MoveIt does."""
+    from . import baseline  # needs an extra, only for these runs
 
     goal = _path(name)
     scene = baseline.PlanningScene(goal.side, (Table(),))
@@ -99,7 +99,7 @@ def built_in(name: str) -> Any:
 
 
 def feed_forward(state: State, target: Sample) -> JointVelocity:
-    """The target's speeds and nothing else: what happens without looking."""
+    """Command the speeds of the target and nothing else, that is, no feedback."""
     return JointVelocity(target.velocity)
 
 
@@ -115,7 +115,7 @@ def _tuned(controller: str, plant: Plant, side: Any) -> Candidate:
 
 
 def joints(controller: str, task: str, seed: int) -> Any:
-    """The joint angles that belong to a controller's target, a function of time."""
+    """The joint angles for the target of a controller, as a function of time."""
     planned = controller == BASELINE and task != "tag"
     return built_in(task) if planned else task_of(task, controller, seed).joints
 
@@ -130,7 +130,7 @@ def perform(controller: str, task: str, plant: str, seed: int) -> Log:
 
 
 def numbers(controller: str, task: str, plant: str, seed: int) -> Mapping[str, Any]:
-    """The campaign's job: one run, in numbers."""
+    """The job of the campaign: make one run and return its numbers."""
     log = perform(controller, task, plant, seed)
     told = measured(log, joints(controller, task, seed))
     if task == "tag":
@@ -146,11 +146,11 @@ def measured(log: Log, wanted: Any) -> dict[str, Any]:
 
     Args:
         log: The run.
-        wanted: The joint angles that belong to its target, a function of time.
+        wanted: The joint angles for its target, as a function of time.
 
     Returns:
-        The fields of `metrics.Summary`; the error of tracking alone, after the first second; the
-        last error; the joints' RMS error; and a digest of the motion, to compare bit for bit.
+        The fields of `metrics.Summary`; the tracking error after the first second; the last error;
+        the RMS error of the joints; and a digest of the motion, for a comparison bit by bit.
     """
     model = Model(log.robot, log.plant)
     e, late = metrics.tip_error(log, model), log.t >= 1.0
@@ -166,7 +166,7 @@ def measured(log: Log, wanted: Any) -> dict[str, Any]:
     return {key: None if value == math.inf else value for key, value in told.items()}
 
 
-# Two questions more, about gains
+# Two more questions, about gains
 
 
 def gain_grid(seeds: int) -> list[dict[str, Any]]:
@@ -190,7 +190,7 @@ def converge(Kp: float, plant: str, seed: int) -> Mapping[str, float]:
 
 
 def noise_grid(seeds: int) -> list[dict[str, Any]]:
-    """Cells that ask what keeps the derivative gain small."""
+    """Cells that ask what limits the derivative gain."""
     plants = ("baxter", "baxter without noise")
     return cells(Kd=(0.0, 0.1, 0.5, 1.0, 2.0, 3.0), plant=plants, seed=range(seeds))
 
@@ -229,7 +229,7 @@ TABLES = {
 
 
 def tables(rows: list[Row]) -> str:
-    """The campaign in Markdown: a table for each number and plant."""
+    """The campaign in Markdown, with a table for each number and plant."""
     seeds = len({row["seed"] for row in rows})
     parts = [
         f"# Campaign, {seeds} seed{'s' * (seeds > 1)}\n\nMean over the seeds [least, largest]."

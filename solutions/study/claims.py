@@ -1,16 +1,16 @@
-"""What the report claimed of its controllers, judged by paired differences.
+"""Judge what the report claimed about its controllers by paired differences.
 
 A pair is one task and one seed, run with both methods from the same start.  Seeds of one task do
-not count as tasks: they draw the start and the noise anew, and nothing else.  So each task has
-a verdict of its own, over its seeds, and what is said of tracking in general has the tasks as its
-units, each by the mean over its seeds.  A difference is *held* where its interval lies above zero,
-*did not hold* where it lies below, else *undecided*.  Twelve claims at 95 % each would decide one
-in two by luck alone: the intervals of a family of m claims are those of 1 - 0.05 / m (Bonferroni),
-so 95 % is for all.
+not count as tasks, because they only change the start and the noise.  So each task has its own
+verdict, over its seeds, and a verdict on tracking in general has the tasks as its units, each with
+the mean over its seeds.  A claim *held* if the interval of the difference is above zero, *did not
+hold* if it is below, and is *undecided* otherwise.  Of twelve claims at 95 % each, one would be
+decided by chance in every second campaign, so the intervals for a family of m claims have the level
+1 - 0.05 / m (Bonferroni), which makes 95 % hold for the whole family.
 
 A task counts for a claim if both methods received the same target.  The built-in method cannot
-follow a goal that moves, so on the tag it receives another one, and claims about it rest on the
-three paths.
+follow a moving goal, so it receives another target on the tag, and claims about it are judged on
+the three paths.
 """
 
 from __future__ import annotations
@@ -30,11 +30,11 @@ from .grid import Row, pick
 THREE = ("workspace velocity", "joint velocity", "joint torque")
 IMPEDANCE = ("joint impedance", "workspace impedance")
 TICK = 0.005
-"""What the clock of a run at 200 Hz can tell apart, in [s]."""
+"""The resolution of the clock of a run at 200 Hz, in [s]."""
 
 
 class Outcome(Enum):
-    """What became of a claim."""
+    """The verdict on a claim."""
 
     HELD = "held"
     DID_NOT_HOLD = "did not hold"
@@ -43,13 +43,13 @@ class Outcome(Enum):
 
 @dataclass(frozen=True)
 class Interval:
-    """A mean difference and how sure it is.
+    """A mean difference and its confidence interval.
 
     Attributes:
-        of: What its units are: a task's name, for its seeds; "tasks", or "seeds" of one condition.
-        mean: Of the differences.
-        half_width: Of the interval of the mean.
-        units: How many differences.
+        of: What the units are: the name of a task, for its seeds; "tasks"; or "seeds".
+        mean: The mean of the differences.
+        half_width: The half width of the interval of the mean.
+        units: The number of differences.
     """
 
     of: str
@@ -59,13 +59,13 @@ class Interval:
 
     @property
     def outcome(self) -> Outcome:
-        """Which side of zero it is on."""
+        """The verdict, by the side of zero on which the interval is."""
         if abs(self.mean) <= self.half_width:
             return Outcome.UNDECIDED
         return Outcome.HELD if self.mean > 0.0 else Outcome.DID_NOT_HOLD
 
-    def told(self) -> dict[str, Any]:
-        """As JSON data, the outcome in words."""
+    def as_data(self) -> dict[str, Any]:
+        """The interval as JSON data, with the outcome in words."""
         return {**vars(self), "outcome": self.outcome.value}
 
 
@@ -74,10 +74,10 @@ class Finding:
     """A claim and its evidence.
 
     Attributes:
-        claim: In the report's sense; a positive difference speaks for it.
-        unit: Of the differences.
-        overall: Over the tasks; over the seeds where there is one condition alone.
-        tasks: Each task alone, over its seeds.
+        claim: The claim, for which a positive difference is evidence.
+        unit: The unit of the differences.
+        overall: The interval over the tasks, or over the seeds if there is only one condition.
+        tasks: The interval of each task over its seeds.
     """
 
     claim: str
@@ -93,25 +93,25 @@ class Finding:
             f"{x.units} {x.of}{'; alone: ' * bool(alone)}{alone})"
         )
 
-    def told(self) -> dict[str, Any]:
-        """As JSON data."""
-        alone = [task.told() for task in self.tasks]
+    def as_data(self) -> dict[str, Any]:
+        """The finding as JSON data."""
+        alone = [task.as_data() for task in self.tasks]
         return {
             "claim": self.claim,
             "unit": self.unit,
-            "overall": self.overall.told(),
+            "overall": self.overall.as_data(),
             "tasks": alone,
         }
 
 
 def interval(of: str, differences: Sequence[float], claims: int, least: float = 0.0) -> Interval:
-    """Student's interval of the mean difference, sure enough for ``claims`` of them together.
+    """Student's interval of the mean difference, at a level for ``claims`` of them together.
 
     Args:
         of: What the units are.
-        differences: One for each unit.
+        differences: One difference for each unit.
         claims: How many claims are judged together.
-        least: Half width below which no interval can be, for want of a finer measurement.
+        least: The least half width, given by the resolution of the measurement.
 
     Raises:
         OutOfRange: There are fewer than two units.
@@ -135,13 +135,13 @@ def judge(
     claims: int = 1,
     least: float = 0.0,
 ) -> Finding:
-    """Does ``a`` exceed ``b``?
+    """Judge whether ``a`` exceeds ``b``.
 
     Args:
-        claim: What a positive difference would say.
-        unit: Of the numbers.
+        claim: The claim for which a positive difference is evidence.
+        unit: The unit of the numbers.
         a: A number for each pair; the keys are (seed, task).
-        b: Its partner, under the same keys.
+        b: The numbers to subtract, under the same keys.
         claims: How many claims are judged together.
         least: See `interval`.
 
@@ -164,9 +164,9 @@ def verdicts(rows: Sequence[Row], gains: Sequence[Row], noise: Sequence[Row]) ->
     """The report's claims (sections 5.2 and 6) from the campaign's rows.
 
     Args:
-        rows: Of `campaign.numbers`.
-        gains: Of `campaign.converge`.
-        noise: Of `campaign.derivative`.
+        rows: The rows of `campaign.numbers`.
+        gains: The rows of `campaign.converge`.
+        noise: The rows of `campaign.derivative`.
     """
     planned = [row for row in rows if row["task"] != "tag"]
     asked: list[tuple[str, Sequence[Row], tuple[str, ...], tuple[str, ...]]] = [
@@ -224,7 +224,7 @@ def verdicts(rows: Sequence[Row], gains: Sequence[Row], noise: Sequence[Row]) ->
 
 
 def _mean(rows: Iterable[Row], controllers: Sequence[str]) -> dict[Any, float]:
-    """Error of tracking on Baxter's plant, mean over some controllers, for each (seed, task)."""
+    """The tracking error on Baxter's plant, mean over controllers, for each (seed, task)."""
     here = [
         row
         for row in pick(rows, plant="baxter")
@@ -236,7 +236,7 @@ def _mean(rows: Iterable[Row], controllers: Sequence[str]) -> dict[Any, float]:
 
 
 def _by_seed(rows: Iterable[Row], number: str, **names: Any) -> dict[Any, float]:
-    """A number of one condition, for each (seed, "")."""
+    """A number of a single condition, for each (seed, "")."""
     return {(r["seed"], ""): r[number] for r in pick(rows, **names) if not r["failed"]}
 
 

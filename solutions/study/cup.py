@@ -16,7 +16,7 @@ def law(name: str, model: Model) -> Controller:
 
 
 def score(name: str, seed: int) -> float:
-    """What a law scores, in [mm]."""
+    """The score of a law, in [mm]."""
     return round(cup_run(lambda model: law(name, model), seed).score, 2)
 
 

@@ -1,7 +1,7 @@
-"""Impedance you can feel: push the arm, let it run into a wall, tie it to a spring.
+"""Experiments on impedance: push the arm, let it run into a wall, tie it to a spring.
 
-Each experiment sends the same contenders through the same thing and gives frozen results to draw:
-a stiff position controller, computed torque, and the two impedance controllers.
+Each experiment makes the same contenders do the same and returns frozen results for figures.  The
+contenders are a stiff position controller, computed torque, and the two impedance controllers.
 """
 
 from __future__ import annotations
@@ -43,14 +43,14 @@ CONTENDERS = ("position", "joint torque", "joint impedance", "workspace impedanc
 
 @dataclass(frozen=True, eq=False)
 class Encounter:
-    """One contender's meeting with something.
+    """The run of one contender in an experiment.
 
     Attributes:
-        name: Of the controller.
+        name: The name of the controller.
         t: Time, shape (N,) in [s].
         displacement: Actual minus target position of the tip, world axes, shape (N, 3) in [m].
         turn: Actual minus target orientation, world axes, shape (N, 3) in [rad].
-        wrench: On the arm, as its torque sensors tell, world axes, shape (N, 6) in [N], [N m].
+        wrench: The wrench on the arm by its torque sensors, world axes, shape (N, 6) in [N], [N m].
         log: The run.
     """
 
@@ -82,16 +82,16 @@ def push(
     seed: int = 0,
     names: tuple[str, ...] = CONTENDERS,
 ) -> tuple[Encounter, ...]:
-    """Push the arm while it is to stay where it is.
+    """Push the arm while its target is to stay where it is.
 
     Args:
-        force: On the tip, world axes, shape (3,) in [N].
-        moment: On the tip, world axes, shape (3,) in [N m].
-        duration: Of the push, in [s].
-        rest: How long to go on after it, in [s].
-        plant: What the arm is like.
-        seed: Of its noise.
-        names: Which contenders.
+        force: The force on the tip, world axes, shape (3,) in [N].
+        moment: The moment on the tip, world axes, shape (3,) in [N m].
+        duration: The duration of the push, in [s].
+        rest: How long the run continues after the push, in [s].
+        plant: The plant to drive.
+        seed: The seed of the noise.
+        names: The contenders to compare.
     """
     things = (Push(force, moment, duration=duration),)
     return _meet(things, lambda T: Hold(T, duration + rest), plant, seed, names)
@@ -109,12 +109,12 @@ def wall(
     """Send the tip along x to a place behind a wall, in 2 s, and wait there for 2 s.
 
     Args:
-        gap: From the tip's ball to the wall, in [m].
-        beyond: How far behind the touching place the target ends, in [m].
-        stiffness: Of the wall alone, in [N/m].
-        plant: What the arm is like.
-        seed: Of its noise.
-        names: Which contenders.
+        gap: The distance from the tip's ball to the wall, in [m].
+        beyond: How far beyond the point of contact the target ends, in [m].
+        stiffness: The stiffness of the wall alone, in [N/m].
+        plant: The plant to drive.
+        seed: The seed of the noise.
+        names: The contenders to compare.
     """
     face = the_wall(gap, stiffness)
     way = (gap + beyond) * np.eye(3)[0]
@@ -129,7 +129,7 @@ def the_wall(gap: float = 0.05, stiffness: float = 5_000.0) -> Wall:
 
 
 def predicted_wall_force(face: Wall, K: float, beyond: float) -> float:
-    """What a tip of stiffness ``K`` [N/m] presses with: the springs in series, in [N]."""
+    """The force in [N] of a tip with stiffness ``K`` [N/m]: tip and wall are springs in series."""
     return beyond / (1.0 / K + 1.0 / contact_stiffness(face))
 
 
@@ -144,11 +144,11 @@ def spring(
     """Tie the tip to where it starts and send it away along y, in 2 s, then wait for 2 s.
 
     Args:
-        stiffness: Of the spring, in [N/m].
-        way: How far, in [m].
-        plant: What the arm is like.
-        seed: Of its noise.
-        names: Which contenders.
+        stiffness: The stiffness of the spring, in [N/m].
+        way: The length of the motion, in [m].
+        plant: The plant to drive.
+        seed: The seed of the noise.
+        names: The contenders to compare.
     """
     anchor = Model().pose(Model().robot.ready)[:3, 3]
     return _meet(
@@ -162,13 +162,13 @@ def spring(
 
 @dataclass(frozen=True, eq=False)
 class DeadBand:
-    """How far a tip gives way to pushes of rising force, and where it stays afterwards.
+    """How far pushes of increasing force move a tip, and where it stays afterwards.
 
     Attributes:
-        force: Each push, shape (k,) in [N].
-        pushed: Displacement along it at the end of the push, shape (k,) in [m].
-        released: Displacement along it long after the push, shape (k,) in [m].
-        stiffness: What the controller was asked for, in [N/m].
+        force: The pushes, shape (k,) in [N].
+        pushed: The displacement along each push at its end, shape (k,) in [m].
+        released: The displacement along each push long after it, shape (k,) in [m].
+        stiffness: The stiffness set in the controller, in [N/m].
     """
 
     force: Array
@@ -186,17 +186,17 @@ class DeadBand:
 def dead_band(
     plant: Plant, *, axis: int = 2, forces: Any = (0.5, 1.0, 2.0, 4.0, 8.0), seed: int = 0
 ) -> DeadBand:
-    """Push the workspace impedance controller along one axis for 2 s, harder and harder.
+    """Push an arm under workspace impedance control along one axis for 2 s, harder each time.
 
-    Dry friction holds a joint until the torque on it is larger: below that nothing gives way, and
-    after a push the spring leaves the joint where friction can hold it.  Noise in the measured
-    speeds shakes the joints through the damping and so narrows the band.
+    Dry friction holds a joint until the torque on it is larger.  Smaller pushes do not move the
+    tip, and after a push the spring leaves the joint where friction can hold it.  Noise in the
+    measured speeds shakes the joints through the damping, which narrows the band.
 
     Args:
-        plant: What the arm is like.
+        plant: The plant to drive.
         axis: 0, 1 or 2 for x, y, z.
         forces: The pushes, shape (k,) in [N].
-        seed: Of the plant's noise.
+        seed: The seed of the noise.
     """
     along = np.eye(3)[axis]
     name = "workspace impedance"
@@ -215,7 +215,7 @@ def dead_band(
 
 
 def position(state: State, target: Sample) -> JointPosition:
-    """Baxter's position mode, told where to be at each tick: as stiff as the motors are strong."""
+    """Baxter's position mode, which is as stiff as the motors are strong."""
     return JointPosition(target.position)
 
 

@@ -1,7 +1,7 @@
-"""A log as a film: what a camera beside the table would have seen (needs imageio-ffmpeg).
+"""Make a film of a log, as a camera beside the table would have seen it (needs imageio-ffmpeg).
 
-The robot is drawn from its meshes by PyBullet's software renderer, frame by frame, with the tip's
-target as a small ball that leaves its trace, and a poster: the picture in the middle of the run.
+PyBullet's software renderer draws the robot from its meshes, frame by frame.  A small ball with a
+trace shows the target of the tip.  A poster is the picture in the middle of the run.
 """
 
 from __future__ import annotations
@@ -18,7 +18,7 @@ from labkit.shapes import Array, as_number
 from labkit.tags.tag import Picture
 
 EYE, AT = (1.7, 1.15, 0.7), (0.45, 0.2, 0.2)
-"""Where the camera stands and what it looks at, world axes, in [m]."""
+"""Where the camera is and what it looks at, world axes, in [m]."""
 LENS = Intrinsics(width=640, height=480, fx=540.0, fy=540.0)
 
 
@@ -33,9 +33,9 @@ def frames(
 
     Args:
         log: The run.
-        rate: Pictures for each second of it.
-        stage: Puts what else is to be seen into the world, such as a tag that moves by its clock.
-        lens: Of the camera.
+        rate: Pictures per second.
+        stage: Adds other objects to the world, such as a tag that moves with its clock.
+        lens: The lens of the camera.
 
     Returns:
         Colours in RGB order, (height, width, 3) each.
@@ -66,8 +66,8 @@ def film(log: Log, path: Path, rate: float = 15.0, **options: Any) -> Path:
     Args:
         log: The run.
         path: The file to write, with the ending ``.mp4``.
-        rate: Pictures for each second.
-        **options: Of `frames`.
+        rate: Pictures per second.
+        **options: Options of `frames`.
 
     Returns:
         The poster's path.
@@ -92,7 +92,7 @@ def _at(t: float, times: Array, rows: Array) -> Array:
 
 
 def _trace(picture: Picture, camera: Camera, places: Array) -> None:
-    """Draw where the target has been, and as a larger dot where it is."""
+    """Draw the trace of the target, and its present place as a larger dot."""
     lens, T_wc = camera.intrinsics, camera.T_wc
     ends = np.linspace(0, len(places) - 1, 4 * lens.width)
     close = np.array([np.interp(ends, np.arange(len(places)), x) for x in places.T]).T
@@ -102,7 +102,7 @@ def _trace(picture: Picture, camera: Camera, places: Array) -> None:
 
 
 def _stamp(picture: Picture, pixels: Any, radius: int) -> None:
-    """Colour the discs about pixels (column, row) as far as they are in the picture."""
+    """Colour the parts in the picture of discs around pixels (column, row)."""
     x, y = np.mgrid[-radius : radius + 1, -radius : radius + 1]
     disc = np.column_stack([x.ravel(), y.ravel()])
     disc = disc[(disc**2).sum(axis=1) <= radius * (radius + 0.5)]

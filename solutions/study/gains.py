@@ -1,9 +1,10 @@
-"""The gains with which the five controllers are compared, and how often each is asked.
+"""The gains with which the five controllers are compared, and the rate of each controller.
 
-Two sets: one for arms whose state is exact and fresh, one for arms that publish it late and noisy,
-as Baxter does.  There a loop must be slower than the age of what it knows: the state is up to 14 ms
-old and a command acts for 5 ms, so bandwidths stay below about 20 rad/s.  The derivative gain of
-the velocity controllers is tuned by `speed_gains`; an ideal drive has no lag, and there it is 0.
+One set of gains is for arms whose state is exact and fresh, the other for arms that publish it
+late and noisy, as Baxter does.  There a loop must be slow compared with the age of its data: the
+state is up to 14 ms old and a command acts for 5 ms, so bandwidths stay below about 20 rad/s.  The
+derivative gain of the velocity controllers is tuned by `speed_gains`; on the ideal arm, whose
+drives do not lag, it is 0.
 """
 
 from __future__ import annotations
@@ -23,12 +24,12 @@ from .workspace_velocity import WorkspaceVelocityPD
 
 @dataclass(frozen=True, eq=False)
 class Candidate:
-    """A controller ready to run.
+    """A controller with its rate and its kind of target.
 
     Attributes:
         controller: The controller.
-        rate: How often to ask it, in [Hz].
-        joints: Whether it follows joint angles; if not, poses.
+        rate: How often the controller is called, in [Hz].
+        joints: Whether the controller follows joint angles; otherwise it follows poses.
     """
 
     controller: Controller
@@ -36,7 +37,7 @@ class Candidate:
     joints: bool
 
     def target(self, model: Model, trajectory: Any, q0: Any) -> Any:
-        """The target it can follow along a trajectory of poses, from joint angles q0, (7,)."""
+        """The target for the controller along a trajectory of poses, from joint angles q0, (7,)."""
         return model.joint_trajectory(trajectory, q0) if self.joints else trajectory
 
 
@@ -44,7 +45,7 @@ def course_controllers(model: Model, plant: Plant | None = None) -> dict[str, Ca
     """The five controllers of the course.
 
     Args:
-        model: What they know of the arm.
+        model: The model of the arm that the controllers use.
         plant: What the arm is like; None takes the model's own plant.
     """
     plant = plant or model.plant
@@ -63,7 +64,7 @@ def course_controllers(model: Model, plant: Plant | None = None) -> dict[str, Ca
 
 
 def variants(model: Model, plant: Plant | None = None) -> dict[str, Candidate]:
-    """The other form of the torque law, and both impedances with an inertia of their own."""
+    """The other form of the torque law, and both impedances with a prescribed inertia."""
     plant = plant or model.plant
     gravity, slow = not plant.gravity_compensation, _slow(plant)
     fast = 200.0 if slow else 1000.0
@@ -87,16 +88,16 @@ def all_controllers(model: Model, plant: Plant | None = None) -> dict[str, Candi
 
 
 def _slow(plant: Plant) -> bool:
-    """Whether the arm's state comes late, seldom or noisy."""
+    """Whether the arm's state is late, infrequent or noisy."""
     return bool(plant.state_rate or plant.state_delay or any(plant.velocity_noise))
 
 
 KP = 3.0
 """Proportional gain of the velocity controllers on the realistic arm, in [1/s]: the report's."""
 KD = 0.6
-"""Derivative gain beside it: what `speed_gains` finds."""
+"""Derivative gain of the velocity controllers on the realistic arm, found by `speed_gains`."""
 
-# Each pair: for fresh states, for late ones.  Stiffness falls towards the wrist with the inertia,
+# The first of each pair is for fresh states.  Stiffness falls towards the wrist with the inertia,
 # which without rotors is below 0.001 kg m^2 at w2.
 _SPEED = ((10.0, 0.0), (KP, KD))  # 1/s, no unit
 _COMPUTED = ((400.0, 40.0), (225.0, 30.0))  # 1/s^2, 1/s

@@ -1,8 +1,8 @@
-"""Many runs: a grid of named cells, each worked through on its own, by any number of workers.
+"""Run a job on every cell of a grid, with any number of workers.
 
-A *cell* names what to do (``{"controller": "joint velocity PD", "seed": 0, ...}``); a *job* is a
-function of those names that gives numbers.  Everything random in a job comes from its cell, so the
-rows are the same bit for bit, whichever worker computes them and in whatever order.
+A *cell* is a set of named parameters (``{"controller": "joint velocity PD", "seed": 0, ...}``); a
+*job* is a function of these parameters that returns numbers.  All randomness in a job comes from
+its cell, so the rows are the same bit for bit, whichever worker computes them, in whatever order.
 """
 
 from __future__ import annotations
@@ -26,13 +26,13 @@ from labkit.shapes import as_number
 Cell = Mapping[str, Any]
 Row = dict[str, Any]
 Job = Callable[..., Mapping[str, Any]]
-"""Takes a cell's names as keyword arguments; a module's function, so that workers find it."""
+"""A module's function, so that workers find it, with a cell's parameters as keyword arguments."""
 Progress = Callable[[int, int], None]
-"""Told how many cells are done, of how many."""
+"""Called with the number of cells that are done, and the number of all cells."""
 
 
 def cells(**axes: Sequence[Any]) -> list[Row]:
-    """Every combination: one cell for each point of the grid, the last axis turning quickest.
+    """One cell for each combination of values; the last axis changes fastest.
 
     Raises:
         OutOfRange: An axis is empty.
@@ -53,22 +53,22 @@ def work_through(
 ) -> list[Row]:
     """Run ``job`` on every cell.
 
-    A run that labkit refuses or stops (it diverged, a pose is out of reach) is a finding: its row
-    has the sentence under ``"failed"`` and the campaign goes on.
+    A run that labkit refuses or stops (it diverged, a pose is out of reach) is a result, too: its
+    row has the message under ``"failed"``, and the campaign continues.
 
     Args:
-        job: What to do with a cell.
+        job: The function to call for each cell.
         grid: The cells.
-        jobs: How many processes; None takes one for each core, 1 stays in this process.
-        dask: Address of a Dask scheduler to work on instead, as ``"tcp://host:8786"``.
-        progress: Told after every cell; None says nothing.
+        jobs: The number of processes; None means one for each core, 1 means this process.
+        dask: The address of a Dask scheduler to use instead, such as ``"tcp://host:8786"``.
+        progress: Called after every cell; None reports nothing.
 
     Returns:
-        For each cell, in the grid's order, its names and the job's numbers.
+        For each cell, in the order of the grid, its parameters and the numbers of the job.
 
     Raises:
         OutOfRange: ``jobs`` is less than 1.
-        LabkitError: There is no such scheduler, or Dask is missing.
+        LabkitError: There is no scheduler at the address, or Dask is missing.
     """
     todo = [dict(cell) for cell in grid]
     jobs = os.cpu_count() or 1 if jobs is None else int(as_number(jobs, "jobs", least=1))
@@ -91,7 +91,7 @@ def work_through(
 
 
 def row_of(job: Job, cell: Cell) -> Row:
-    """One cell's row; a `LabkitError` becomes its sentence under ``"failed"``."""
+    """The row of one cell; the message of a `LabkitError` is under ``"failed"``."""
     try:
         return {**cell, **job(**cell), "failed": None}
     except LabkitError as error:
@@ -110,7 +110,7 @@ def _on_dask(job: Job, todo: list[Row], address: str, tell: Progress) -> list[Ro
 
 @contextmanager
 def one_thread_each() -> Iterator[None]:
-    """Processes started in this block do linear algebra on one thread: the cells are parallel."""
+    """Make processes started in this block use one thread, because the cells run in parallel."""
     names = ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS")
     before = {name: os.environ.get(name) for name in names}
     os.environ.update(dict.fromkeys(names, "1"))
@@ -125,14 +125,14 @@ def one_thread_each() -> Iterator[None]:
 
 
 class Meter:
-    """Progress on one line of the terminal: done, all, and about how long it still takes."""
+    """A progress report: cells done, cells in all, and an estimate of the time left."""
 
     def __init__(self, what: str) -> None:
         """Call the work ``what``."""
         self.what, self.began = what, time.monotonic()
 
     def __call__(self, done: int, total: int) -> None:
-        """Show it; a terminal keeps one line, a file gets a line for each tenth."""
+        """Show the progress: on one line of a terminal, or in a file a line for each tenth."""
         left = (time.monotonic() - self.began) * (total - done) / done
         text = f"{self.what}: {done} of {total}, about {left:.0f} s left"
         if sys.stderr.isatty():
@@ -145,26 +145,26 @@ class Meter:
 
 
 def pick(rows: Iterable[Row], **names: Any) -> list[Row]:
-    """The rows whose cells have these names."""
+    """The rows whose cells have these parameters."""
     return [row for row in rows if all(row[key] == value for key, value in names.items())]
 
 
 def spread(values: Iterable[float]) -> tuple[float, float, float]:
-    """Mean, least and largest."""
+    """The mean, the smallest and the largest of the values."""
     x = np.array(list(values), dtype=float)
     return float(x.mean()), float(x.min()), float(x.max())
 
 
 def table(rows: Sequence[Row], down: str, across: str, number: str) -> str:
-    """A Markdown table: for each pair of names the mean over the rest, and the spread in brackets.
+    """A Markdown table with the mean over all other axes, and the spread in brackets.
 
-    A cell in which some run failed says how many of how many.
+    If runs failed, the entry says how many of how many.
 
     Args:
         rows: Rows of a campaign.
-        down: The axis whose names head the lines.
-        across: The axis whose names head the columns.
-        number: Which number.
+        down: The axis whose values head the rows.
+        across: The axis whose values head the columns.
+        number: The name of the number in the table.
 
     Raises:
         UnknownName: The rows have no such number or axis.

@@ -1,10 +1,10 @@
-r"""Identification: move the arm, ask which friction explains the torques, and feed it forward.
+r"""Identify friction: move the arm, fit friction to the torques, and feed it forward.
 
-On an arm that carries its own weight, the torque that was commanded is, joint by joint,
+On an arm that carries its own weight, the commanded torque of each joint is
 
 .. math:: \tau_i - (M \ddot q + C \dot q)_i = b_i\,\dot q_i + f_i\,\operatorname{sgn} \dot q_i
 
-which is linear in the two unknowns: least squares finds them (Siciliano, section 7.3).
+which is linear in the two unknowns, so least squares finds them (Siciliano, section 7.3).
 """
 
 from __future__ import annotations
@@ -23,21 +23,21 @@ from .gains import course_controllers
 from .tasks import Task
 
 MOVING = 0.05
-"""Below this speed, in [rad/s], a joint may stick, and says nothing about its friction."""
+"""Below this speed, in [rad/s], a joint may stick, and its torque does not show its friction."""
 WINDOW = 21
-"""Neighbouring reports through which one cubic is laid."""
+"""The number of neighbouring reports to which one cubic is fitted."""
 SOFT = 0.01
-"""Over this speed, in [rad/s], the sign of the target's speed is rounded off."""
+"""The speed in [rad/s] over which the sign of the target's speed is smoothed."""
 
 
 @dataclass(frozen=True)
 class Swing:
-    """A motion that excites every joint: two sines each, slow enough for no limit to matter.
+    """A motion that excites every joint with two sines, slow enough not to reach a limit.
 
     Attributes:
-        q0: About which joint angles, shape (n,) in [rad].
-        amplitude: Of each sine, in [rad].
-        duration: In [s].
+        q0: The joint angles around which the arm swings, shape (n,) in [rad].
+        amplitude: The amplitude of each sine, in [rad].
+        duration: The duration in [s].
     """
 
     q0: Array
@@ -65,13 +65,13 @@ class Swing:
 
 @dataclass(frozen=True, eq=False)
 class Friction:
-    """What least squares found.
+    """The friction found by least squares.
 
     Attributes:
         viscous: b, shape (n,) in [N m s/rad].
         dry: f, shape (n,) in [N m].
-        speed: The speeds that were used, joint by joint, in [rad/s].
-        torque: The torques that the motion does not explain, joint by joint, in [N m].
+        speed: The speeds used in the fit, for each joint, in [rad/s].
+        torque: The torques that the motion does not explain, for each joint, in [N m].
     """
 
     viscous: Array
@@ -89,13 +89,13 @@ def excite(plant: Plant = BAXTER, seed: int = 0) -> Log:
 
 
 def fit(log: Log, model: Model, smooth: bool = True) -> Friction:
-    """Fit the friction, from the reports and the commands of the arm and from nothing else.
+    """Fit the friction to the reports and the commands of the arm, without other knowledge.
 
     Args:
         log: A run in torque mode of an arm that carries its own weight.
-        model: Of the arm; it must have the arm's rotors.
+        model: The model of the arm; it must have the arm's rotors.
         smooth: Whether to smooth the commands before one is taken for each report.  Between two
-            reports the commands climb with the target, and the last one counts that as friction.
+            reports the commands follow the target, and the last one counts this as friction.
     """
     t, at = np.unique(log.measured.t.round(6), return_index=True)
     step = float(np.median(np.diff(t)))
@@ -103,7 +103,7 @@ def fit(log: Log, model: Model, smooth: bool = True) -> Friction:
     q = np.column_stack([np.interp(even, t, x) for x in log.measured.q[at].T])
     dq, ddq = (savgol_filter(q, WINDOW, 3, deriv=k, delta=step, axis=0) for k in (1, 2))
     per_report = step / float(np.median(np.diff(log.t)))
-    wide = 2 * round(WINDOW // 2 * per_report) + 1  # the same time, in commands
+    wide = 2 * round(WINDOW // 2 * per_report) + 1  # the same time, as a number of commands
     sent = savgol_filter(log.command, wide, 3, axis=0) if smooth else log.command
     command = np.column_stack([np.interp(even, log.t, x) for x in sent.T])
     moved = np.array(
@@ -126,14 +126,14 @@ def fit(log: Log, model: Model, smooth: bool = True) -> Friction:
 
 @dataclass(frozen=True, eq=False)
 class Compensated:
-    """A torque controller plus the friction that the target's own motion will meet.
+    """A torque controller with feed-forward of the friction along the target's motion.
 
     The target's speed is used, not the measured one: it has no noise, and at rest it is zero, so
     that the compensation can never drive the arm by itself.
 
     Attributes:
-        law: The controller, of joint angles.
-        friction: What to add.
+        law: A controller that follows joint angles.
+        friction: The friction to compensate.
     """
 
     law: Controller
@@ -149,7 +149,7 @@ class Compensated:
 def compared(
     task: Task, friction: Friction, plant: Plant = BAXTER, seed: int = 0
 ) -> dict[str, Log]:
-    """Joint impedance along a task without and with the compensation."""
+    """Run joint impedance along a task, without and with the compensation."""
     law = course_controllers(Model("left", plant), plant)["joint impedance"]
     logs = {}
     for name, one in (

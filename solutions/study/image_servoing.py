@@ -1,4 +1,4 @@
-r"""Servoing by the image or by the pose, with a hand camera whose focal length is off.
+r"""Image-based and position-based servoing, with a hand camera whose focal length is wrong.
 
 For a point at (x, y) = (X/Z, Y/Z) the camera's twist (v, w) in its own axes moves the image by
 (Chaumette & Hutchinson 2006, eq. 11)
@@ -7,7 +7,7 @@ For a point at (x, y) = (X/Z, Y/Z) the camera's twist (v, w) in its own axes mov
    0 & -1/Z & y/Z & 1+y^2 & -xy & -x \end{bmatrix}
 
 Image-based: :math:`V_c = \lambda L^+ (s_d - s)`.  Position-based: the same with the error of the
-pose that the picture is believed to show.  Both are asked for joint speeds, :math:`J_c^+ V_c`.
+pose estimated from the picture.  Both command the joint speeds :math:`J_c^+ V_c`.
 """
 
 from __future__ import annotations
@@ -31,10 +31,10 @@ METHODS: tuple[Method, ...] = ("image", "pose, goal measured", "pose, goal shown
 
 @dataclass(frozen=True, eq=False)
 class Approach:
-    """How one method went.
+    """The run of one method.
 
     Attributes:
-        distance: Of the camera from where it should be, at each step, shape (k,) in [m].
+        distance: The distance of the camera from its goal at each step, shape (k,) in [m].
         pixels: Corners in the picture at each step, shape (k, 4, 2) in [px].
         wanted: Corners in the picture at the goal, shape (4, 2) in [px].
     """
@@ -45,7 +45,7 @@ class Approach:
 
 
 def interaction(points: Any, depth: float) -> Array:
-    """L of points (x, y) = (X/Z, Y/Z), shape (n, 2), at a depth [m]; shape (2 n, 6)."""
+    """The matrix L, shape (2 n, 6), of points (X/Z, Y/Z), shape (n, 2), at a depth in [m]."""
     x, y = np.asarray(points).T
     zero, z = np.zeros_like(x), np.full_like(x, depth)
     rows = np.stack([
@@ -56,13 +56,13 @@ def interaction(points: Any, depth: float) -> Array:
 
 
 def approach(method: Method, focal_error: float = 0.0, depth: float = 0.25) -> Approach:
-    """Bring the hand's camera 25 cm before a tag, from aside and higher up.
+    """Bring the camera of the hand to 25 cm in front of a tag, from a place beside and above it.
 
     Args:
-        method: By the image, or by the pose; the pose's goal measured in metres, or shown once,
-            that is, computed from a picture at the goal with the same wrong lens.
-        focal_error: By what share the robot's focal length is too long.
-        depth: Of the tag, as the method by the image believes it to be, in [m].
+        method: Image-based or position-based; the goal pose of the latter is measured in metres, or
+            shown once, that is, computed from a picture at the goal with the same wrong lens.
+        focal_error: The relative error by which the robot's focal length is too long.
+        depth: The depth of the tag that the image-based method assumes, in [m].
     """
     model = Model("left")
     lens = Intrinsics()
@@ -71,7 +71,7 @@ def approach(method: Method, focal_error: float = 0.0, depth: float = 0.25) -> A
     T_tc = se3.inverse(model.robot.T_hand_tip) @ model.robot.T_hand_camera
     q = np.array(model.robot.ready)
     T_wg = model.pose(q) @ T_tc  # the goal of the camera
-    T_mg = se3.pose(  # not squarely: there the tilt of a tag is a guess
+    T_mg = se3.pose(  # oblique, because the tilt of a tag seen squarely is ambiguous
         np.diag([1.0, -1.0, -1.0]) @ se3.rotation(np.array([0.5, 0.0, 0.0])),
         np.array([0.0, 0.12, 0.22]),
     )
@@ -98,7 +98,7 @@ def approach(method: Method, focal_error: float = 0.0, depth: float = 0.25) -> A
 
 
 def away_from(T_wt: Array, shift: Array) -> Array:
-    """A pose turned and moved, in the world's axes, about the tip."""
+    """A pose rotated about the tip and shifted, both in the world's axes."""
     T = np.array(T_wt)
     T[:3, :3] = shift[:3, :3] @ T_wt[:3, :3]
     T[:3, 3] += shift[:3, 3]
@@ -114,7 +114,7 @@ def _plane(pixels: Array, lens: Intrinsics) -> Array:
 
 
 def _joint_speeds(model: Model, q: Array, T_wc: Array, V: Array) -> Array:
-    """Joint speeds that give the camera a twist V in its own axes, shape (6,)."""
+    """The joint speeds that give the camera a twist V, shape (6,), in its own axes."""
     J, R = model.tip_jacobian(q), T_wc[:3, :3]
     arm = T_wc[:3, 3] - model.pose(q)[:3, 3]
     Jc = np.vstack([J[:3] - se3.hat(arm) @ J[3:], J[3:]])

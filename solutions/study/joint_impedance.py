@@ -1,14 +1,14 @@
-r"""Joint impedance: each joint answers a push as a mass, a damper and a spring would.
+r"""Joint impedance, with which each joint responds to a push as a mass, damper and spring do.
 
-With the arm's own inertia (`inertia` None) no force needs to be measured:
+With the arm's own inertia (`inertia` None) no force has to be measured:
 
 .. math:: \tau = M(q)\,\ddot q_d + C(q, \dot q)\,\dot q_d + g(q) + D\,\dot e + K\,e
    \quad\Rightarrow\quad M \ddot e + (C + D)\,\dot e + K\,e = -\tau_{ext}
 
-This is the augmented PD law of `joint_torque`, letter by letter: the same law under another name,
-with gains chosen for how the arm should give way, not for how it should track.
+This is exactly the augmented PD law of `joint_torque` under another name; its gains are chosen for
+how the arm should yield, not for how it should track.
 
-With another inertia the measured torque takes part:
+With another inertia the law uses the measured torque:
 
 .. math:: \tau = M \left(\ddot q_d + M_d^{-1}(D\,\dot e + K\,e + \tau_{ext})\right)
    + C \dot q + g - \tau_{ext}
@@ -36,7 +36,7 @@ class JointImpedance:
     """Torques that give the joints a stiffness, a damping and, if asked, another inertia.
 
     Attributes:
-        model: Of the arm.
+        model: The model of the arm.
         K: Stiffness, shape (n,) or one number, in [N m/rad].
         D: Damping, shape (n,) or one number, in [N m s/rad].
         inertia: M_d, shape (n,) or (n, n) in [kg m^2]; None keeps the arm's own.

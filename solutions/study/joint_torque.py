@@ -1,6 +1,6 @@
 r"""Joint torque PD, in both forms of Murray, Li & Sastry (MLS), section 4.5.
 
-MLS write e = actual - desired; here as everywhere e = q_d - q, so every sign of e turns.
+MLS write e = actual - desired; here, as everywhere, e = q_d - q, so every sign of e is reversed.
 
 Computed torque (eq. 4.49, Proposition 4.8), whose error obeys a linear equation:
 
@@ -25,7 +25,7 @@ class ComputedTorque:
     """Torques that give every joint the same linear error, whatever its inertia.
 
     Attributes:
-        model: Of the arm.
+        model: The model of the arm.
         Kp: Gains, shape (n,) or one number, in [1/s^2].
         Kd: Gains, shape (n,) or one number, in [1/s].
         gravity: Add g(q); False for an arm that carries its own weight, as Baxter does.
@@ -50,10 +50,10 @@ class ComputedTorque:
 
 @dataclass(frozen=True, eq=False)
 class AugmentedPD:
-    """Torques of a spring and a damper at each joint, beside what the motion itself takes.
+    """Torques of a spring and a damper at each joint, added to those that the motion needs.
 
     Attributes:
-        model: Of the arm.
+        model: The model of the arm.
         Kp: Gains, shape (n,) or one number, in [N m/rad].
         Kd: Gains, shape (n,) or one number, in [N m s/rad].
         gravity: Add g(q); False for an arm that carries its own weight, as Baxter does.

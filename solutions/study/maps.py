@@ -25,13 +25,13 @@ LINE = tasks.line()
 
 @dataclass(frozen=True)
 class Plane:
-    """The gains to try on one kind of controller.
+    """The gains to try with one kind of controller.
 
     Attributes:
-        make: Gives the controller from the two gains and the plant.
-        Kp: Proportional gains, in [1/s]; of the torque controller in [1/s^2].
-        Kd: Derivative gains, without unit; of the torque controller in [1/s].
-        rate: How often the controller is asked, in [Hz].
+        make: Makes the controller from the two gains and the plant.
+        Kp: Proportional gains, in [1/s], or in [1/s^2] for the torque controller.
+        Kd: Derivative gains, without unit, or in [1/s] for the torque controller.
+        rate: How often the controller is called, in [Hz].
     """
 
     make: Callable[[float, float, Plant], Any]
@@ -93,7 +93,7 @@ def make(controller: str, plant: str, seeds: int, jobs: int | None) -> Trials:
 
 
 def main() -> None:
-    """Write the maps and say what they show."""
+    """Write the maps and print what they show."""
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--seeds", type=int, default=2)
     parser.add_argument("--jobs", type=int, default=None)

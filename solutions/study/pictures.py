@@ -1,4 +1,4 @@
-"""The report's tracking figures, 4 to 23, with the axes that belong there; a video of each task."""
+"""The report's tracking figures, 4 to 23, with the right axes, and a video of each task."""
 
 from __future__ import annotations
 
@@ -24,10 +24,10 @@ def grid(folder: Path) -> list[dict[str, Any]]:
 
 
 def draw(controller: str, task: str, folder: str) -> Mapping[str, Any]:
-    """The job: run once on Baxter's plant, draw everything, say in words what is to be seen.
+    """The job: run once on Baxter's plant, draw the figure and describe it in words.
 
     Returns:
-        "figure", the report's number of it; "file", its name; "alt", the figure in words.
+        "figure", its number in the report; "file", its name; "alt", its description in words.
     """
     matplotlib.use("Agg")
     from matplotlib import pyplot as plt
@@ -52,7 +52,7 @@ def shoot(task: str, folder: str) -> Mapping[str, Any]:
     """The job: film joint velocity control of a task on Baxter's plant.
 
     Returns:
-        "file" and "poster", their names; "alt", the film in words.
+        "file" and "poster", their names; "alt", the description of the film in words.
     """
     log = perform("joint velocity", task, "baxter", 0)
     stage = (lambda world: staged(world, 0)) if task == "tag" else None
@@ -64,14 +64,14 @@ def shoot(task: str, folder: str) -> Mapping[str, Any]:
 def overview(
     log: Log, model: Model | None = None, *, joints: Any = None, title: str | None = None
 ) -> Any:
-    """One run on one page: the tip's position, velocity and errors; seven joints; seven torques.
+    """Draw one run on one page: position, velocity and errors of the tip; all joints; all torques.
 
     Args:
         log: The run.
-        model: The arm's model; None makes the log's own.
-        joints: For a run after poses, the joint angles that belong to them, a function of time, to
-            draw beside the joints; None draws none.
-        title: Above all; None names controller and arm.
+        model: The model of the arm; None makes that of the log.
+        joints: For a run along poses, the joint angles for them as a function of time, which are
+            drawn with the joints; None draws none.
+        title: The title of the page; None names controller and arm.
 
     Returns:
         The figure.
@@ -126,7 +126,7 @@ def overview(
 
 
 def _legend_above(ax: Any) -> None:
-    """Outside, where there is no room beside."""
+    """Put the legend above the axes, where there is room for it."""
     ax.legend(
         loc="lower right",
         bbox_to_anchor=(1.0, 1.0),

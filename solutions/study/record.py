@@ -1,8 +1,8 @@
-"""Make everything that is recorded again, and say what that changes: ``make record``.
+"""Make all recorded data again, and print what has changed: ``make record``.
 
-After a change of physics, the recorded runs, maps, trials and campaign, the students' notebooks and
-the verdicts on all known answers are no longer what the code gives.  This makes them in order, says
-how far the numbers moved, and names each verdict that changed with its reason.
+After a change to the physics, the recorded runs, maps, trials and campaign, the students' notebooks
+and the verdicts on all known answers no longer agree with the code.  This program makes them again
+in order, prints how far the numbers moved, and names each verdict that changed and why.
 """
 
 from __future__ import annotations
@@ -26,7 +26,7 @@ from labkit.recordings import DATA
 
 ROOT = Path(__file__).parents[2]
 VERDICTS = Path(__file__).with_name("verdicts.json")
-"""What each known answer earns, and why; with the public seed."""
+"""What each known answer earns with the public seed, and why."""
 MAKERS = (
     ("solutions.study.baseline",),
     ("solutions.study.maps",),
@@ -38,12 +38,12 @@ MAKERS = (
 """Modules that record runs; ``labkit release`` comes after them."""
 
 Answer = Callable[..., Any]
-Told = Mapping[str, Mapping[str, Any]]
-"""By "assignment/question/answer": what it earned, each test's outcome, and the mistake's name."""
+Verdicts = Mapping[str, Mapping[str, Any]]
+"""For each "assignment/question/answer" the points, each test's outcome and the mistake's name."""
 
 
 def answers(problem: Problem) -> Iterator[tuple[str, Answer]]:
-    """Every known answer to a problem, with what it is called."""
+    """Every known answer to a problem, with its name."""
     yield "the answer", problem.answer
     for number, variant in enumerate(problem.variants):
         yield f"right {number}: {getattr(variant, '__name__', type(variant).__name__)}", variant
@@ -51,19 +51,19 @@ def answers(problem: Problem) -> Iterator[tuple[str, Answer]]:
         yield wrong.name, wrong.function
 
 
-def verdicts(course: Course, names: tuple[str, ...]) -> Told:
+def verdicts(course: Course, names: tuple[str, ...]) -> Verdicts:
     """The verdict on each known answer of some assignments."""
     found = {}
     for name in names:
         for problem in course.problems(name):
             question = problem.question(PUBLIC_SEED)
             for label, function in answers(problem):
-                found[f"{name}/{problem.name}/{label}"] = told(mark(question, function))
+                found[f"{name}/{problem.name}/{label}"] = as_data(mark(question, function))
     return found
 
 
-def told(verdict: Verdict) -> Mapping[str, Any]:
-    """What of a verdict is kept, as JSON data."""
+def as_data(verdict: Verdict) -> Mapping[str, Any]:
+    """The part of a verdict that is recorded, as JSON data."""
     return {
         "earned": verdict.earned,
         "tests": [[test.name, test.outcome.value] for test in verdict.tests],
@@ -71,8 +71,8 @@ def told(verdict: Verdict) -> Mapping[str, Any]:
     }
 
 
-def changes(before: Told, after: Told) -> Iterator[str]:
-    """Each verdict that is another one now, in a sentence."""
+def changes(before: Verdicts, after: Verdicts) -> Iterator[str]:
+    """A sentence for each verdict that has changed."""
     for key in sorted({*before, *after}):
         old, new = before.get(key), after.get(key)
         if old is None or new is None:
@@ -114,7 +114,7 @@ def recorded() -> Mapping[str, Any]:
 
 
 def _numbers(data: Any) -> Iterator[float]:
-    """Every number in JSON data, in order; what is missing is not a number."""
+    """Every number in JSON data, in order; a missing one is NaN."""
     match data:
         case list() | dict():
             for part in data.values() if isinstance(data, dict) else data:
@@ -126,9 +126,9 @@ def _numbers(data: Any) -> Iterator[float]:
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
-    """Record, release, mark, and say what changed."""
+    """Record, release, mark, and print what changed."""
     parser = argparse.ArgumentParser(prog="python -m solutions.study.record", description=__doc__)
-    parser.add_argument("--verdicts", action="store_true", help="mark known answers alone")
+    parser.add_argument("--verdicts", action="store_true", help="mark known answers only")
     parser.add_argument("--check", action="store_true", help="write nothing; exit 1 at a change")
     parser.add_argument("names", nargs="*", metavar="NAME", help="assignments; all by default")
     options = parser.parse_args(arguments)

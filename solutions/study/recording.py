@@ -1,4 +1,4 @@
-"""Keep trials and rows as the files that `labkit.recordings` reads."""
+"""Write trials and rows to the files that `labkit.recordings` reads."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ def save_trials(trials: Trials, path: Path) -> None:
 
 
 def save_campaign(rows: Iterable[Mapping[str, Any]]) -> None:
-    """Write the rows that `recordings.campaign` reads, those of runs that were stopped left out."""
+    """Write the rows that `recordings.campaign` reads, without those of runs that were stopped."""
     kept = [{key: _short(row[key]) for key in _KEPT} for row in rows if not row["failed"]]
     lines = ",\n".join(json.dumps(row) for row in kept)
     (DATA / "campaign.json").write_text(f"[{lines}]\n")

@@ -1,10 +1,10 @@
-r"""The seventh joint: the null space of the tip's Jacobian, and what to spend it on.
+r"""The seventh joint: the null space of the tip's Jacobian, and its uses.
 
 .. math:: \dot q = J^+ V + (I - J^+ J)\,z
 
-Every z leaves the tip alone.  A posture, :math:`z = k\,(q_0 - q)`, keeps the elbow where one wants
-it; without one it drifts: the same path of the tip, driven again and again, brings the joints back
-to other angles (Klein & Huang 1983).
+No z moves the tip.  A posture, :math:`z = k\,(q_0 - q)`, keeps the elbow where it should be.
+Without a posture the elbow drifts: when the tip repeats its path, the joints return to other angles
+(Klein & Huang 1983).
 """
 
 from __future__ import annotations
@@ -26,11 +26,11 @@ def laps(model: Model, q0: Any, count: int = 6, pull: float = 0.0, radius: float
     """Joint angles after each lap of the tip around an upright circle, shape (count + 1, n).
 
     Args:
-        model: Of the arm.
-        q0: Where it begins, shape (n,) in [rad].
-        count: How many laps of five seconds each.
-        pull: k of the posture q0, in [1/s]; 0 leaves the null space alone.
-        radius: Of the circle, in [m].
+        model: The model of the arm.
+        q0: The joint angles at the start, shape (n,) in [rad].
+        count: The number of laps, of five seconds each.
+        pull: The gain k of the posture q0, in [1/s]; 0 for no posture.
+        radius: The radius of the circle, in [m].
     """
     q, start, dt = np.array(q0), model.pose(q0), 0.02
     out, steps = [q], round(5.0 / dt)
@@ -50,21 +50,22 @@ def laps(model: Model, q0: Any, count: int = 6, pull: float = 0.0, radius: float
 
 
 def manipulability(model: Model, joints: Any, count: int = 60) -> tuple[Array, Array]:
-    """Along a trajectory of joint angles: times, and sqrt(det J J^T), shape (count,) each."""
+    """Times and sqrt(det J J^T) along a trajectory of joint angles, shape (count,) each."""
     t = np.linspace(0.0, joints.duration, count)
     return t, np.array([model.manipulability(joints(float(x)).position) for x in t])
 
 
 def stretched(model: Model, angles: Any, damping: float) -> tuple[Array, Array]:
-    """The tip pulled outwards, the elbow at these angles.
+    """Pull the tip outwards while the elbow is at the given angles.
 
     Args:
-        model: Of the arm.
-        angles: Of the joint e1, shape (k,) in [rad].
-        damping: Lambda squared.
+        model: The model of the arm.
+        angles: The angles of the joint e1, shape (k,) in [rad].
+        damping: The damping, lambda squared.
 
     Returns:
-        The fastest joint's speed [rad/s] and the speed that the tip misses [m/s], shape (k,) each.
+        The speed of the fastest joint [rad/s] and the speed that the tip lacks [m/s], shape (k,)
+        each.
     """
     fastest, missed = [], []
     for angle in angles:

@@ -1,8 +1,8 @@
-"""The gains and procedure of the report, run: ``python -m solutions.study.report_gains``.
+"""Run the gains and the procedure of the report: ``python -m solutions.study.report_gains``.
 
-On `BAXTER` and on the same arm with the springs in its joints.  The gains are taken as printed, the
-torque gains in N m/rad; the seventh entry that is missing from two rows is 1.  Of the workspace
-impedance the larger column is taken as the stiffness.
+The plants are `BAXTER` and the same arm with springs in its joints.  The gains are those printed in
+the report, the torque gains in N m/rad; where a row lacks its seventh entry, it is 1.  The larger
+column for the workspace impedance is taken as the stiffness.
 """
 
 from __future__ import annotations
@@ -92,14 +92,14 @@ def procedure(plant: str, joint: int) -> Mapping[str, Any]:
     return asdict(replace(found, steps=())) | {"steps": steps}
 
 
-def kept() -> Mapping[str, list[Row]]:
-    """The rows that were recorded: "table_1" and "procedure"."""
+def recorded() -> Mapping[str, list[Row]]:
+    """The recorded rows, under "table_1" and "procedure"."""
     found: Mapping[str, list[Row]] = json.loads(KEPT.read_text())
     return found
 
 
 def main() -> None:
-    """Run both and keep the rows."""
+    """Run both and write the rows."""
     grid = cells(controller=tuple(TABLE_1), task=("line", "circle"), plant=tuple(PLANTS))
     rows = work_through(table_1, grid, progress=Meter("Table 1"))
     tuned = work_through(

@@ -1,9 +1,9 @@
-"""The report's tuning procedure (section 5.1) as an algorithm, one measured step after another.
+"""The report's tuning procedure (section 5.1) as an algorithm, with a measurement for each step.
 
-1. Look at feed-forward alone.
+1. Try feed-forward alone.
 2. Raise the proportional gain until the loop oscillates.
 3. Take half of that gain.
-4. Raise the derivative gain until the error dies away no quicker.
+4. Raise the derivative gain until the error no longer decays faster.
 """
 
 from __future__ import annotations
@@ -18,10 +18,10 @@ from labkit.errors import Diverged, OutOfRange
 from labkit.shapes import as_array, as_number
 
 Trial = Callable[[float, float], tuple[Any, Any]]
-"""Tries gains (Kp, Kd) and gives times (N,) [s] and one joint's error (N,), target minus actual."""
+"""Tries gains (Kp, Kd); returns times (N,) [s] and a joint's error (N,), target minus actual."""
 
 OSCILLATES = 0.9
-"""A swing that keeps this share of the one before counts as an oscillation that stays."""
+"""If a swing has at least this share of the previous one, the oscillation is sustained."""
 
 
 @dataclass(frozen=True)
@@ -31,9 +31,9 @@ class Step:
     Attributes:
         Kp: Proportional gain.
         Kd: Derivative gain.
-        decay: Share of one swing that is left in the next; 0 without swings, 1 or more is unstable.
-        rms: RMS of the error, in its unit; infinite if the run was stopped.
-        why: What the procedure made of it.
+        decay: The ratio of one swing to the previous one; 0 without swings, unstable from 1 on.
+        rms: The RMS of the error, in its unit; infinite if the run was stopped.
+        why: What the procedure concluded from it.
     """
 
     Kp: float
@@ -45,7 +45,7 @@ class Step:
 
 @dataclass(frozen=True)
 class Tuning:
-    """The outcome.
+    """The outcome of the procedure.
 
     Attributes:
         Kp: The proportional gain to use.
@@ -71,17 +71,17 @@ def report_procedure(
     """Tune by the report's four steps.
 
     Args:
-        trial: Tries gains; it should begin with the joint off its target.
+        trial: Tries gains; the joint should start off its target.
         Kp: The first proportional gain to try.
         Kd: The first derivative gain to try, as a share of the chosen Kp.
-        growth: Factor from one trial to the next.
-        most: Trials after which to give up.
+        growth: The factor from one trial to the next.
+        most: The number of trials after which to give up.
 
     Returns:
-        The gains and how they came about.
+        The gains, and how they were found.
 
     Raises:
-        OutOfRange: The loop never oscillated, so there is nothing to halve.
+        OutOfRange: The loop never oscillated, so there is no gain to halve.
     """
     as_number(Kp, "Kp", above=0.0)
     as_number(growth, "growth", above=1.0)
@@ -123,15 +123,15 @@ def _try(trial: Trial, Kp: float, Kd: float, why: str) -> Step:
 
 
 def decay_ratio(error: Any) -> float:
-    """How much of a swing is left in the next one of the other sign.
+    """The ratio of a swing to the previous one, which has the other sign.
 
     Args:
-        error: A joint's error over time, shape (N,).
+        error: The error of a joint over time, shape (N,).
 
     Returns:
-        The geometric mean over all swings but the first, which is the start, and the last, which
-        may be cut short; 0 if fewer than two remain.  Swings below a thousandth of the largest do
-        not count: they are noise.
+        The geometric mean over all swings except the first, which is the start, and the last,
+        which may be incomplete; 0 if fewer than two remain.  Swings below a thousandth of the
+        largest are noise and do not count.
     """
     e = np.asarray(error, dtype=float)
     edges = np.flatnonzero(np.diff(np.signbit(e))) + 1

@@ -1,7 +1,7 @@
-"""Are gains good, or only good where they were tuned?  ``python -m solutions.study.scoring``.
+"""Test whether gains are good beyond their tuning: ``python -m solutions.study.scoring``.
 
-The case "as tuned" is the usual line; each other case changes one thing: the path, the speed, what
-the arm carries.  All start off the path and on Baxter's plant, once for each seed.
+The case "as tuned" is the usual line; each other case changes one thing, such as the path, the
+speed or the payload.  Every run starts off the path, on Baxter's plant, once for each seed.
 """
 
 from __future__ import annotations
@@ -22,11 +22,11 @@ from .tasks import Task
 
 @dataclass(frozen=True)
 class Case:
-    """What a controller is tried on.
+    """A task and a plant on which a controller is tried.
 
     Attributes:
-        name: What tables call it.
-        make: Gives the task.
+        name: Its name in tables.
+        make: Makes the task.
         plant: The plant to drive.
     """
 
@@ -35,7 +35,7 @@ class Case:
     plant: Plant = BAXTER
 
     def task(self) -> Task:
-        """The task; made once."""
+        """The task, which is made once."""
         return _task(self.make)
 
 
@@ -50,16 +50,16 @@ CASES = (
 def score(
     tuned: Candidate, cases: Iterable[Case] = CASES, seeds: Iterable[int] = range(3)
 ) -> list[Row]:
-    """Try a controller, gains and all, on every case and seed.
+    """Try a controller with its gains on every case and seed.
 
     Args:
-        tuned: The controller; it keeps no memory between runs.
-        cases: What to try it on.
-        seeds: Of the start, the noise and the late ticks.
+        tuned: The controller, which must not have a state that outlives a run.
+        cases: The cases to try.
+        seeds: The seeds of the start, the noise and the late ticks.
 
     Returns:
         Rows for `campaign.table`, with "case", "seed", "rms_mm", "max_mm", "rms_deg", "settling",
-        and a sentence under "failed" where the arm was lost.
+        and a sentence under "failed" if the run was stopped.
     """
     rows: list[Row] = []
     for case in cases:
@@ -84,7 +84,7 @@ def _task(make: Callable[[], Task]) -> Task:
 
 
 def main() -> None:
-    """The five controllers with the gains of the campaign, on every case."""
+    """Try the five controllers with the gains of the campaign on every case."""
     controllers = course_controllers(Model("left"), BAXTER)
     rows = [
         {"controller": controller, **row}

@@ -1,7 +1,7 @@
-"""Sensing: how good a camera's reading of a tag is, against the truth that a simulation knows.
+"""Measure how well a camera reads a tag, compared with the truth, which a simulation knows.
 
-Errors are target minus actual with the truth as the target: truth minus estimate, position in the
-camera's axes, orientation as a rotation vector there.
+Errors are target minus actual with the truth as the target, that is, truth minus estimate.  The
+position and the rotation vector of the orientation are in the camera's axes.
 """
 
 from __future__ import annotations
@@ -23,24 +23,24 @@ from labkit.tags.intrinsics import Intrinsics
 from labkit.tags.tag import Tag
 from labkit.world import World
 
-_T_WC = looking_at((3.0, 3.0, 1.0), (4.0, 4.0, 1.0))  # away from the robot, and looking away
-_EXPOSURE = 0.1  # [s], of a picture of a tag that moves
-_SPREAD = 0.5  # how far from the middle of the picture a tag may be, as a share of the picture
+_T_WC = looking_at((3.0, 3.0, 1.0), (4.0, 4.0, 1.0))  # far from the robot, looking away from it
+_EXPOSURE = 0.1  # exposure time of a moving tag, in [s]
+_SPREAD = 0.5  # largest distance of a tag from the middle, as a share of the picture
 
 
 @dataclass(frozen=True)
 class Setup:
-    """One experiment: a tag before a camera.
+    """One experiment with a tag in front of a camera.
 
     Attributes:
         tag: The tag.
-        distance: From the camera to the tag, in [m].
-        tilt: Range of the angle between the tag's normal and the ray on which it is seen, in [rad].
-        intrinsics: Lens and sensor.
-        noise: Of each colour of each pixel, standard deviation in grey levels.
-        blur: Of a lens out of focus, standard deviation in [px].
-        smear: How far the tag's middle moves in the picture while the shutter is open, in [px].
-        cover: How much of half of the tag's diagonal a hand hides, beginning at a corner.
+        distance: The distance from the camera to the tag, in [m].
+        tilt: The range of the angle between the tag's normal and the line of sight, in [rad].
+        intrinsics: The lens and the sensor.
+        noise: The standard deviation of each colour of each pixel, in grey levels.
+        blur: The standard deviation of the blur of a lens out of focus, in [px].
+        smear: How far the middle of the tag moves in the picture during the exposure, in [px].
+        cover: The share of half of the tag's diagonal that a hand hides, from one corner.
     """
 
     tag: Tag = field(default_factory=Tag)
@@ -55,15 +55,15 @@ class Setup:
 
 @dataclass(frozen=True, eq=False)
 class Readings:
-    """Estimates beside the truth, one row for each picture; rows without a tag are NaN.
+    """Estimates and the truth, one row for each picture; rows without a tag are NaN.
 
     Attributes:
-        truth: `T_cm` as it was, shape (n, 4, 4).
-        estimate: `T_cm` as it was read, shape (n, 4, 4).
+        truth: The true `T_cm`, shape (n, 4, 4).
+        estimate: The estimated `T_cm`, shape (n, 4, 4).
         ratio: How many times worse the other of the two poses fits, shape (n,).
-        pixels: What is left between corners and pose, root mean square, shape (n,) in [px].
+        pixels: The RMS residual of the corners after the fit of the pose, shape (n,) in [px].
         corner_error: True minus found corners, shape (n, 4, 2) in [px].
-        covariance: What the detector itself expects, shape (n, 6, 6).
+        covariance: The covariance that the detector expects, shape (n, 6, 6).
     """
 
     truth: Array
@@ -75,36 +75,36 @@ class Readings:
 
     @property
     def found(self) -> Any:
-        """In which pictures the tag was found, shape (n,), bool."""
+        """Whether the tag was found in each picture, shape (n,), bool."""
         return np.isfinite(self.pixels)
 
     @property
     def tilt(self) -> Array:
-        """Angle between the tag's normal and the ray on which it is seen, shape (n,) in [rad]."""
+        """The angle between the tag's normal and the line of sight, shape (n,) in [rad]."""
         normal, ray = self.truth[:, :3, 2], self.truth[:, :3, 3]
         along = np.einsum("ni,ni->n", normal, ray) / np.linalg.norm(ray, axis=1)
         return np.asarray(np.arccos(np.clip(-along, -1.0, 1.0)))
 
     @property
     def error(self) -> Array:
-        """Truth minus estimate of the pictures with a tag, shape (found, 6): [m], then [rad]."""
+        """Truth minus estimate in the pictures with a tag, shape (found, 6) in [m] and [rad]."""
         pairs = zip(self.truth[self.found], self.estimate[self.found], strict=True)
         return np.array([se3.pose_error(a, b) for a, b in pairs]).reshape(-1, 6)
 
 
 def random_poses(setup: Setup, count: int, random: np.random.Generator) -> Array:
-    """Poses `T_cm` of a tag somewhere in the picture, turned any way within the range of tilt.
+    """Random poses `T_cm` of a tag in the picture, with any yaw and the given range of tilt.
 
     Args:
-        setup: Distance, tilt and the rest.
-        count: How many.
-        random: Where the chances come from.
+        setup: The experiment, with distance and tilt.
+        count: The number of poses.
+        random: The random generator.
 
     Returns:
         Shape (count, 4, 4).
 
     Raises:
-        OutOfRange: There is no such distance, tilt or count.
+        OutOfRange: Distance, tilt or count is out of range.
     """
     lens, (low, high) = setup.intrinsics, setup.tilt
     if not 0.0 <= low <= high < pi / 2:
@@ -129,7 +129,7 @@ def read(setup: Setup, poses: Any, seed: int = 0) -> Readings:
     Args:
         setup: The experiment; its distance and tilt are those of the poses.
         poses: `T_cm`, shape (n, 4, 4).
-        seed: Of the image noise.
+        seed: The seed of the image noise.
 
     Returns:
         The readings.
@@ -167,7 +167,7 @@ def read(setup: Setup, poses: Any, seed: int = 0) -> Readings:
 
 
 def _sideways(setup: Setup, T_wm: Array, random: np.random.Generator) -> Callable[[float], Sample]:
-    """A tag's motion across the picture, by the smear in the time of the exposure."""
+    """The motion of a tag across the picture, by the smear during the exposure."""
     angle = random.uniform(0.0, 2.0 * pi)
     across = _T_WC[:3, :2] @ (np.cos(angle), np.sin(angle))
     speed = setup.smear * setup.distance / setup.intrinsics.fx / _EXPOSURE
@@ -188,17 +188,17 @@ def _covered(picture: Any, corners: Array, cover: float, random: np.random.Gener
 
 
 def consistency(setup: Setup, count: int, seed: int = 0) -> tuple[float, float]:
-    """Whether the errors are as large as the detector says: 3 if its covariance is right.
+    """Check whether errors are as large as the detector expects; if they are, the mean is 3.
 
     Args:
         setup: The experiment.
-        count: How many pictures.
-        seed: Of poses and noise.
+        count: The number of pictures.
+        seed: The seed of the poses and the noise.
 
     Returns:
         The share of the pictures in which the tag was reported, and the mean of
         :math:`e^T P^{-1} e` over them, with e the error of the position and P its covariance
-        (Bar-Shalom, Li & Kirubarajan, section 5.4.2); not a number if none was reported.
+        (Bar-Shalom, Li & Kirubarajan, section 5.4.2); NaN if no tag was reported.
     """
     seen = read(setup, random_poses(setup, count, np.random.default_rng(seed)), seed)
     P, e = seen.covariance[seen.found][:, :3, :3], seen.error[:, :3]
@@ -211,14 +211,14 @@ def _as_poses(x: Any, name: str) -> Array:
 
     Args:
         x: Shape (n, 4, 4).
-        name: What to call them in the sentence, if they do not fit.
+        name: What an error message calls them.
 
     Returns:
         Shape (n, 4, 4); a copy.
 
     Raises:
-        ShapeError: They are not a stack of poses, or there are none.
-        OutOfRange: One is not a rigid motion.
+        ShapeError: The array is not a stack of poses, or is empty.
+        OutOfRange: One of them is not a rigid motion.
     """
     poses = as_numbers(x, name)
     if poses.ndim != 3 or not len(poses):

@@ -1,4 +1,4 @@
-"""The inertia that an impedance controller is asked to show, checked."""
+"""Check the inertia that an impedance controller is to have."""
 
 from __future__ import annotations
 
@@ -11,17 +11,17 @@ from labkit.shapes import Array, as_array, as_gains, locked
 
 
 def as_inertia(x: Any, n: int) -> Array:
-    """Read a desired inertia: a number or a vector makes a diagonal matrix.
+    """Read a desired inertia; a number or a vector makes a diagonal matrix.
 
     Args:
         x: A number, shape (n,) or (n, n); [kg] or [kg m^2].
-        n: How many coordinates.
+        n: The number of coordinates.
 
     Returns:
         Shape (n, n), read-only, symmetric and positive definite.
 
     Raises:
-        OutOfRange: It is not symmetric, or not positive definite: nothing real moves so.
+        OutOfRange: The matrix is not symmetric and positive definite, as every inertia is.
     """
     if np.ndim(x) == 2:
         M_d = np.array(as_array(x, (n, n), "inertia"))

@@ -1,4 +1,4 @@
-r"""Near a singularity: how much to damp an inverse, and one warning about it.
+r"""Damp an inverse near a singularity, and warn once.
 
 .. math:: J^+ = J^T (J J^T + \lambda^2 I)^{-1}, \qquad
    \lambda^2 = \left(1 - (\sigma_{min} / \epsilon)^2\right) \lambda^2_{max}
@@ -21,18 +21,18 @@ from labkit.shapes import Array
 
 @dataclass
 class Watch:
-    """Measures the nearness of a singularity, and speaks up the first time.
+    """Measures how close a singularity is, and warns the first time.
 
     Attributes:
         threshold: The smallest singular value of the tip Jacobian below which damping begins.
-        warned: Whether it has spoken.
+        warned: Whether it has warned.
     """
 
     threshold: float = NEAR_SINGULAR
     warned: bool = field(default=False, repr=False)
 
     def share(self, J: Array) -> float:
-        """How much of the largest damping is due: 0 away from singularities, 1 at one.
+        """The share of the largest damping to use, 0 away from singularities and 1 at one.
 
         Args:
             J: Tip Jacobian, shape (6, n).
@@ -57,7 +57,7 @@ def damped_inverse(J: Array, damping: float) -> Array:
 
     Args:
         J: Shape (m, n), m <= n.
-        damping: Lambda squared; 0 is the pseudo-inverse.
+        damping: The damping, lambda squared; 0 gives the pseudo-inverse.
 
     Returns:
         Shape (n, m).

@@ -1,13 +1,13 @@
-r"""The derivative gain of the velocity controllers: ``python -m solutions.study.speed_gains``.
+r"""Tune the derivative gain of the velocity controllers: ``python -m solutions.study.speed_gains``.
 
-A drive that follows its command with a lag :math:`\tau` makes of
-:math:`u = \dot q_d + K_p e + K_d \dot e` the error equation
+With a drive that follows its command with a lag :math:`\tau`, the command
+:math:`u = \dot q_d + K_p e + K_d \dot e` leads to the error equation
 
 .. math:: \tau\,\ddot e + (1 + K_d)\,\dot e + K_p\,e = \tau\,\ddot q_d .
 
-Its right side drives the error wherever the target accelerates, and :math:`1 + K_d` divides what
-comes of it.  The price is noise: the measured speeds enter the command times :math:`K_d`.  So at
-the report's :math:`K_p` the gain is raised, step by step, until a step no longer pays.
+Its right side drives the error whenever the target accelerates, and :math:`1 + K_d` divides the
+effect.  The price is noise, because the measured speeds times :math:`K_d` enter the command.  So,
+with the report's :math:`K_p`, the gain is raised step by step until a step is no longer worthwhile.
 """
 
 from __future__ import annotations
@@ -28,7 +28,7 @@ from .tasks import Task
 from .workspace_velocity import WorkspaceVelocityPD
 
 PAYS = 0.02
-"""Share of the error that a step of the gain must take away to be worth its noise."""
+"""The share of the error that a step of the gain must remove to be worth its noise."""
 TRIED = (0.0, 0.15, 0.3, 0.45, 0.6, 0.75, 0.9)
 CONTROLLERS = ("joint velocity", "workspace velocity")
 
@@ -60,13 +60,13 @@ def trial(controller: str, task: str, Kd: float, seed: int) -> Mapping[str, floa
 
 
 def trials(seeds: int = 2, jobs: int | None = None, progress: Meter | None = None) -> list[Row]:
-    """Every gain on two paths, by both velocity controllers."""
+    """Try every gain on two paths with both velocity controllers."""
     grid = cells(controller=CONTROLLERS, task=("line", "circle"), Kd=TRIED, seed=range(seeds))
     return work_through(trial, grid, jobs=jobs, progress=progress)
 
 
 def best(rows: list[Row], controller: str) -> float:
-    """The largest gain to which every step took away at least `PAYS` of the mean error."""
+    """The largest gain up to which each step removed at least `PAYS` of the mean error."""
     errors = [
         np.mean([r["late_rms_mm"] for r in pick(rows, controller=controller, Kd=Kd)])
         for Kd in TRIED

@@ -1,4 +1,4 @@
-"""A board that goes round on a circle, an arm above it and a camera beside it."""
+"""A scene with a board that moves on a circle, an arm above it and a camera beside it."""
 
 from __future__ import annotations
 
@@ -14,19 +14,19 @@ from labkit.tags.camera import Camera, looking_at
 from labkit.tags.tag import Tag
 
 RADIUS, SPEED = 0.15, 0.1
-"""Of the board's circle, in [m] and [m/s]."""
+"""The radius of the board's circle in [m], and its speed in [m/s]."""
 
 
 @dataclass(frozen=True, eq=False)
 class Scene:
-    """What takes part.
+    """The objects of the scene.
 
     Attributes:
         arm: The arm, at rest above the tag.
-        board: The board, on its circle from now on.
+        board: The board, which moves on its circle.
         camera: A fixed camera that sees all of the circle.
-        T_wt: Pose of the tip at the start, shape (4, 4).
-        offset: From the tag to where the tip should be, world axes, shape (3,) in [m].
+        T_wt: The pose of the tip at the start, shape (4, 4).
+        offset: The vector from the tag to the goal of the tip, world axes, shape (3,) in [m].
     """
 
     arm: Arm
@@ -36,7 +36,7 @@ class Scene:
     offset: Array
 
     def error(self, log: Log) -> Array:
-        """Where the tip should have been minus where it was, shape (N, 3) in [m]."""
+        """The goal of the tip minus its position, shape (N, 3) in [m]."""
         goal = np.array([self.board.pose_at(t)[:3, 3] for t in log.t]) + self.offset
         return np.asarray(goal - metrics.tip_poses(log, self.arm.model)[:, :3, 3])
 
@@ -45,9 +45,9 @@ def circling_board(plant: Plant = IDEAL, noise: float = 0.0, seed: int = 0) -> S
     """The board on its circle, level, 0.2 m below the tip.
 
     Args:
-        plant: Of the arm.
-        noise: Of the camera, in grey levels.
-        seed: Of arm and camera.
+        plant: The plant of the arm.
+        noise: The noise of the camera, in grey levels.
+        seed: The seed of the arm and the camera.
     """
     world = World()
     arm = Arm("left", plant, seed, world=world)

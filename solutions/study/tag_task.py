@@ -1,9 +1,9 @@
 """Following a tag, as a task on which controllers can be compared.
 
-What a follower makes of a camera's readings is recorded once for each seed, with the arm out of
-play: the camera stands still beside the table, so what it sees does not depend on the arm.  Every
-controller then follows the same reference, and is also judged by how far the tip is from where the
-tag really was.
+The reference that a follower makes from a camera's readings is recorded once for each seed, without
+the arm: the camera is fixed beside the table, so what it sees does not depend on the arm.  Every
+controller then follows the same reference, and is also judged by the distance of the tip from its
+place above the true tag.
 """
 
 from __future__ import annotations
@@ -44,25 +44,25 @@ from .tasks import Task, ready_pose
 from .visual_servoing import SequentialServoing
 
 DURATION = 8.0
-"""How long to follow, in [s]."""
+"""How long the tag is followed, in [s]."""
 RATE = 200.0
-"""How often the follower is asked while it is recorded, in [Hz]."""
+"""How often the follower is called while it is recorded, in [Hz]."""
 LAP = 6.5
-"""How long the tag takes for its circle, in [s]."""
+"""The time that the tag takes for its circle, in [s]."""
 RADIUS = 0.06
-"""Of the tag's circle, in [m]."""
+"""The radius of the tag's circle, in [m]."""
 OFFSET = np.array([0.0, 0.0, 0.2])
-"""From the tag to where the tip should be, world axes, in [m]."""
+"""The vector from the tag to the goal of the tip, world axes, in [m]."""
 NOISE = 2.0
-"""Of the camera, in grey levels."""
+"""The noise of the camera, in grey levels."""
 
 
 @dataclass(frozen=True)
 class Even:
-    """Even pace, s = t / duration, in motion at both ends.
+    """A scaling at constant pace, s = t / duration, which does not rest at its ends.
 
     Attributes:
-        duration: In [s].
+        duration: The duration in [s].
     """
 
     duration: float
@@ -74,12 +74,12 @@ class Even:
 
 @dataclass(frozen=True, eq=False)
 class Chase:
-    """A recorded reference and the truth behind it.
+    """A recorded reference, and the true goal.
 
     Attributes:
         task: The reference as a task.
         t: Times, shape (n,) in [s].
-        goal: Where the tip should have been, shape (n, 3) in [m].
+        goal: The true goal of the tip, shape (n, 3) in [m].
     """
 
     task: Task
@@ -87,18 +87,18 @@ class Chase:
     goal: Array
 
     def miss(self, t: Any, tips: Any) -> Array:
-        """How far tips (k, 3) [m] were from their goal at times (k,) [s], shape (k,) in [m]."""
+        """The distance in [m] of tips (k, 3) from their goal at times (k,) [s], shape (k,)."""
         goal = np.column_stack([np.interp(t, self.t, x) for x in self.goal.T])
         return np.asarray(np.linalg.norm(goal - tips, axis=1))
 
 
 def followed(seed: int) -> Chase:
-    """The course's way: ten pictures a second, a filter, a reference that never jumps."""
+    """The course's method: ten pictures per second, a filter, and a continuous reference."""
     return _record(seed, 10.0, 0.1, lambda: TagFollower(ready_pose(), OFFSET))
 
 
 def sequential(seed: int) -> Chase:
-    """The report's way (its Algorithm 1): look every 5 s for a second, then a line from rest."""
+    """The report's Algorithm 1: look for a second every 5 s, then follow a line from rest."""
     return _record(seed, 0.2, 1.0, lambda: SequentialServoing(ready_pose(), OFFSET))
 
 
@@ -108,15 +108,15 @@ def closed_loop(
     """Follow the tag with the arm in the picture, which may hide it.
 
     Args:
-        seed: Of arm, camera and look-ups.
-        controller: Takes poses.
-        follower: Makes them of the readings.
-        plant: What the arm is like.
-        **dials: Of the look-ups, as `TagStream` takes them.
+        seed: The seed of arm, camera and look-ups.
+        controller: A controller that follows poses.
+        follower: Makes the poses from the readings.
+        plant: The plant to drive.
+        **dials: Options of the look-ups, as for `TagStream`.
 
     Returns:
-        The run; how far the tip was from its place above the true tag, shape (N,) in [m]; and in
-        how many pictures the tag was not found.
+        The run; the distance of the tip from its place above the true tag, shape (N,) in [m]; and
+        the number of pictures in which the tag was not found.
     """
     with World() as world:
         board, camera = staged(world, seed)
@@ -144,11 +144,11 @@ def _record(seed: int, rate: float, delay: float, make: Callable[[], Any]) -> Ch
 
 
 def staged(world: World, seed: int) -> tuple[Board, Camera]:
-    """A board under the ready tip that rests, goes once round a circle and rests; a camera beside.
+    """Put a board under the ready tip, which moves once around a circle, and a camera beside it.
 
     Args:
-        world: Where to put them; the board moves from now on.
-        seed: Of the camera's noise.
+        world: The world of the board and the camera; the board moves from now on.
+        seed: The seed of the camera's noise.
     """
     start = ready_pose()[:3, 3] - OFFSET
     centre = start - (0.0, RADIUS, 0.0)

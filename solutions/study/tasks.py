@@ -1,9 +1,9 @@
-r"""The report's tasks, each a composition of the parts in `trajectory` and `paths`.
+r"""The report's tasks, each composed of parts from `trajectory` and `paths`.
 
-Nothing here is new mathematics: a line is ``Trajectory(PosePath(Line), Quintic)``, a circle the
-same with `Circle`, and the square a `Chain` of four lines, so that the tip stops at each corner and
-position, velocity and acceleration are continuous.  Every task ends with a second of `Hold`, in
-which a controller may settle.
+A line is ``Trajectory(PosePath(Line), Quintic)``, a circle is the same with `Circle`, and the
+square is a `Chain` of four lines, so that the tip stops at each corner, and position, velocity and
+acceleration are continuous.  Every task ends with a second of `Hold`, in which a controller may
+settle.
 """
 
 from __future__ import annotations
@@ -28,21 +28,21 @@ V_MAX = 0.2
 A_MAX = 0.5
 """The tip's largest acceleration, in [m/s^2]."""
 OFFSET = 0.01
-"""Standard deviation of each joint's start angle about the task's, in [rad]."""
+"""The standard deviation of each joint's start angle from that of the task, in [rad]."""
 HOLD = 1.0
-"""How long it stays at the end, in [s]."""
+"""How long the tip stays at the end, in [s]."""
 
 
 @dataclass(frozen=True, eq=False)
 class Task:
-    """A motion of the tip and where the arm begins it.
+    """A motion of the tip, and the joint angles at its start.
 
     Attributes:
-        name: What tables and figures call it.
+        name: Its name in tables and figures.
         target: Poses of the tip over time.
         q0: Joint angles at its start, shape (7,) in [rad].
-        side: Which arm.
-        samples: At how many places along each path its joint angles are solved for.
+        side: The arm, "left" or "right".
+        samples: The number of places along each path at which joint angles are computed.
     """
 
     name: str
@@ -53,21 +53,21 @@ class Task:
 
     @property
     def duration(self) -> float:
-        """How long it lasts, in [s]."""
+        """The duration in [s]."""
         return float(self.target.duration)
 
     def start(self, seed: int) -> Array:
-        """Where a seed lets the arm begin: off the path by about 10 mm, for a loop must close it.
+        """The start for a seed, about 10 mm off the path, so that only feedback removes the error.
 
         Returns:
             Joint angles, shape (7,) in [rad]; the same for every controller.
         """
-        off = np.random.default_rng([seed, 20190201]).standard_normal(7)  # the report's month
+        off = np.random.default_rng([seed, 20190201]).standard_normal(7)  # the month of the report
         return self.q0 + OFFSET * off
 
     @cached_property
     def joints(self) -> Target:
-        """The same motion as joint angles."""
+        """The motion as joint angles."""
         model = Model(self.side)
         joints: Target = model.joint_trajectory(self.target, self.q0, samples=self.samples)
         return joints
@@ -83,7 +83,7 @@ def smooth(paths: Iterable[Any], R_wt: Any, *, v_max: float = V_MAX, a_max: floa
 
     Args:
         paths: Paths with a `length`, in order, each starting where the one before ended.
-        R_wt: The tip's orientation all along, shape (3, 3).
+        R_wt: The constant orientation of the tip, shape (3, 3).
         v_max: Largest speed of the tip, in [m/s].
         a_max: Largest acceleration along the path, in [m/s^2].
 
@@ -107,7 +107,7 @@ def line(
     """A straight line (report, section 2.1).
 
     Args:
-        goal: Where it ends, seen from the start, shape (3,) in [m].
+        goal: The end relative to the start, shape (3,) in [m].
         v_max: Largest speed, in [m/s].
         a_max: Largest acceleration, in [m/s^2].
     """
@@ -120,17 +120,17 @@ def circle(centre: Any = (0.0, -0.10, 0.0)) -> Task:
     """A level circle (report, section 2.2).
 
     Args:
-        centre: A point on its axis, seen from the start, shape (3,) in [m].
+        centre: A point on its axis, relative to the start, shape (3,) in [m].
     """
     p, R_wt = _start()
     return Task("circle", smooth([Circle(p, p + as_array(centre, (3,), "centre"))], R_wt), _q0())
 
 
 def square(goals: Any = ((0.15, 0.0, 0.0), (0.15, -0.15, 0.0), (0.0, -0.15, 0.0))) -> Task:
-    """The report's square: current, goal 0, goal 1, goal 2, current (section 2.3).
+    """The report's square (section 2.3), from the start to three goals and back.
 
     Args:
-        goals: The other corners, seen from the start, shape (k, 3) in [m].
+        goals: The other corners relative to the start, shape (k, 3) in [m].
     """
     p, R_wt = _start()
     corners = Polyline(np.array([p, *(p + as_vector(g, 3, "goal") for g in goals), p]))
@@ -138,7 +138,7 @@ def square(goals: Any = ((0.15, 0.0, 0.0), (0.15, -0.15, 0.0), (0.0, -0.15, 0.0)
 
 
 def _start() -> tuple[Array, Array]:
-    """Place and orientation of the left tip where the tasks begin."""
+    """Position and orientation of the left tip at the start of the tasks."""
     T_wt = ready_pose()
     return T_wt[:3, 3], T_wt[:3, :3]
 

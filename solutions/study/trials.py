@@ -1,6 +1,6 @@
 """Record the trials of notebook 07: ``python -m solutions.study.trials``.
 
-The line of the training runs comes with labkit; the held-out cases stay here.
+The training runs, on the line, are shipped with labkit; the held-out cases are not.
 """
 
 from __future__ import annotations
@@ -52,7 +52,7 @@ def rms(case: str, Kp: float, Kd: float, seed: int) -> Mapping[str, float]:
 
 
 def record(cases: list[str], jobs: int | None) -> Trials:
-    """All gains on some cases, every seed a case of its own."""
+    """Try all gains on some cases, with each seed as a case of its own."""
     rows = work_through(
         rms, cells(case=cases, Kp=KP, Kd=KD, seed=SEEDS), jobs=jobs, progress=Meter("trials")
     )
@@ -75,7 +75,7 @@ def record(cases: list[str], jobs: int | None) -> Trials:
 
 
 def main() -> None:
-    """Record and say what came out."""
+    """Record the trials and print a summary."""
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--jobs", type=int, default=None)
     options = parser.parse_args()

@@ -15,17 +15,17 @@ from .joint_velocity import JointVelocityPD
 from .report_procedure import Trial, Tuning, report_procedure
 
 OFF = 0.005
-"""How far from its target the joint begins, in [rad]: no further, or speed and torque saturate."""
+"""How far off its target the joint starts, in [rad]; more would saturate speed or torque."""
 
 
 def trial_on(joint: int, plant: Plant = BAXTER, *, duration: float = 2.0, seed: int = 0) -> Trial:
-    """A trial for `report_procedure`: one joint in velocity mode comes back to the ready pose.
+    """A trial for `report_procedure` in which a joint in velocity mode returns to the ready pose.
 
     Args:
-        joint: Its number, from 0 at the shoulder.
-        plant: What to drive.
-        duration: How long to watch, in [s].
-        seed: Of the noise and the late ticks.
+        joint: The number of the joint, from 0 at the shoulder.
+        plant: The plant to drive.
+        duration: How long the joint is observed, in [s].
+        seed: The seed of the noise and the late ticks.
     """
     ready = robot("left").ready
 

@@ -1,7 +1,7 @@
-"""The report's Algorithm 1 as it is: look, plan a line to the tag, follow it, look again.
+"""The report's Algorithm 1, unchanged: look, plan a line to the tag, follow it, look again.
 
-Each look-up holds up the loop, and each new line starts from rest while the arm is moving: both
-make the arm jerk.  It is here to be seen beside `tag_following`, not to be copied.
+Each look-up blocks the loop, and each new line starts from rest while the arm is moving; both make
+the arm jerk.  The algorithm is here for comparison with `tag_following`, not as a model.
 """
 
 from __future__ import annotations
@@ -32,13 +32,13 @@ from labkit.tags.stream import Reading
 
 @dataclass(eq=False)
 class SequentialServoing:
-    """A follower for `lk.TagTarget`: look up every 5 s, and wait for each look-up.
+    """A follower for `lk.TagTarget` that looks for the tag every 5 s, and waits for each look-up.
 
     Attributes:
-        T_wt: Pose of the tip at the start, shape (4, 4); its orientation is kept.
-        offset: From the tag to where the tip should be, world axes, shape (3,) in [m].
-        duration: How long each line lasts, in [s].
-        moved: A tag that has moved less than this, in [m], needs no new line.
+        T_wt: The pose of the tip at the start, shape (4, 4); its orientation is kept.
+        offset: The vector from the tag to the goal of the tip, world axes, shape (3,) in [m].
+        duration: The duration of each line, in [s].
+        moved: The distance in [m] that a tag must move before there is a new line.
     """
 
     T_wt: Any
@@ -53,7 +53,7 @@ class SequentialServoing:
         self._began, self._path = 0.0, self._line(self._goal, self._goal)
 
     def __call__(self, t: float, readings: tuple[Reading, ...]) -> PoseSample:
-        """The point of the present line at time ``t`` [s]."""
+        """The point on the present line at time ``t`` [s]."""
         for reading in readings:
             goal = reading.T_wm[:3, 3] + self.offset
             if np.linalg.norm(goal - self._goal) > self.moved:
@@ -67,16 +67,16 @@ class SequentialServoing:
 
 
 def stalled(controller: Controller, busy: Callable[[], bool], timeout: float = 0.2) -> Controller:
-    """A controller whose loop waits for something: it is asked only when it is not busy.
+    """Wrap a controller whose loop blocks, so that it is called only when it is not busy.
 
-    Meanwhile the arm obeys the last command until its command timeout, and then stays where it is.
+    While it is busy, the arm obeys the last command until the command timeout, and then stops.
 
     Args:
         controller: The controller.
-        busy: Whether the loop waits now.
+        busy: Returns whether the loop is blocked now.
         timeout: The arm's command timeout, in [s].
     """
-    last: list[Any] = []  # when the controller was last asked, and its answer
+    last: list[Any] = []  # when the controller was last called, and its command
 
     def stalled(state: State, target: Any) -> Command:
         if not (busy() and last):

@@ -1,4 +1,4 @@
-r"""Workspace impedance: the tip answers a push as a mass, a damper and a spring would.
+r"""Workspace impedance, with which the tip responds to a push as a mass, damper and spring do.
 
 Operational space (Khatib 1987; Siciliano, section 9.2), with J the tip Jacobian in world axes:
 
@@ -7,25 +7,25 @@ Operational space (Khatib 1987; Siciliano, section 9.2), with J the tip Jacobian
    \Lambda = (J M^{-1} J^T)^{-1}, \qquad \bar J = M^{-1} J^T \Lambda, \qquad
    e = \bigl(p_d - p,\ \log(R_d R^T)^\vee\bigr)
 
-With the arm's own inertia (`inertia` None) no force needs to be measured:
+With the arm's own inertia (`inertia` None) no force has to be measured:
 
 .. math:: a = \dot V_d + \Lambda^{-1}(D\,\dot e + K\,e)
    \quad\Rightarrow\quad \Lambda \ddot e + D\,\dot e + K\,e = -F_{ext}
 
-With another inertia the measured force takes part:
+With another inertia the law uses the measured force:
 
 .. math:: a = \dot V_d + M_d^{-1}(D\,\dot e + K\,e + F_{ext}) - \Lambda^{-1} F_{ext}
    \quad\Rightarrow\quad M_d\,\ddot e + D\,\dot e + K\,e = -F_{ext}
 
-A force that is measured h seconds late enters as :math:`F + h\,(M_d \Lambda^{-1} - I)\,\dot F`: the
+A force measured h seconds late acts as :math:`F + h\,(M_d \Lambda^{-1} - I)\,\dot F`, so the
 further M_d is from Lambda, the fresher the measurement must be.
 
-Then, the elbow's freedom going to a posture through the dynamically consistent null space:
+The torque is then, with the elbow drawn to a posture in the dynamically consistent null space,
 
 .. math:: \tau = J^T \Lambda\,(a - \dot J \dot q) + C \dot q + g
    + (I - J^T \bar J^T)\, M\,(k_p\,(q_{posture} - q) - k_d\,\dot q)
 
-The default damping makes every direction critically damped for the inertia that it moves:
+The default damping makes every direction critically damped for its inertia:
 :math:`D = \zeta\,(\Lambda^{1/2} K^{1/2} + K^{1/2} \Lambda^{1/2})` (Albu-Schäffer et al. 2003).
 """
 
@@ -48,10 +48,10 @@ class WorkspaceImpedance:
     """Torques that give the tip a stiffness, a damping and, if asked, another inertia.
 
     Attributes:
-        model: Of the arm.
+        model: The model of the arm.
         K: Stiffness, shape (6,) or one number, in [N/m] and [N m/rad], world axes.
         D: Damping, shape (6,) or one number, in [N s/m] and [N m s/rad]; None takes `zeta`.
-        zeta: Damping ratio, where D is None.
+        zeta: The damping ratio if D is None.
         inertia: M_d, shape (6,) or (6, 6) in [kg] and [kg m^2]; None keeps the arm's own.
         gravity: Add g(q); False for an arm that carries its own weight, as Baxter does.
         posture: Joint angles to stay near, shape (n,) in [rad]; None is `Robot.ready`.

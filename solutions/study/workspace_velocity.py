@@ -1,4 +1,4 @@
-r"""Workspace velocity PD with feed-forward, the elbow's freedom spent on a posture.
+r"""Workspace velocity PD with feed-forward, and a posture in the null space.
 
 .. math::
 
@@ -6,13 +6,13 @@ r"""Workspace velocity PD with feed-forward, the elbow's freedom spent on a post
    e = \bigl(p_d - p,\ \log(R_d R^T)^\vee\bigr) \\
    u &= J^+ V + (I - J^\dagger J)\, k\,(q_{posture} - q)
 
-Lynch & Park, section 11.3.3; Siciliano, sections 3.5 and 3.7.  J is the tip Jacobian in world axes,
-J^+ its inverse damped near singularities; the null space takes the undamped one, or the posture
-would push the tip.
+The sources are Lynch & Park, section 11.3.3, and Siciliano, sections 3.5 and 3.7.  J is the tip
+Jacobian in world axes, and J^+ its inverse, damped near singularities.  The null space uses the
+undamped inverse; with the damped one the posture would move the tip.
 
-Where the tip cannot follow, out of reach or at a singularity, the damped inverse takes the speeds
-that lessen :math:`|e_p|^2 + \ell^2 |e_o|^2`, and the arm comes to rest at the least of it: a radian
-of turning counts as much there as the lever :math:`\ell` in metres.
+If the tip cannot follow, out of reach or at a singularity, the damped inverse chooses speeds that
+reduce :math:`|e_p|^2 + \ell^2 |e_o|^2`, and the arm comes to rest at its minimum, where a radian
+counts as much as the lever :math:`\ell` in metres.
 """
 
 from __future__ import annotations
@@ -33,14 +33,14 @@ class WorkspaceVelocityPD:
     """Joint speeds that make the tip follow a trajectory of poses.
 
     Attributes:
-        model: Of the arm.
+        model: The model of the arm.
         Kp: Gains on the position [1/s] and orientation [1/s] error, shape (6,) or one number.
         Kd: Gains on the error of the twist, shape (6,) or one number, without unit.
         posture: Joint angles to stay near, shape (n,) in [rad]; None is `Robot.ready`.
-        pull: How fast the free motion goes there, in [1/s].
-        damping: The largest lambda squared.
-        lever: What a radian counts where place and orientation cannot both be had, in [m]; the
-            default is that of the compared impedance, the root of 20 N m/rad over 300 N/m.
+        pull: The gain of the posture, in [1/s].
+        damping: The largest damping, lambda squared.
+        lever: The weight of a radian if position and orientation cannot both be reached, in [m];
+            the default is that of the compared impedance, the root of 20 N m/rad over 300 N/m.
         watch: Decides when to damp.
     """
 

@@ -1,9 +1,9 @@
-r"""Following a tag: a reference that never jumps, made from readings that come late.
+r"""Follow a tag with a continuous reference, made from readings that arrive late.
 
-A Kalman filter of position, velocity and acceleration takes in old readings.  What it believes of
-the tag is carried on, along its turn, to where the tag will be, and each reading bends the
-reference towards that place, by the polynomial of fifth order that takes over the reference's own
-position, velocity and acceleration.  Between the two ends of a blend, :math:`x = t/T`:
+A Kalman filter for position, velocity and acceleration takes in old readings.  Its estimate is
+predicted along the turn of the tag to where the tag will be.  Each reading bends the reference
+towards that place by a polynomial of fifth order, which continues the reference's own position,
+velocity and acceleration.  Between the two ends of a blend, with :math:`x = t/T`:
 
 .. math:: p(t) = \sum_{k=0}^{5} c_k x^k
 
@@ -38,11 +38,11 @@ _ENDS = np.linalg.inv(
         ],
         dtype=float,
     )
-)  # from value, slope and bend at x = 0 and x = 1 to the coefficients
+)  # from value, first and second derivative at x = 0 and x = 1 to the coefficients
 
 
 def carry_forward(mean: Any, covariance: Any, age: float, noise: float) -> tuple[Array, Array]:
-    r"""Where a thing is ``age`` seconds later, if only white noise changes its highest derivative.
+    r"""Predict a motion by ``age`` seconds, if only white noise changes its highest derivative.
 
     For position and velocity, pushed by unknown accelerations:
 
@@ -57,11 +57,11 @@ def carry_forward(mean: Any, covariance: Any, age: float, noise: float) -> tuple
         mean: Position [m] and velocity [m/s], or acceleration [m/s^2] too, shape (6,) or (9,).
         covariance: P, shape (6, 6) or (9, 9).
         age: tau, in [s].
-        noise: q, the power of the acceleration's noise, in [m^2/s^3], or, of nine numbers, of its
-            slope's, in [m^2/s^5].
+        noise: q, the power of the noise of the acceleration, in [m^2/s^3], or, for a mean of nine
+            numbers, of the jerk, in [m^2/s^5].
 
     Returns:
-        Mean and covariance then.
+        The predicted mean and covariance.
     """
     mean = as_array(mean, (9,) if np.size(mean) == 9 else (6,), "mean")
     covariance = as_array(covariance, (len(mean), len(mean)), "covariance")
@@ -78,14 +78,14 @@ def carry_forward(mean: Any, covariance: Any, age: float, noise: float) -> tuple
 
 
 def turn_on(mean: Any, age: float) -> Array:
-    r"""Where a thing is ``age`` seconds later, if its velocity keeps on turning as it does now.
+    r"""Predict a motion by ``age`` seconds, if its velocity continues to turn as it does now.
 
     A velocity that turns by :math:`\omega = |v\times a|/|v|^2` each second in the plane of v and a
     has :math:`\dot a = -\omega^2 v`, so
 
     .. math:: p' = p + \frac{\sin\omega\tau}{\omega}\,v + \frac{1-\cos\omega\tau}{\omega^2}\,a
 
-    and v' and a' are its slopes.  On a circle this is exact; without a turn it is constant
+    and v' and a' are its derivatives.  On a circle this is exact; without a turn it is constant
     acceleration.
 
     Args:
@@ -93,7 +93,7 @@ def turn_on(mean: Any, age: float) -> Array:
         age: tau, in [s].
 
     Returns:
-        The mean then, shape (9,).
+        The predicted mean, shape (9,).
     """
     p, v, a = as_array(mean, (9,), "mean").reshape(3, 3)
     tau = as_number(age, "age")
@@ -104,13 +104,13 @@ def turn_on(mean: Any, age: float) -> Array:
 
 
 def blend(t: float, reference: Sample, goal: Sample, duration: float) -> Sample:
-    """From a reference in motion to a goal in motion, without a jump.
+    """Blend from a moving reference to a moving goal, without a jump.
 
     Args:
         t: Time since the blend began, in [s]; after its end the goal's velocity goes on.
-        reference: What the reference said when it began.
-        goal: Where to be when it ends, how fast, and with what acceleration.
-        duration: How long it lasts, in [s].
+        reference: The reference when the blend began.
+        goal: Position, velocity and acceleration at the end of the blend.
+        duration: The duration of the blend, in [s].
 
     Returns:
         The reference at that time.
@@ -136,17 +136,17 @@ def blend(t: float, reference: Sample, goal: Sample, duration: float) -> Sample:
 class TagFollower:
     """Keeps the tip at a fixed offset from a tag; a follower for `labkit.tags.stream.TagTarget`.
 
-    A tag that is no longer seen is believed to go on for `coast` seconds after the last picture;
-    then the reference comes to rest and holds until the tag is seen again.
+    If the tag is no longer seen, its motion is predicted for `coast` seconds after the last
+    picture; then the reference comes to rest and holds until the tag is seen again.
 
     Attributes:
         T_wt: Pose of the tip at the start, shape (4, 4); its orientation is kept.
-        offset: From the tag to where the tip should be, world axes, shape (3,) in [m].
-        horizon: How far ahead a blend meets the tag, in [s]; longer where `acceleration` asks it.
-        coast: How long to believe in the last motion, in [s].
+        offset: The vector from the tag to the goal of the tip, world axes, shape (3,) in [m].
+        horizon: The time until a blend meets the tag, in [s]; longer if `acceleration` requires it.
+        coast: How long the last motion is predicted, in [s].
         acceleration: Largest acceleration of the reference, in [m/s^2].
-        noise: How unsteady the tag's acceleration is, for `carry_forward`, in [m^2/s^5].
-        spread: What one expects of its speed [m/s] and its acceleration [m/s^2] at first.
+        noise: The noise of the tag's acceleration, for `carry_forward`, in [m^2/s^5].
+        spread: The initial standard deviations of speed [m/s] and acceleration [m/s^2].
     """
 
     T_wt: Any
@@ -187,7 +187,7 @@ class TagFollower:
         return PoseSample(T, np.concatenate([v, np.zeros(3)]), np.concatenate([a, np.zeros(3)]))
 
     def learn(self, reading: Reading) -> None:
-        """Take a reading into the estimate; one older than the estimate is of no use."""
+        """Update the estimate with a reading, unless the reading is older than the estimate."""
         z, R = reading.T_wm[:3, 3], reading.covariance[:3, :3]
         if self.estimate is None:
             self.estimate = first_estimate(reading.stamp, z, R, *self.spread)
@@ -201,11 +201,11 @@ class TagFollower:
         return blend(t - self._began, self._from, self._to, self._lasts)
 
     def _blend_to(self, t: float, goal: Callable[[float], Sample]) -> None:
-        """A new blend from the reference as it is, later than the horizon if that is too hard.
+        """Start a new blend from the present reference, longer than the horizon if need be.
 
         Args:
-            t: Now, in [s].
-            goal: Where to be and how to move, a function of the seconds after the horizon.
+            t: The present time, in [s].
+            goal: The goal as a function of the seconds after the horizon.
         """
         here, duration = self._reference(t), self.horizon
         while _peak(here, goal(duration - self.horizon), duration) > self.acceleration:
@@ -217,6 +217,6 @@ class TagFollower:
 
 
 def _peak(reference: Sample, goal: Sample, duration: float) -> float:
-    """Largest acceleration of a blend after its start, which it cannot choose, in [m/s^2]."""
+    """The largest acceleration of a blend after its start, which is given, in [m/s^2]."""
     times = np.linspace(0.0, duration, 9)[1:-1]
     return max(float(np.linalg.norm(blend(t, reference, goal, duration)[2])) for t in times)

@@ -18,7 +18,7 @@ K = np.array([[515.0, 0.0, 319.5], [0.0, 515.0, 239.5], [0.0, 0.0, 1.0]])
 
 
 def seen(distance: float, tilt: float, azimuth: float, spin: float, x: float = 0.0) -> Array:
-    """A tag before the camera, facing it but for its tilt: `T_cm`."""
+    """The pose `T_cm` of a tag in front of the camera, which it faces except for a tilt."""
     facing = np.diag([1.0, -1.0, -1.0])  # the tag's z looks back at the camera
     axis = np.array([np.cos(azimuth), np.sin(azimuth), 0.0])
     R = se3.rotation(tilt * axis) @ facing @ se3.rotation(np.array([0.0, 0.0, spin]))
@@ -26,7 +26,7 @@ def seen(distance: float, tilt: float, azimuth: float, spin: float, x: float = 0
 
 
 def pixels_of(T_cm: Array, size: float) -> Array:
-    """Where its corners appear, shape (4, 2) in [px]."""
+    """The pixels of its corners, shape (4, 2) in [px]."""
     points = tag_corners(size) @ T_cm[:3, :3].T + T_cm[:3, 3]
     image = points @ K.T
     return np.asarray(image[:, :2] / image[:, 2:])
@@ -39,7 +39,7 @@ def sizes(random: Random) -> Iterator[Call]:
 
 
 def oblique(random: Random) -> Iterator[Call]:
-    """Tags seen from aside, near and far."""
+    """Tags seen obliquely, near and far."""
     for tilt in random.uniform(0.5, 1.0, 4):
         azimuth, spin = random.uniform(-3.0, 3.0, 2)
         T = seen(random.uniform(0.4, 1.2), tilt, azimuth, spin, x=0.1)
@@ -87,14 +87,14 @@ def _sample(random: Random, speed: float, push: float, n: int = 3) -> Sample:
 
 
 def blends_from_rest(random: Random) -> Iterator[Call]:
-    """From rest to rest, in one second."""
+    """Blends from rest to rest in one second."""
     a, b = _sample(random, 0.0, 0.0), _sample(random, 0.0, 0.0)
     for t in random.uniform(0.1, 0.9, 3):
         yield call(float(t), a, b, 1.0)
 
 
 def _both_in_motion(random: Random) -> Iterator[tuple[Sample, Sample, float]]:
-    """Start, goal and duration: the goal steady or turning, of a point, seven joints, a number."""
+    """Start, goal and duration for a point, seven joints and a number; goals steady or turning."""
     for T in random.uniform(0.3, 3.0, 3):
         a, b = _sample(random, 0.3, 0.5), _sample(random, 0.3, 0.0)
         yield a, b, float(T)
@@ -104,16 +104,16 @@ def _both_in_motion(random: Random) -> Iterator[tuple[Sample, Sample, float]]:
 
 
 def blends_in_motion(random: Random) -> Iterator[Call]:
-    """Both in motion, other durations."""
+    """Blends of other durations with motion at both ends."""
     for a, b, T in _both_in_motion(random):
-        for x in random.uniform(0.1, 0.9, 2):  # not 1: at the end itself both are right
+        for x in random.uniform(0.1, 0.9, 2):  # not 1, as at the end itself both are right
             yield call(float(x * T), a, b, T)
         if not b.acceleration.any():
             yield from (call(x * T, a, b, T) for x in (0.0, 1.0))
 
 
 def blends_after_the_end(random: Random) -> Iterator[Call]:
-    """The same, after the end."""
+    """The same blends after their end."""
     for a, b, T in _both_in_motion(random):
         yield call(1.5 * T, a, b, T)
 
@@ -131,5 +131,5 @@ def ages(random: Random) -> Iterator[Call]:
 
 
 def no_age(random: Random) -> Iterator[Call]:
-    """No time at all changes nothing."""
+    """An age of zero, which changes nothing."""
     yield call(*believed(random), 0.0, 0.01)

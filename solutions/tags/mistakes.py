@@ -1,4 +1,4 @@
-"""What people write in notebook 06 instead."""
+"""Mistakes that people make in notebook 06."""
 
 from __future__ import annotations
 
@@ -15,22 +15,22 @@ from labkit.shapes import Array
 from .answers import sensor_quality, tag_corners, tag_pose
 from .following import blend, carry_forward
 
-BORDER = 1.25  # an AprilTag 36h11 with its white border is ten cells wide, eight without
+BORDER = 1.25  # an AprilTag 36h11 is eight cells wide, and ten with its white border
 
 
 def counter_clockwise(size: float) -> Array:
-    """The other way round: the tag comes out mirrored, seen from behind."""
+    """The corners in reverse order, so the tag is mirrored, as if seen from behind."""
     corners: Array = tag_corners(size)[[1, 0, 3, 2]]
     return corners
 
 
 def border_counted(size: float) -> Array:
-    """Takes the white border into the size."""
+    """Includes the white border in the size."""
     return tag_corners(BORDER * size)
 
 
 def from_a_corner(size: float) -> Array:
-    """Puts the origin into a corner instead of the middle."""
+    """Puts the origin at a corner instead of the centre."""
     return np.add(tag_corners(size), [size / 2.0, -size / 2.0, 0.0])
 
 
@@ -39,7 +39,7 @@ class Reordered:
     """The right corners, moved or in another order.
 
     Attributes:
-        order: Which corner comes when; (0, 1, 2, 3) is right.
+        order: The order of the corners; (0, 1, 2, 3) is right.
         scale: Factors of x, y and z.
     """
 
@@ -56,15 +56,15 @@ class PoseOf:
     """OpenCV with corners of another kind.
 
     Attributes:
-        corners: Gives them; the size is that of the square.
-        scale: Of the size.
+        corners: Returns the corners, given the size of the square.
+        scale: Factor of the size.
     """
 
     corners: Reordered = Reordered()
     scale: float = 1.0
 
     def __call__(self, pixels: Any, K: Any, size: float) -> Array:
-        """The pose that fits them best."""
+        """The pose that fits the corners best."""
         _, turns, places, errors = cv2.solvePnPGeneric(
             self.corners(self.scale * size),
             np.asarray(pixels, dtype=float),
@@ -88,7 +88,7 @@ def camera_in_the_tag(pixels: Any, K: Any, size: float) -> Array:
 
 
 def border_in_the_pose(pixels: Any, K: Any, size: float) -> Array:
-    """The size with the border: everything 1.25 times too far away."""
+    """The size with the border, which makes everything 1.25 times too far away."""
     return tag_pose(pixels, K, BORDER * size)
 
 
@@ -116,7 +116,7 @@ def the_worse_answer(pixels: Any, K: Any, size: float) -> Array:
 
 
 def spread_about_zero(estimates: Any, truth: Any) -> tuple[Array, Array]:
-    """The covariance about zero: a constant offset counts as spread."""
+    """The covariance about zero, in which a constant offset counts as spread."""
     bias, covariance = sensor_quality(estimates, truth)
     n = len(estimates)
     return bias, (covariance * (n - 1) + n * np.outer(bias, bias)) / n
@@ -147,7 +147,7 @@ def of_the_mean(estimates: Any, truth: Any) -> tuple[Array, Array]:
 
 
 def diagonal_only(estimates: Any, truth: Any) -> tuple[Array, Array]:
-    """The variances alone."""
+    """Only the variances."""
     bias, covariance = sensor_quality(estimates, truth)
     return bias, np.diag(np.diag(covariance))
 
@@ -226,11 +226,11 @@ def restarts_at_rest(t: float, reference: Sample, goal: Sample, duration: float)
 
 @dataclass(frozen=True)
 class Blended:
-    """A blend in which ends are partly forgotten.
+    """A blend that partly ignores the motion at its ends.
 
     Attributes:
-        start: Weights of the reference's velocity and acceleration.
-        end: Weights of the goal's.
+        start: Factors of the reference's velocity and acceleration.
+        end: Factors of the goal's velocity and acceleration.
     """
 
     start: tuple[float, float] = (1.0, 1.0)
@@ -262,7 +262,7 @@ def never_ends(t: float, reference: Sample, goal: Sample, duration: float) -> Sa
 
 
 def waits_at_the_goal(t: float, reference: Sample, goal: Sample, duration: float) -> Sample:
-    """After the end the goal's place stands still, while its speed is still told."""
+    """After the end the goal's position is constant, but its velocity is still returned."""
     x = blend(t, reference, goal, duration)
     return Sample(goal.position, x.velocity, x.acceleration) if t > duration else x
 
@@ -283,13 +283,13 @@ def acceleration_kept(t: float, reference: Sample, goal: Sample, duration: float
 
 
 def derivatives_by_share(t: float, reference: Sample, goal: Sample, duration: float) -> Sample:
-    """Derivatives by x = t/T given as if they were by t."""
+    """Derivatives with respect to x = t/T, returned as if with respect to t."""
     x, T = blend(t, reference, goal, duration), duration
     return x if t > T else Sample(x.position, x.velocity * T, x.acceleration * T**2)
 
 
 def the_ends_mixed(t: float, reference: Sample, goal: Sample, duration: float) -> Sample:
-    """Reference and goal mixed in proportion to time, each of the three for itself."""
+    """Position, velocity and acceleration of reference and goal, each mixed linearly in time."""
     s = min(t / duration, 1.0)
     return Sample(*((1.0 - s) * a + s * b for a, b in zip(reference, goal, strict=True)))
 
@@ -300,7 +300,7 @@ def three_alone(t: float, reference: Sample, goal: Sample, duration: float) -> S
 
 
 def rates_not_scaled(t: float, reference: Sample, goal: Sample, duration: float) -> Sample:
-    """Solves in x = t/T with the rates of t: they come out T times too small, or too large."""
+    """Solves in x = t/T with the derivatives in t, so they are wrong by powers of T."""
     T = duration
     a = Sample(reference.position, reference.velocity / T, reference.acceleration / T**2)
     b = Sample(goal.position, goal.velocity / T, goal.acceleration / T**2)
@@ -314,7 +314,7 @@ def stops_at_the_goal(t: float, reference: Sample, goal: Sample, duration: float
 
 
 def without_the_bend(t: float, reference: Sample, goal: Sample, duration: float) -> Sample:
-    """A cubic: position and velocity fit, the acceleration jumps."""
+    """A cubic, with which position and velocity are continuous but the acceleration jumps."""
     T = duration
     if t >= T:
         return blend(t, reference, goal, T)
@@ -329,14 +329,14 @@ def without_the_bend(t: float, reference: Sample, goal: Sample, duration: float)
 def ignores_the_age(
     mean: Any, covariance: Any, age: float, accel_noise: float
 ) -> tuple[Array, Array]:
-    """Takes the old picture for now."""
+    """Takes the old picture as the present."""
     return np.array(mean), np.array(covariance)
 
 
 def noise_without_time(
     mean: Any, covariance: Any, age: float, accel_noise: float
 ) -> tuple[Array, Array]:
-    """Adds the same noise whatever the time step: two half steps are not one step."""
+    """Adds the same noise for every time step, so two half steps differ from one step."""
     F = np.kron([[1.0, age], [0.0, 1.0]], np.eye(3))
     return F @ mean, F @ covariance @ F.T + accel_noise * np.eye(6)
 
@@ -353,8 +353,8 @@ class Predicted:
     """F m and F P F^T + Q with another Q.
 
     Attributes:
-        Q: Powers of the age and factors in the three corners of Q: place, both, velocity.
-        power: Of the noise.
+        Q: Powers of the age, and factors, in the three blocks of Q: position, mixed and velocity.
+        power: Power of the noise.
     """
 
     Q: tuple[tuple[float, float], ...]
@@ -373,7 +373,7 @@ class Predicted:
 def half_the_product(
     mean: Any, covariance: Any, age: float, accel_noise: float
 ) -> tuple[Array, Array]:
-    """F P, without F^T: not even symmetric."""
+    """F P, without F^T, which is not even symmetric."""
     m, P = carry_forward(mean, covariance, age, accel_noise)
     F = np.kron([[1.0, age], [0.0, 1.0]], np.eye(3))
     return m, P - F @ covariance @ F.T + F @ covariance
@@ -389,7 +389,7 @@ def product_turned_round(
 
 
 def back_in_time(mean: Any, covariance: Any, age: float, accel_noise: float) -> tuple[Array, Array]:
-    """To when the picture was taken, not from there to now."""
+    """Predicts backwards in time."""
     F = np.kron([[1.0, -age], [0.0, 1.0]], np.eye(3))
     Q = carry_forward(mean, np.zeros((6, 6)), age, accel_noise)[1]
     return F @ mean, F @ covariance @ F.T + Q
@@ -406,12 +406,12 @@ def noise_on_the_diagonal(
 
 @dataclass(frozen=True)
 class Seen:
-    """The right pose of other pixels or another camera, or something made of it.
+    """The right pose for other pixels or another camera, or a function of it.
 
     Attributes:
-        pixels: What is made of them.
-        K: What is made of the camera's matrix.
-        pose: What is made of the pose.
+        pixels: A function of the pixels.
+        K: A function of the camera matrix.
+        pose: A function of the pose.
     """
 
     pixels: Callable[[Array], Array] = lambda pixels: pixels
@@ -426,14 +426,14 @@ class Seen:
 
 @dataclass(frozen=True)
 class Quality:
-    """Mean and covariance of other errors, or other numbers of the right ones.
+    """Mean and covariance of other errors, or other statistics of the right ones.
 
     Attributes:
-        scale: Of place and turn.
-        centre: The first answer, of the errors.
-        spread: The second one, of the errors.
-        tag: Whether the place is in the tag's axes.
-        turn: The turn, of both rotations.
+        scale: Factors of position and orientation.
+        centre: The first answer, given the errors.
+        spread: The second answer, given the errors.
+        tag: Whether the position is in the tag's axes.
+        turn: The rotation, given both rotations.
     """
 
     scale: tuple[float, float] = (1.0, 1.0)
@@ -456,12 +456,12 @@ class Quality:
 
 @dataclass(frozen=True)
 class Ends:
-    """The blend between other ends, or with another end.
+    """The blend between other ends, or with another rule after its end.
 
     Attributes:
-        ends: Reference and goal, of both.
-        late: What comes after the end, of the goal, t and the duration; None is right.
-        made: What is made of a sample before the end, with t, reference, goal and duration.
+        ends: Reference and goal, given both.
+        late: The sample after the end, given the goal, t and the duration; None is right.
+        made: A function of a sample before the end, t, reference, goal and duration.
     """
 
     ends: Callable[[Sample, Sample], tuple[Sample, Sample]] = lambda a, b: (a, b)
@@ -477,7 +477,7 @@ class Ends:
 
 
 def crossfade(x: Sample, t: float, a: Sample, b: Sample, T: float) -> Sample:
-    """Both motions go on and are mixed with a smooth weight."""
+    """A mixture of both motions with a smooth weight."""
     s = t / T
     w = 10.0 * s**3 - 15.0 * s**4 + 6.0 * s**5
     return Sample(*((1.0 - w) * p + w * q for p, q in zip(a, b, strict=True)))
@@ -485,13 +485,13 @@ def crossfade(x: Sample, t: float, a: Sample, b: Sample, T: float) -> Sample:
 
 @dataclass(frozen=True)
 class Carried:
-    """The belief carried on with another F, mean or order.
+    """The prediction with another F, mean or order.
 
     Attributes:
-        F: Of the age, shape (2, 2).
-        mean: Whether the mean is moved.
-        noise: Of Q.
-        order: Of F P F^T and Q: "P F", "Q first" or "no F".
+        F: The matrix F, shape (2, 2), given the age.
+        mean: Whether the mean is predicted.
+        noise: Factor of Q.
+        order: The order of F P F^T and Q: "P F", "Q first" or "no F".
     """
 
     F: Callable[[float], Any] = lambda age: [[1.0, age], [0.0, 1.0]]

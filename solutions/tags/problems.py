@@ -1,4 +1,4 @@
-"""What notebook 06 asks."""
+"""The questions of notebook 06."""
 
 from __future__ import annotations
 

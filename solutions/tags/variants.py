@@ -1,4 +1,4 @@
-"""Right answers of notebook 06, in another form."""
+"""Right answers to notebook 06 in other forms."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ def corners_list(size: float) -> Any:
 
 
 def pose_by_iteration(pixels: Any, K: Any, size: float) -> Any:
-    """IPPE for a start, then least squares."""
+    """IPPE as the initial guess, then least squares."""
     corners = np.array(corners_list(size), dtype=float)
     pixels, K = np.array(pixels), np.array(K)
     _, turn, place = cv2.solvePnP(corners, pixels, K, None, flags=cv2.SOLVEPNP_IPPE_SQUARE)
@@ -29,7 +29,7 @@ def pose_by_iteration(pixels: Any, K: Any, size: float) -> Any:
 
 
 def quality_by_loops(estimates: Any, truth: Any) -> Any:
-    """Sums written out, a list of two."""
+    """Sums written out, returned as a list of two."""
     e = np.stack(
         [
             np.r_[(truth - T)[:3, 3], se3.orientation_error(truth[:3, :3], T[:3, :3])]

@@ -31,7 +31,7 @@ def _model(random: Random) -> lk.Model:
 def _law(
     random: Random, *, ddq: float, speed: float, wanted: float, compensates: bool | None
 ) -> Call:
-    """A state and a target near it, as quick as is said, in [rad/s^2] and [rad/s]."""
+    """A state and a target near it, with given acceleration [rad/s^2] and speeds [rad/s]."""
     model = _model(random)
     q = _angles(random, model)
     e = random.uniform(0.03, 0.15, 7) * random.choice([-1.0, 1.0], 7)
@@ -45,7 +45,7 @@ def _law(
 
 
 def at_rest(random: Random) -> Iterator[Call]:
-    """At rest, off the target, the arm carrying itself."""
+    """At rest, off the target, with an arm that compensates for gravity."""
     for _ in range(2):
         yield _law(random, ddq=0.0, speed=0.0, wanted=0.0, compensates=True)
 
@@ -63,19 +63,19 @@ def speeding_up(random: Random) -> Iterator[Call]:
 
 
 def moving(random: Random) -> Iterator[Call]:
-    """An arm and a target, each at a speed of its own."""
+    """An arm and a target with different speeds."""
     for _ in range(3):
         yield _law(random, ddq=0.0, speed=1.5, wanted=1.5, compensates=True)
 
 
 def all_at_once(random: Random) -> Iterator[Call]:
-    """Everything."""
+    """All terms at the same time."""
     for _ in range(5):
         yield _law(random, ddq=3.0, speed=1.5, wanted=1.5, compensates=None)
 
 
 def _tour(random: Random, side: Any) -> tuple[lk.Model, Any]:
-    """A circle of the tip in some place, as joint angles."""
+    """A circle of the tip at a random place, as joint angles."""
     model = lk.Model(side, lk.BAXTER)
     q0 = model.robot.ready
     p = model.pose(q0)[:3, 3]
@@ -131,7 +131,7 @@ def joints(random: Random) -> Iterator[Call]:
 
 
 def slow_samples(random: Random) -> Iterator[Call]:
-    """Rates at which a joint is barely stable, or no longer."""
+    """Sampling rates at which a joint is barely stable, or unstable."""
     for _ in range(4):
         m, w = 10.0 ** random.uniform(-3.0, 0.5), random.uniform(20.0, 80.0)
         yield call(m, m * w * w, m * 2.0 * w, random.uniform(0.01, 0.04))
@@ -155,13 +155,13 @@ def noisy_poses(random: Random) -> Iterator[Call]:
 
 
 def no_weight_poses(random: Random) -> Iterator[Call]:
-    """Torques that have nothing to do with gravity, or the sign turned."""
+    """Torques that are unrelated to gravity, or have the other sign."""
     for factor in (0.0, random.uniform(-1.0, -0.5)):
         yield _held(random, factor, 0.6, 12)
 
 
 def tuned(random: Random, side: Any, payload: float) -> Tuned:
-    """A tour whose limits are twice what the answer's gains leave, three times for the speed."""
+    """A tour with twice the errors of the answer's gains as limits, three times for the speed."""
     model, tour = _tour(random, side)
     loop = Loop(
         tour, side=side, plant=replace(lk.BAXTER, payload=payload), seed=int(random.integers(1000))
@@ -175,14 +175,14 @@ def tuned(random: Random, side: Any, payload: float) -> Tuned:
 
 
 AT_REST = {"max_mm": 60.0, "rms_velocity_mm_s": 6.0}
-"""Of an arm that was let go 0.1 rad off in every joint, 0.8 s later and from then on.
+"""Limits for an arm released 0.1 rad off in every joint, from 0.8 s later on.
 
-Dry friction leaves right answers up to 20 mm off; what tells a damper from none is the speed.
+Dry friction leaves right answers up to 20 mm off; the speed shows whether there is a damper.
 """
 
 
 def back(model: lk.Model, off: Any) -> Loop:
-    """Back to a place from ``off``, (7,) in [rad]."""
+    """The return to a pose from an offset ``off``, (7,) in [rad]."""
     q = model.robot.ready
     return Loop(
         lk.Hold(q, 2.0), side=model.robot.name, plant=lk.BAXTER, q0=q + off, settle=0.8, seed=1
@@ -190,7 +190,7 @@ def back(model: lk.Model, off: Any) -> Loop:
 
 
 def returns(random: Random) -> Iterator[Case]:
-    """From another side, of either arm."""
+    """Returns from another side, with either arm."""
     model = _model(random)
     q = model.robot.ready + random.uniform(-0.15, 0.15, 7)
     off = 0.1 * random.choice([-1.0, 1.0], 7)
@@ -199,10 +199,10 @@ def returns(random: Random) -> Iterator[Case]:
 
 
 def quick_tours(random: Random) -> Iterator[Case]:
-    """A quicker tour of one arm or the other."""
+    """A faster tour of either arm."""
     yield tuned(random, random.choice(["left", "right"]), 0.0)
 
 
 def loaded_tours(random: Random) -> Iterator[Case]:
-    """With something in the gripper."""
+    """Tours with a payload in the gripper."""
     yield tuned(random, random.choice(["left", "right"]), random.uniform(0.7, 1.0))

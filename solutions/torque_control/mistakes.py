@@ -1,4 +1,4 @@
-"""What people write in notebook 04 instead."""
+"""Mistakes that people make in notebook 04."""
 
 from __future__ import annotations
 
@@ -46,7 +46,7 @@ def own_speed_in_coriolis(
 def no_motion_terms(
     state: lk.State, target: lk.Sample, model: lk.Model, *, kp: Any, kd: Any, arm_compensates: bool
 ) -> lk.JointTorque:
-    """Springs and dampers alone."""
+    """Only springs and dampers."""
     tau = kp * (target.position - state.q) + kd * (target.velocity - state.dq)
     return lk.JointTorque(tau if arm_compensates else tau + model.gravity(state.q))
 
@@ -54,7 +54,7 @@ def no_motion_terms(
 def damps_the_motion(
     state: lk.State, target: lk.Sample, model: lk.Model, *, kp: Any, kd: Any, arm_compensates: bool
 ) -> lk.JointTorque:
-    """Brakes the arm's own speed, not the difference to the wanted one."""
+    """Damps the arm's own speed, not the difference from the desired one."""
     tau = right.augmented_pd(state, target, model, kp=kp, kd=kd, arm_compensates=arm_compensates)
     return lk.JointTorque(tau.value - kd * target.velocity)
 
@@ -62,7 +62,7 @@ def damps_the_motion(
 def model_at_the_target(
     state: lk.State, target: lk.Sample, model: lk.Model, *, kp: Any, kd: Any, arm_compensates: bool
 ) -> lk.JointTorque:
-    """M, C and g where the arm should be, not where it is."""
+    """M, C and g at the target, not at the arm's state."""
     there = lk.State(state.t, target.position, state.dq)
     at_rest = target._replace(position=target.position)
     tau = right.augmented_pd(there, at_rest, model, kp=kp, kd=kd, arm_compensates=arm_compensates)
@@ -82,18 +82,18 @@ def the_reports_gravity(
 
 @dataclass(frozen=True)
 class AugmentedLaw:
-    """The augmented law with its parts weighed: 1 is right, 0 left out, -1 reversed.
+    """The augmented law with weighted terms; 1 is right, 0 omits a term, -1 reverses it.
 
     Attributes:
-        e: Of the error of the angles.
-        de: Of the error of the speeds.
-        coriolis: Of C.
-        weight: Of g.
-        beside: Of the elements of M off the diagonal.
-        diagonal: Of the diagonal of M.
-        switch: Whether the switch is read the other way.
-        swapped: Whether kp and kd are.
-        at_target: Whether C is that of the target's speed.
+        e: Factor of the error of the angles.
+        de: Factor of the error of the speeds.
+        coriolis: Factor of C.
+        weight: Factor of g.
+        beside: Factor of the elements of M off the diagonal.
+        diagonal: Factor of the diagonal of M.
+        switch: Whether the gravity switch is inverted.
+        swapped: Whether kp and kd are exchanged.
+        at_target: Whether C is taken at the target's speed.
     """
 
     e: float = 1.0
@@ -131,17 +131,17 @@ class AugmentedLaw:
 
 @dataclass(frozen=True)
 class ComputedLaw:
-    """Computed torque with its parts weighed: 1 is right, 0 left out, -1 reversed.
+    """Computed torque with weighted terms; 1 is right, 0 omits a term, -1 reverses it.
 
     Attributes:
-        e: Of the error of the angles.
-        de: Of the error of the speeds.
-        coriolis: Of C.
-        power: Of M; -1 is its inverse.
-        drift: Of the Coriolis torques as if they were an acceleration.
-        switch: Whether the switch is read the other way.
-        swapped: Whether kp and kd are.
-        twice: Whether the weight is added to one that holds it.
+        e: Factor of the error of the angles.
+        de: Factor of the error of the speeds.
+        coriolis: Factor of C.
+        power: Power of M; -1 is its inverse.
+        drift: Factor of the Coriolis torques, taken as an acceleration.
+        switch: Whether the gravity switch is inverted.
+        swapped: Whether kp and kd are exchanged.
+        twice: Whether the weight is added twice.
     """
 
     e: float = 1.0
@@ -177,7 +177,7 @@ class ComputedLaw:
 def gains_inside(
     state: lk.State, target: lk.Sample, model: lk.Model, *, kp: Any, kd: Any, arm_compensates: bool
 ) -> lk.JointTorque:
-    """Computed torque where the augmented law is asked."""
+    """Computed torque where the question asks for the augmented law."""
     return right.computed_torque(
         state, target, model, kp=kp, kd=kd, arm_compensates=arm_compensates
     )
@@ -186,7 +186,7 @@ def gains_inside(
 def gains_outside(
     state: lk.State, target: lk.Sample, model: lk.Model, *, kp: Any, kd: Any, arm_compensates: bool
 ) -> lk.JointTorque:
-    """The gains after M: every joint answers in its own way."""
+    """The gains outside M, so that every joint responds differently."""
     q, dq = state.q, state.dq
     tau = right.computed_torque(
         state, target, model, kp=0.0, kd=0.0, arm_compensates=arm_compensates
@@ -207,7 +207,7 @@ def everything_at_the_target(
 def carries_twice(
     state: lk.State, target: lk.Sample, model: lk.Model, *, kp: Any, kd: Any, arm_compensates: bool
 ) -> lk.JointTorque:
-    """`Model.bias` holds the gravity already, and the switch is forgotten."""
+    """Adds gravity to `Model.bias`, which contains it, and forgets the switch."""
     return right.computed_torque(state, target, model, kp=kp, kd=kd, arm_compensates=False)
 
 
@@ -238,14 +238,14 @@ def no_target_acceleration(
 def runs_away(
     state: lk.State, target: lk.Sample, model: lk.Model, *, kp: Any, kd: Any, arm_compensates: bool
 ) -> lk.JointTorque:
-    """The error's sign turned."""
+    """The error with the other sign."""
     return right.computed_torque(
         state, target, model, kp=-kp, kd=-kd, arm_compensates=arm_compensates
     )
 
 
 def without_the_two(frequency: Any, damping_ratio: Any) -> tuple[Any, Any]:
-    """Takes zeta w for kd: half the damping."""
+    """Takes zeta w for kd, which is half the damping."""
     kp, kd = right.gains_for(frequency, damping_ratio)
     return kp, kd / 2.0
 
@@ -262,7 +262,7 @@ def other_way_round(frequency: Any, damping_ratio: Any) -> tuple[Any, Any]:
 
 
 def root_as_gain(frequency: Any, damping_ratio: Any) -> tuple[Any, Any]:
-    """Takes w for kp: forgets the square."""
+    """Takes w for kp, without the square."""
     kp, kd = right.gains_for(frequency, damping_ratio)
     return np.sqrt(kp), kd
 
@@ -274,7 +274,7 @@ def damping_is_the_ratio(frequency: Any, damping_ratio: Any) -> tuple[Any, Any]:
 
 
 def square_of_the_frequency_alone(frequency: Any, damping_ratio: Any) -> tuple[Any, Any]:
-    """2 pi f^2: the square without the brackets."""
+    """2 pi f^2, without the brackets around the squared term."""
     _, kd = right.gains_for(frequency, damping_ratio)
     return 2.0 * np.pi * frequency**2, kd
 
@@ -296,7 +296,7 @@ def not_a_step(inertia: float, kp: float, kd: float, dt: float) -> Any:
 
 
 def on_its_side(inertia: float, kp: float, kd: float, dt: float) -> Any:
-    """Columns for rows."""
+    """The transposed matrix."""
     return right.sampled_joint(inertia, kp, kd, dt).T
 
 
@@ -311,7 +311,7 @@ def gains_of_the_other(inertia: float, kp: float, kd: float, dt: float) -> Any:
 
 
 def second_order_series(inertia: float, kp: float, kd: float, dt: float) -> Any:
-    """I + A dt + A^2 dt^2 / 2: a loop that is never sampled, nearly."""
+    """I + A dt + A^2 dt^2 / 2, almost the loop in continuous time."""
     A = dt * not_a_step(inertia, kp, kd, dt)
     return np.eye(2) + A + A @ A / 2.0
 
@@ -324,24 +324,24 @@ def half_forgotten(inertia: float, kp: float, kd: float, dt: float) -> Any:
 
 
 def implicit_step(inertia: float, kp: float, kd: float, dt: float) -> Any:
-    """Backward Euler: stable whatever the gains."""
+    """Backward Euler, which is stable for all gains."""
     return np.linalg.inv(np.eye(2) - dt * not_a_step(inertia, kp, kd, dt))
 
 
 def euler_step(inertia: float, kp: float, kd: float, dt: float) -> Any:
-    """I + A dt: the angle goes on at the old speed."""
+    """I + A dt, in which the angle moves with the old speed."""
     return np.array([[1.0, dt], [-kp * dt / inertia, 1.0 - kd * dt / inertia]])
 
 
 def torque_never_held(inertia: float, kp: float, kd: float, dt: float) -> Any:
-    """The exponential of the loop that is never sampled: stable whatever the gains."""
+    """The exponential of the loop in continuous time, which is stable for all gains."""
     from scipy.linalg import expm
 
     return expm(dt * np.array([[0.0, 1.0], [-kp / inertia, -kd / inertia]]))
 
 
 def new_speed_first(inertia: float, kp: float, kd: float, dt: float) -> Any:
-    """Semi-implicit Euler: the new speed moves the angle."""
+    """Semi-implicit Euler, in which the angle moves with the new speed."""
     drive = np.array([-kp * dt / inertia, 1.0 - kd * dt / inertia])
     return np.array([[1.0 + dt * drive[0], dt * drive[1]], drive])
 
@@ -368,7 +368,7 @@ def turned_sign(tau_hold: Any, gravity_model: Any) -> float:
 
 
 def other_regression(tau_hold: Any, gravity_model: Any) -> float:
-    """Explains the model by the torques, and turns the result over."""
+    """Fits the model to the torques, and inverts the result."""
     return float(np.sum(np.square(tau_hold)) / np.sum(np.asarray(tau_hold) * gravity_model))
 
 
@@ -378,12 +378,12 @@ def with_an_offset(tau_hold: Any, gravity_model: Any) -> float:
 
 
 def model_over_torque(tau_hold: Any, gravity_model: Any) -> float:
-    """The torques explain the model."""
+    """Fits the model to the torques."""
     return right.gravity_factor(gravity_model, tau_hold)
 
 
 def one_over_the_factor(tau_hold: Any, gravity_model: Any) -> float:
-    """The right fit, turned over."""
+    """The reciprocal of the right fit."""
     return 1.0 / right.gravity_factor(tau_hold, gravity_model)
 
 
@@ -394,7 +394,7 @@ def mean_over_poses(tau_hold: Any, gravity_model: Any) -> float:
 
 
 def mean_over_joints(tau_hold: Any, gravity_model: Any) -> float:
-    """A factor for each joint, and their mean: a joint without load counts as much as any."""
+    """The mean of a factor for each joint, in which a joint without load counts like any other."""
     pairs = zip(np.asarray(tau_hold).T, np.asarray(gravity_model).T, strict=True)
     return float(np.nanmean([right.gravity_factor(*pair) for pair in pairs]))
 
@@ -405,22 +405,22 @@ def what_is_missing(tau_hold: Any, gravity_model: Any) -> float:
 
 
 def ratio_of_lengths(tau_hold: Any, gravity_model: Any) -> float:
-    """Lengths have no sign, and noise makes them longer."""
+    """The ratio of lengths, which have no sign and grow with noise."""
     return float(np.linalg.norm(tau_hold) / np.linalg.norm(gravity_model))
 
 
 def ratio_of_sums(tau_hold: Any, gravity_model: Any) -> float:
-    """Torques of opposite sign cancel before they are compared."""
+    """The ratio of sums, in which torques of opposite sign cancel."""
     return float(np.sum(tau_hold) / np.sum(gravity_model))
 
 
 @dataclass(frozen=True)
 class Swings:
-    """Gains with which every joint swings alike.
+    """Gains with which every joint swings at the same frequency.
 
     Attributes:
-        w: How fast, in [rad/s].
-        zeta: Damping ratio.
+        w: The angular frequency in [rad/s].
+        zeta: The damping ratio.
     """
 
     w: float = 12.0
@@ -433,24 +433,24 @@ class Swings:
 
 
 def same_for_every_joint(model: lk.Model) -> Any:
-    """The gains of computed torque, as if every joint had the inertia of one."""
+    """The gains of computed torque, as if every joint had inertia 1."""
     return 144.0, 24.0
 
 
 def pair_turned_round(model: lk.Model) -> Any:
-    """Gives (kd, kp): hardly a spring, and a damper stiffer than anything."""
+    """Returns (kd, kp), hardly a spring but a very strong damper."""
     kp, kd = Swings()(model)
     return kd, kp
 
 
 def the_reports_gains(model: lk.Model) -> Any:
-    """Table 1 of the report: they were tuned with friction to hide in."""
+    """Table 1 of the report, tuned on an arm with friction."""
     kp = 8.0 * np.array([1.0, 1.0, 1.5, 1.5, 1.0, 1.0, 1.0])
     return kp, 5.0 * np.array([2.0, 2.0, 1.0, 1.0, 0.8, 0.3, 0.3])
 
 
 class Terms(NamedTuple):
-    """What a torque law is made of; g is zero where the arm compensates for gravity."""
+    """The terms of a torque law; g is zero if the arm compensates for gravity."""
 
     M: Any
     C: Any
@@ -470,7 +470,7 @@ class Terms(NamedTuple):
 
     @property
     def wish(self) -> Any:
-        """The acceleration that lets the error die out."""
+        """The acceleration with which the error decays."""
         return self.target.acceleration + self.kp * self.e + self.kd * self.de
 
     @property
@@ -494,7 +494,7 @@ class TorqueBy:
     """A law of the model's terms.
 
     Attributes:
-        law: The torque, of a `Terms`.
+        law: The torque, given `Terms`.
     """
 
     law: Callable[[Terms], Any]
@@ -519,10 +519,10 @@ class TorqueBy:
 
 @dataclass(frozen=True)
 class Fit:
-    """Another number of torques and model.
+    """Another number computed from torques and model.
 
     Attributes:
-        of: Of both, each of shape (poses, joints).
+        of: The number, given both, each of shape (poses, joints).
     """
 
     of: Callable[[Any, Any], Any]
@@ -535,11 +535,11 @@ class Fit:
 
 @dataclass(frozen=True)
 class Stepped:
-    """One period with another free motion or another kick.
+    """One period with another free motion or another effect of the torque.
 
     Attributes:
-        free: The free motion, of dt.
-        kick: What a torque does to angle and speed, of dt and the inertia.
+        free: The free motion, given dt.
+        kick: The effect of a torque on angle and speed, given dt and the inertia.
     """
 
     free: Callable[[float], Any] = lambda dt: [[1.0, dt], [0.0, 1.0]]
@@ -555,10 +555,10 @@ class Stepped:
 
 @dataclass(frozen=True)
 class GainsOf:
-    """Other gains of frequency and damping ratio.
+    """Other gains from frequency and damping ratio.
 
     Attributes:
-        of: (kp, kd), of the angular frequency and the damping ratio.
+        of: (kp, kd), given the angular frequency and the damping ratio.
     """
 
     of: Callable[[Any, Any], tuple[Any, Any]]
@@ -573,8 +573,8 @@ class PullOnly:
     """The right step with other gains.
 
     Attributes:
-        p: Of kp.
-        d: Of kd.
+        p: Factor of kp.
+        d: Factor of kd.
     """
 
     p: float

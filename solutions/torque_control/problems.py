@@ -1,4 +1,4 @@
-"""What notebook 04 asks."""
+"""The questions of notebook 04."""
 
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ def _law(ddq: float, speed: float, wanted: float, *, compensates: bool) -> Call:
 
 
 def _return(kp: float, kd: float, settle: float, most: float) -> Loop:
-    """Back to a place from 0.15 rad off in every joint: nothing but feedback can do that."""
+    """A return from 0.15 rad off in every joint, which needs feedback."""
     model = lk.Model("left", BARE)
     given = {"model": model, "kp": kp, "kd": kd, "arm_compensates": False}
     return Loop(
@@ -77,7 +77,7 @@ TERMS = (
         weight=3.0,
     ),
 )
-"""One term of the law after another, for both forms of it."""
+"""Trials for each term of the law, in both of its forms."""
 
 AUGMENTED_PD = Problem(
     name="augmented_pd",

@@ -1,4 +1,4 @@
-"""Right answers of notebook 04, in another form."""
+"""Right answers to notebook 04 in other forms."""
 
 from __future__ import annotations
 
@@ -42,7 +42,7 @@ def augmented_in_a_list(
 def computed_by_newton_euler(
     state: lk.State, target: lk.Sample, model: lk.Model, *, kp: Any, kd: Any, arm_compensates: bool
 ) -> lk.JointTorque:
-    """By inverse dynamics, the weight taken off again."""
+    """By inverse dynamics, with the weight subtracted."""
     ddq = target.acceleration - kd * (state.dq - target.velocity)
     ddq = ddq - kp * (state.q - target.position)
     tau = model.inverse_dynamics(state.q, state.dq, ddq)
@@ -52,7 +52,7 @@ def computed_by_newton_euler(
 def computed_by_bias(
     state: lk.State, target: lk.Sample, model: lk.Model, *, kp: Any, kd: Any, arm_compensates: bool
 ) -> lk.JointTorque:
-    """With `Model.bias`, the weight apart."""
+    """With `Model.bias`, and the weight treated separately."""
     M, g = model.mass_matrix(state.q), model.gravity(state.q)
     e, de = target.position - state.q, target.velocity - state.dq
     tau = M.dot(target.acceleration + kd * de + kp * e) + model.bias(state.q, state.dq) - g
@@ -88,7 +88,7 @@ def factor_by_lstsq(tau_hold: Any, gravity_model: Any) -> Any:
 
 
 class ByFrequency:
-    """A callable object that makes every joint swing alike."""
+    """A callable object that makes every joint swing at the same frequency."""
 
     def __init__(self, w: float, zeta: float) -> None:
         self.w, self.zeta = w, zeta

@@ -16,7 +16,7 @@ MODEL = lk.Model("left")
 READY = MODEL.robot.ready
 REST = np.zeros(7)
 STRETCHED = np.array([-0.3, -0.4, 0.1, 0.06, 0.2, 0.5, 0.0])
-"""Elbow almost straight: a singularity is near."""
+"""Joint angles with an almost straight elbow, near a singularity."""
 
 
 def state(q: Any, dq: Any = REST) -> lk.State:
@@ -31,7 +31,7 @@ def sample(q: Any, dq: Any = REST, ddq: Any = REST) -> lk.Sample:
 
 
 def pose_sample(q: Any, shift: Any = (0, 0, 0), turn: Any = (0, 0, 0), twist: Any = None) -> Any:
-    """A target pose beside the tip's at q: shifted in [m], turned about tool axes in [rad]."""
+    """A target pose: that of the tip at q, shifted in [m] and turned about tool axes in [rad]."""
     T = MODEL.pose(q)
     T_wd = lk.se3.pose(T[:3, :3] @ lk.se3.rotation(turn), T[:3, 3] + shift)
     return lk.PoseSample(T_wd, np.zeros(6) if twist is None else np.array(twist), np.zeros(6))
@@ -49,7 +49,7 @@ def joint_offsets(random: Random) -> Iterator[Call]:
 
 
 def joint_speeds(random: Random) -> Iterator[Call]:
-    """A joint that moves, at its target."""
+    """A moving joint that is at its target."""
     for _ in range(2):
         q = near(random)
         yield call(
@@ -69,7 +69,7 @@ def joint_targets(random: Random) -> Iterator[Call]:
 
 
 def joint_run(start: Any, way: Any) -> Loop:
-    """After a moving target, from a wrong start, with half a second and more to recover."""
+    """A run after a moving target from a wrong start, with over half a second to recover."""
     target = lk.Trajectory(lk.Line(READY, READY + way), lk.Quintic(2.5))
     return Loop(
         target,
@@ -81,7 +81,7 @@ def joint_run(start: Any, way: Any) -> Loop:
 
 
 def joint_runs(random: Random) -> Iterator[Loop]:
-    """Another start and another way."""
+    """Another start and another motion."""
     yield joint_run(random.uniform(-0.1, 0.1, 7), 0.5 * np.array([1, -0.6, 0.3, 1, 0.4, -0.5, 0.8]))
 
 
@@ -131,7 +131,7 @@ def pose_turns(random: Random) -> Iterator[Call]:
 
 
 def pose_moves(random: Random) -> Iterator[Call]:
-    """Other twists, beside the target and turned against it, a little and more than 90 degrees."""
+    """Other twists, off the target and turned from it by a little or by over 90 degrees."""
     for off, least, most in ((0.0, 0.0, 0.0), (0.03, 0.0, 0.3), (0.03, 1.2, 1.4)):
         q = near(random)
         turn = random.uniform(least, most, 3) * random.choice((-1.0, 1.0), 3)
@@ -148,7 +148,7 @@ def pose_stretched(random: Random) -> Iterator[Call]:
 
 
 def pose_run(shift: Any, turn: Any) -> Loop:
-    """After a circle, from a start that is shifted and tilted, with time to recover."""
+    """A run along a circle from a shifted and tilted start, with time to recover."""
     T = MODEL.pose(READY)
     circle = lk.Circle(T[:3, 3], T[:3, 3] + [0.0, -0.1, 0.0])
     tilted = lk.se3.pose(T[:3, :3] @ lk.se3.rotation(turn), T[:3, 3] + shift)

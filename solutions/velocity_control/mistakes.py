@@ -1,4 +1,4 @@
-"""What people write in notebook 03 instead."""
+"""Mistakes that people make in notebook 03."""
 
 from __future__ import annotations
 
@@ -22,13 +22,13 @@ def pushes_away(state: lk.State, target: lk.Sample, *, kp: Any, kd: Any) -> lk.J
 
 
 def adds_to_the_measured(state: lk.State, target: lk.Sample, *, kp: Any, kd: Any) -> Any:
-    """The report's equation 17: a correction of the speed that the joint has already."""
+    """The report's equation 17, which corrects the speed that the joint already has."""
     e, de = target.position - state.q, target.velocity - state.dq
     return lk.JointVelocity(state.dq + kp * e + kd * de)
 
 
 def no_feedforward(state: lk.State, target: lk.Sample, *, kp: Any, kd: Any) -> lk.JointVelocity:
-    """Feedback alone: always late."""
+    """Feedback only, which is always late."""
     e, de = target.position - state.q, target.velocity - state.dq
     return lk.JointVelocity(kp * e + kd * de)
 
@@ -47,7 +47,7 @@ def gains_swapped(state: lk.State, target: lk.Sample, *, kp: Any, kd: Any) -> lk
 
 @dataclass(frozen=True)
 class JointLaw:
-    """The joint law with its parts weighed: 1 is right, 0 left out, -1 reversed.
+    """The joint law with weighted terms; 1 is right, 0 omits a term, -1 reverses it.
 
     Attributes:
         e: Weight of the error of the angles.
@@ -67,12 +67,12 @@ class JointLaw:
 
 
 def faster_with_d(kp: float, kd: float) -> float:
-    """D as a helper of P."""
+    """Adds kd to kp, as if D helped P."""
     return kp * (1.0 + kd)
 
 
 def second_order(kp: float, kd: float) -> float:
-    """The frequency of a mass on a spring, which no mass is here."""
+    """The frequency of a mass on a spring, although there is no mass here."""
     return float(np.sqrt(kp))
 
 
@@ -87,7 +87,7 @@ def minus_the_rate(kp: float, kd: float) -> float:
 
 
 def d_turned_round(kp: float, kd: float) -> float:
-    """D with the other sign: at kd = 1 it divides by zero."""
+    """D with the other sign, which divides by zero at kd = 1."""
     return kp / (1.0 - kd)
 
 
@@ -102,7 +102,7 @@ def what_is_left(kp: float, kd: float) -> float:
 
 
 def transposed(J: Any, damping: float) -> Array:
-    """The transpose for the inverse."""
+    """The transpose instead of the inverse."""
     return np.array(J.T)
 
 
@@ -117,17 +117,17 @@ def damping_squared(J: Any, damping: float) -> Array:
 
 
 def damping_everywhere(J: Any, damping: float) -> Array:
-    """Adds the damping to every number of J J^T: the identity is missing."""
+    """Adds the damping to every entry of J J^T, without the identity."""
     return np.asarray(J.T @ np.linalg.inv(J @ J.T + damping))
 
 
 def damping_taken_off(J: Any, damping: float) -> Array:
-    """The damping with a minus: it makes singular what was not."""
+    """The damping subtracted, which can make a regular matrix singular."""
     return damped_inverse(J, -damping)
 
 
 def damping_rooted(J: Any, damping: float) -> Array:
-    """Takes the root of the damping."""
+    """Takes the square root of the damping."""
     return damped_inverse(J, float(np.sqrt(damping)))
 
 
@@ -135,7 +135,7 @@ _MODEL = lk.Model("left")
 
 
 def _pose(state: lk.State) -> Array:
-    """Where the tip is."""
+    """The pose of the tip."""
     return _MODEL.pose(state.q)
 
 
@@ -177,7 +177,7 @@ def body_jacobian(
 def position_only(
     state: lk.State, target: lk.PoseSample, model: lk.Model, *, kp: Any, damping: float
 ) -> lk.JointVelocity:
-    """No orientation error at all: other teams of the report's year set its gains to zero."""
+    """No orientation error; other teams of the report's year set its gains to zero."""
     return _law(state, target, model.tip_jacobian(state.q), np.zeros(3), kp, damping, 1.0)
 
 
@@ -203,7 +203,7 @@ def logarithms_subtracted(R_wd: Array, R_wt: Array) -> Array:
 
 
 def turned_back(R_wd: Array, R_wt: Array) -> Array:
-    """The turn from the target to the tip."""
+    """The rotation from the target to the tip."""
     return lk.se3.orientation_error(R_wt, R_wd)
 
 
@@ -229,9 +229,9 @@ class WorkspaceLaw:
     """The workspace law with another error.
 
     Attributes:
-        place: Weight of the error of position; -1 reverses it.
-        turn: The error of orientation, of (R_wd, R_wt).
-        power: Of the damping.
+        place: Weight of the position error; -1 reverses it.
+        turn: The error of orientation, given (R_wd, R_wt).
+        power: Power of the damping.
     """
 
     place: float = 1.0
@@ -251,10 +251,11 @@ class WorkspaceLaw:
 
 @dataclass(frozen=True)
 class Measured:
-    """The workspace law with the speed that the joints have.
+    """The workspace law with a term in the measured joint speeds.
 
     Attributes:
-        law: The speed, of J's damped inverse, the target's twist, kp times the error, J and dq.
+        law: The joint speeds, given J's damped inverse, the target's twist, kp times the error, J
+            and dq.
     """
 
     law: Callable[..., Any]
@@ -271,7 +272,7 @@ class Measured:
 def jacobian_of_ready(
     state: lk.State, target: lk.PoseSample, model: lk.Model, *, kp: Any, damping: float
 ) -> lk.JointVelocity:
-    """One Jacobian for all poses, that of the ready pose."""
+    """The Jacobian of the ready pose in all poses."""
     J = model.tip_jacobian(model.robot.ready)
     return _law(state, target, J, _turn(state, target), kp, damping, 1.0)
 
@@ -279,7 +280,7 @@ def jacobian_of_ready(
 def by_the_transpose(
     state: lk.State, target: lk.PoseSample, model: lk.Model, *, kp: Any, damping: float
 ) -> lk.JointVelocity:
-    """The transpose of the Jacobian in the place of its inverse."""
+    """The transpose of the Jacobian instead of its inverse."""
     e = lk.se3.pose_error(target.pose, model.pose(state.q))
     return lk.JointVelocity(model.tip_jacobian(state.q).T @ (target.twist + kp * e))
 
@@ -289,7 +290,8 @@ class InToolAxes:
     """The whole error in the tool's axes.
 
     Attributes:
-        body: Whether the Jacobian is the tool's too; the target's twist stays the world's.
+        body: Whether the Jacobian is in the tool's axes, too; the target's twist stays in the
+            world's.
     """
 
     body: bool
@@ -305,17 +307,17 @@ class InToolAxes:
 
 
 def one_for_the_identity(J: Any, dq_wish: Any) -> Array:
-    """The number 1 where the identity belongs: numpy takes it from every entry."""
+    """The number 1 where the identity belongs, which numpy combines with every entry."""
     return np.asarray((1.0 - np.linalg.pinv(J) @ J) @ dq_wish)
 
 
 def no_motion(J: Any, dq_wish: Any) -> Array:
-    """Nothing: the tip feels none of it, and nor does anybody."""
+    """Zero, which does not move the tip, nor anything else."""
     return np.zeros(7)
 
 
 def length_one(J: Any, dq_wish: Any) -> Array:
-    """The right direction, made one long."""
+    """The right direction with length 1."""
     free = np.asarray(dq_wish - np.linalg.pinv(J) @ (J @ dq_wish))
     return free / float(np.linalg.norm(free))
 
@@ -326,22 +328,22 @@ def minus_the_free_part(J: Any, dq_wish: Any) -> Array:
 
 
 def transpose_projector(J: Any, dq_wish: Any) -> Array:
-    """I - J^T J, with the transpose for the inverse."""
+    """I - J^T J, with the transpose instead of the inverse."""
     return np.asarray(dq_wish - J.T @ (J @ dq_wish))
 
 
 def damped_projector(J: Any, dq_wish: Any) -> Array:
-    """The projector made of a damped inverse: the tip drifts."""
+    """The projector from a damped inverse, with which the tip drifts."""
     return np.asarray(dq_wish - damped_inverse(J, 0.01) @ (J @ dq_wish))
 
 
 def the_rest(J: Any, dq_wish: Any) -> Array:
-    """The other half: what the tip does feel."""
+    """The other part, which moves the tip."""
     return np.asarray(np.linalg.pinv(J) @ (J @ dq_wish))
 
 
 def all_of_it(J: Any, dq_wish: Any) -> Array:
-    """The wish as it is."""
+    """The wish, unchanged."""
     return np.array(dq_wish)
 
 
@@ -350,7 +352,7 @@ class Fed:
     """The joint law with other inputs.
 
     Attributes:
-        law: The speed, of feed-forward, e, de, kp, kd, state and target.
+        law: The joint speeds, given feed-forward, e, de, kp, kd, state and target.
     """
 
     law: Callable[..., Any]
@@ -366,7 +368,7 @@ class Rate:
     """Another formula for the rate.
 
     Attributes:
-        of: Of kp and kd.
+        of: The rate, given kp and kd.
     """
 
     of: Callable[[float, float], float]
@@ -378,10 +380,10 @@ class Rate:
 
 @dataclass(frozen=True)
 class BySingularValues:
-    """An inverse with other factors in the place of s / (s^2 + damping).
+    """An inverse with other factors than s / (s^2 + damping).
 
     Attributes:
-        factor: Of s and the damping.
+        factor: The factor, given s and the damping.
     """
 
     factor: Callable[[Array, float], Array]
@@ -394,17 +396,17 @@ class BySingularValues:
 
 @dataclass(frozen=True)
 class TwistLaw:
-    """The workspace law with its parts weighed: 1 is right, 0 left out, -1 reversed.
+    """The workspace law with weighted terms; 1 is right, 0 omits a term, -1 reverses it.
 
     Attributes:
         tool: Whether the error of position is in the tool's axes.
-        turn_first: Whether the turn comes before the place.
+        turn_first: Whether the orientation error comes before the position error.
         gain: Power of kp.
         feed: Weights of the target's velocity and angular velocity.
-        on_all: Whether kp is on the feed-forward too.
-        inverse: The inverse, of J and the damping.
-        turn: The error of orientation, of (R_wd, R_wt).
-        twist_in_tool: Whether the target's twist is turned into the tool's axes.
+        on_all: Whether kp multiplies the feed-forward, too.
+        inverse: The inverse, given J and the damping.
+        turn: The error of orientation, given (R_wd, R_wt).
+        twist_in_tool: Whether the target's twist is transformed to the tool's axes.
     """
 
     tool: bool = False
@@ -455,7 +457,7 @@ def no_inverse(J: Array, damping: float) -> Array:
 
 
 def place_alone(J: Any, dq_wish: Any) -> Array:
-    """Holds the place of the tip and lets it turn."""
+    """Holds the position of the tip but not its orientation."""
     return np.asarray(dq_wish - np.linalg.pinv(J[:3]) @ (J[:3] @ dq_wish))
 
 

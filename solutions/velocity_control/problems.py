@@ -1,4 +1,4 @@
-"""What notebook 03 asks."""
+"""The questions of notebook 03."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ from .hidden import (
 
 MOVING = 0.1 * np.arange(1, 8)
 ASKEW = READY + np.array([0.2, -0.1, 0.3, 0.2, -0.4, 0.3, 0.5])
-"""A gripper straight down has R = R^T, and hides which of them is right; here it does not."""
+"""A tilted gripper; one straight down has R = R^T, which would hide a transposed R."""
 COMMAND = Close(rtol=1e-6, atol=1e-8)
 
 JOINT_VELOCITY_PD = Problem(

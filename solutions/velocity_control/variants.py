@@ -1,4 +1,4 @@
-"""Right answers of notebook 03, in another form."""
+"""Right answers to notebook 03 in other forms."""
 
 from __future__ import annotations
 
@@ -34,7 +34,7 @@ def rate_from_the_root(kp: Any, kd: Any) -> Any:
 
 
 def inverse_the_other_way(J: Any, damping: Any) -> Any:
-    """With seven by seven numbers; without damping, the pseudo-inverse."""
+    """With a 7 by 7 matrix; without damping, the pseudo-inverse."""
     if damping == 0.0:
         return np.linalg.pinv(J)
     return np.linalg.solve(J.T @ J + damping * np.eye(7), J.T)
@@ -83,5 +83,5 @@ def posture_by_null_vector(J: Any, dq_wish: Any) -> Any:
 
 
 def posture_by_least_squares(J: Any, dq_wish: Any) -> Any:
-    """Takes off the smallest joint speeds that make the tip's part."""
+    """Subtracts the smallest joint speeds with the same motion of the tip."""
     return list(dq_wish - np.linalg.lstsq(J, J @ dq_wish, rcond=None)[0])

@@ -81,7 +81,7 @@ def poses(random: Random) -> Iterator[Call]:
 
 
 def turns_about_z(random: Random) -> Iterator[Call]:
-    """A level tool, turned about the vertical, and an orientation that is right already."""
+    """A level tool turned about the vertical, and an orientation without error."""
     for angle in random.uniform(0.1, 0.6, 2):
         start = random.uniform(-1.0, 1.0)
         yield call(*(lk.se3.rotation([0.0, 0.0, a]) for a in (start + angle, start)))
@@ -90,7 +90,7 @@ def turns_about_z(random: Random) -> Iterator[Call]:
 
 
 def _tilt(random: Random, axis: int, least: float, most: float) -> Call:
-    """A gripper that points down, tilted by so much, whatever its yaw."""
+    """A gripper that points down, with any yaw, tilted by an angle between least and most."""
     angle = random.uniform(least, most) * random.choice((-1.0, 1.0))
     down = lk.se3.rotation([0.0, 0.0, random.uniform(-1.5, 1.5)]) @ DOWN
     return call(down, down @ lk.se3.rotation(angle * np.eye(3)[axis]))

@@ -1,4 +1,4 @@
-"""What people write in notebook 00 instead."""
+"""Mistakes that people make in notebook 00."""
 
 from __future__ import annotations
 
@@ -106,7 +106,7 @@ def in_tool_axes(R_wd: Any, R_wt: Any) -> Array:
 
 
 def from_wanted_to_actual(R_wd: Any, R_wt: Any) -> Array:
-    """The turn the other way."""
+    """The rotation in the opposite direction."""
     return lk.se3.rotation_log(R_wt @ R_wd.T)
 
 
@@ -143,7 +143,7 @@ def backwards_in_tool_axes(R_wd: Any, R_wt: Any) -> Array:
 
 
 def zero_by_zero(R_wd: Any, R_wt: Any) -> Array:
-    """Angle over sine times the skew part: not a number where nothing is turned."""
+    """Angle over sine times the skew part, which is NaN if there is no rotation."""
     E = R_wd @ R_wt.T
     with np.errstate(invalid="ignore"):
         angle = np.arccos((np.trace(E) - 1.0) / 2.0)
@@ -162,10 +162,10 @@ def no_error(target: lk.Sample, state: lk.State) -> Array:
 
 @dataclass(frozen=True)
 class TurnOf:
-    """The right rotation, read in another way.
+    """The right rotation with a vector of another length.
 
     Attributes:
-        angle: What is made of the angle; the axis is right.
+        angle: Returns the length of the vector, given the angle; the axis is right.
     """
 
     angle: Callable[[float], float]
@@ -183,12 +183,12 @@ def euler_of_the_turn(R_wd: Any, R_wt: Any) -> Array:
 
 
 def one_axis_alone(R_wd: Any, R_wt: Any) -> Array:
-    """The cross product of the x axes alone."""
+    """The cross product of the x axes only."""
     return np.cross(R_wt[:, 0], R_wd[:, 0])
 
 
 def half_the_cross_products(R_wd: Any, R_wt: Any) -> Array:
-    """All three cross products without their one half."""
+    """The sum of all three cross products without the factor of one half."""
     return 2.0 * lk.se3.vee(R_wd @ R_wt.T)
 
 
@@ -198,5 +198,5 @@ def minus_the_pose(T_ab: Any) -> Array:
 
 
 def translation_subtracted(T_ab: Any, p_b: Any) -> Array:
-    """The way between the origins taken off."""
+    """The vector between the origins subtracted, not added."""
     return np.asarray(T_ab[:3, :3] @ p_b - T_ab[:3, 3])

@@ -1,4 +1,4 @@
-"""What notebook 00 asks."""
+"""The questions of notebook 00."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Right answers of notebook 00, in another form."""
+"""Right answers to notebook 00 in other forms."""
 
 from __future__ import annotations
 
@@ -10,17 +10,17 @@ import labkit as lk
 
 
 def error_list(target: lk.Sample, state: lk.State) -> Any:
-    """A plain list, in a loop."""
+    """A list, made in a loop."""
     return [a - b for a, b in zip(target.position, state.q, strict=True)]
 
 
 def point_homogeneous(T_ab: Any, p_b: Any) -> Any:
-    """With a one appended."""
+    """A product with the homogeneous vector."""
     return (T_ab @ np.append(p_b, 1.0))[:3]
 
 
 def point_by_einsum(T_ab: Any, p_b: Any) -> Any:
-    """Sums over columns, a list."""
+    """A sum over columns, returned as a list."""
     return list(np.einsum("ij,j->i", T_ab, [*p_b, 1.0])[:3])
 
 
@@ -30,16 +30,16 @@ def inverse_by_solving(T_ab: Any) -> Any:
 
 
 def inverse_by_blocks(T_ab: Any) -> Any:
-    """Put together from blocks."""
+    """The inverse assembled from blocks."""
     R = np.transpose(T_ab[:3, :3])
     return np.vstack([np.column_stack([R, -R @ T_ab[:3, 3]]), [0, 0, 0, 1]])
 
 
 class OrientationError:
-    """A callable object: the turn in the tool's axes, brought into the world's."""
+    """A callable object that transforms the rotation vector from the tool's axes to the world's."""
 
     def __call__(self, R_wd: Any, R_wt: Any) -> Any:
-        """In the tool, then turned."""
+        """The vector in the tool's axes, transformed to the world's."""
         return R_wt @ lk.se3.rotation_log(R_wt.T @ R_wd)
 
 

@@ -66,7 +66,7 @@ def test_a_defence_from_the_draw_to_the_term_s_table(course, solved, capsys):
 
     page = write_page(course, "ada", asked)
     before = page.read_text()
-    students, _, examiners = before.partition("For the examiner alone")
+    students, _, examiners = before.partition("For the examiner only")
     assert "handed in</th>" not in students and examiners.count("handed in</th>") == ASKED
     await_mark(course, "ada", asked)
     (mark,) = marks_of(course, DEFENCE)
@@ -127,7 +127,7 @@ def test_what_cannot_be_asked_or_marked_is_a_sentence(course, solved, capsys):
         (["zoe"], "there is no student 'zoe'"),
         (["bbo"], "name of the student's folder; did you mean bob?"),
         (["ada-lovelce"], "name of the student's folder; did you mean Ada-Lovelace?"),
-        (["eve"], "eve has 0; 01_paths: handed in and not graded"),
+        (["eve"], "eve has 0; 01_paths: handed in but not graded"),
         (["bob", "--mark", "2,3"], "2,3 is not a mark; give 3 whole numbers from 0 to 3"),
         (["bob", "--mark", "2,3,4"], "2,3,4 is not a mark"),
         (["bob", "--mark", "2,3,x"], "2,3,x is not a mark"),
@@ -145,7 +145,7 @@ def test_who_has_too_few_accepted_answers_gets_a_page_and_a_mark(course, solved,
     out = " ".join(capsys.readouterr().out.split())
     assert "bob has 0 accepted answers that a mistake can be put into, and 3 are needed" in out
     students, _, examiners = (
-        (course.build / "defence/bob.html").read_text().partition("For the examiner alone")
+        (course.build / "defence/bob.html").read_text().partition("For the examiner only")
     )
     assert students.count("work of yours that the examiner chooses") == ASKED
     assert "Three functions" not in students

@@ -211,7 +211,7 @@ HOSTILE = (
 
 def test_no_name_of_a_folder_reaches_a_terminal(marked, capsys, monkeypatch):
     """Every verb names such a folder in plain letters, exit 1, and does the others."""
-    monkeypatch.setattr(batch, "grade_aside", lambda *args: iter(()))
+    monkeypatch.setattr(batch, "grade_without_saving", lambda *args: iter(()))
     for name in HOSTILE:
         folder = os.path.join(os.fsencode(marked.submitted), name, NAME.encode())
         os.makedirs(folder)
@@ -250,7 +250,7 @@ def test_nobody_who_handed_in_is_passed_over(course, capsys):
     (course.submitted / "ada").mkdir(parents=True)
     (course.submitted / "ada" / NAME).symlink_to("/nowhere")
     code, out, err = verb(course, capsys, "export")
-    assert (code, err.count("no mark: ada: handed in and not graded")) == (1, 1)
+    assert (code, err.count("no mark: ada: handed in but not graded")) == (1, 1)
     assert "\nada," in out
 
 
@@ -282,7 +282,7 @@ def test_a_long_wait_shows_signs_of_life(course, solved, capsys, monkeypatch, ve
 
     for student in CLASS:
         hand_in(course, NAME, student, solved)
-    monkeypatch.setattr(batch, "EVERY", 0.1)
+    monkeypatch.setattr(batch, "PROGRESS_INTERVAL", 0.1)
     monkeypatch.setattr(batch, "grade_submission", slowly)
     monkeypatch.setattr(batch, "executor", lambda *_: nullcontext(ThreadPoolExecutor(1)))
     main(["grade", NAME, "--course", str(course.root), *verb])

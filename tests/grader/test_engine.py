@@ -333,7 +333,7 @@ def test_plan_prefers_what_is_written(bundle, blank, solved):
     found = cells.read(raw(solved))["cells"]
     todo = plan(found, bundle.data["cells"])
     assert todo.source("circle") == "".join(answer["source"])
-    assert "passed over" in todo.notes["circle"][0]
+    assert "it is ignored" in todo.notes["circle"][0]
     again = dict(answer, source="def circle(s, start, centre):\n    return None")
     solved["cells"].append(again)
     todo = plan(cells.read(raw(solved))["cells"], bundle.data["cells"])

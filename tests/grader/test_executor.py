@@ -252,7 +252,7 @@ def test_a_machine_without_rights_is_not_mistaken_for_one_without_memory(
 def test_whatever_keeps_a_result_from_being_made_is_said(monkeypatch, here, task):
     """Too little memory, a sandbox that is lost, a fault of ours: a sentence each, never a mark."""
     for error, words in (
-        (MemoryError(), "over 1024 MB"),
+        (MemoryError(), "more than 1024 MB"),
         (LabkitError("its sandbox was lost"), "its sandbox was lost"),
         (ZeroDivisionError("oh"), "the grader failed: ZeroDivisionError: oh"),
     ):

@@ -83,7 +83,7 @@ def test_a_mark_that_was_kept_after_a_test_changed_is_told_as_kept(course, solve
     said = " ".join(capsys.readouterr().out.split())
     earns = "has changed: now the answer earns 0 of 2"
     assert f"Since this mark was made the release {earns}" in said
-    assert f"type: labkit grade {NAME} --student ada, and with --lower" in said
+    assert f"type: labkit grade {NAME} --student ada, and add --lower" in said
     assert "ATTENTION" not in said and "The hidden case that decided" not in said
     other = first["hashes"] | {"engine": "0" * 64, "bundle": "0" * 64}
     kept.write_text(json.dumps(first | {"hashes": other}))

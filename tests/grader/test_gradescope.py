@@ -26,7 +26,7 @@ from labkit.grader.gradescope import setup_zip as gradescope_zip
 from labkit.grader.gradescope.run import gradescope_results
 from labkit.grader.grading.grade import grade
 from labkit.grader.grading.results import OTHER_NOTEBOOK
-from labkit.grader.sandbox.apart import alive
+from labkit.grader.sandbox.isolation import processes_of
 from labkit.grader.sandbox.launch import Sandbox
 from labkit.grader.sandbox.limits import Limits
 from labkit.grader.sandbox.mounts import Isolation, NoIsolation
@@ -231,8 +231,8 @@ def test_a_daemon_ends_with_its_submission():
         with sandbox.spawn("student", Limits()) as inside:
             inside.connection.send({"cell": 0, "source": source, "answers": [], "seconds": 30.0})
             folder = inside.connection.read(60.0)["output"].strip()
-            assert len(alive(sandbox.uid)) == 2 and os.path.isdir(folder)
-        assert not alive(sandbox.uid) and not os.path.exists(folder)
+            assert len(processes_of(sandbox.uid)) == 2 and os.path.isdir(folder)
+        assert not processes_of(sandbox.uid) and not os.path.exists(folder)
 
 
 @pytest.mark.slow

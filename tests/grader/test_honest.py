@@ -12,7 +12,7 @@ from labkit.course.source import look
 from labkit.course.withheld import withheld_tools
 from labkit.grader.grading.plan import plan
 from labkit.grader.sandbox.parse import read
-from labkit.grader.sandbox.tricks import tricks
+from labkit.grader.sandbox.tricks import find_tricks
 from tests.synthetic import Draft, kinds
 from tests.synthetic.inline import inline
 
@@ -27,13 +27,13 @@ def test_no_answer_of_the_course_is_suspected(assignment):
     walk = ["".join(cell["source"]) for cell in cells if cell["cell_type"] == "code"]
     problems = COURSE.problems(assignment)
     solved = [*map(look, (*walk, *map(inlined, problems)))]
-    assert not [found for text in walk for found in tricks(text)]
+    assert not [found for text in walk for found in find_tricks(text)]
     for problem in problems:
         assert withheld_tools(solved, problem.name, problem.withheld) == ()
         known = [problem.answer, *problem.variants, *(w.function for w in problem.wrong)]
         for text in (inlined(problem), *(inline(f, problem.name) for f in known)):
             found = withheld_tools([*solved, look(text)], problem.name, problem.withheld)
-            assert (found, tricks(text)) == ((), []), text
+            assert (found, find_tricks(text)) == ((), []), text
 
 
 class Unmarked(Draft):
@@ -85,7 +85,7 @@ def test_of_the_synthetic_class_only_cheats_are_suspected(released, bundle, blan
 )  # fmt: skip
 def test_what_students_do_is_no_trick(source):
     """Own classes, experiments, plots, files of one's own, comments and magics."""
-    assert tricks(source) == []
+    assert find_tricks(source) == []
 
 
 @pytest.mark.parametrize(
@@ -118,4 +118,4 @@ def test_what_students_do_is_no_trick(source):
 )  # fmt: skip
 def test_a_trick_is_told_in_words(source, says):
     """Each is the end of a sentence that begins with the cell."""
-    assert says in tricks(source)
+    assert says in find_tricks(source)

@@ -61,15 +61,15 @@ def tree(tmp_path):
 def test_a_hidden_folder_within_a_shown_one_is_empty(tree):
     """A course that lies in Python's libraries is covered; what is needed of it is shown again."""
     course = tree / "py/lib/course"
-    shown = [*launch.needed(), tree / "py/lib"]
-    assert files(launch.view(shown, [course]), tree) == ["py/lib/a"]
-    words = launch.view([*shown, course / ".venv/lib"], [course])
+    shown = [*launch.python_paths(), tree / "py/lib"]
+    assert files(launch.mount_arguments(shown, [course]), tree) == ["py/lib/a"]
+    words = launch.mount_arguments([*shown, course / ".venv/lib"], [course])
     assert files(words, tree) == ["py/lib/a", "py/lib/course/.venv/lib/b"]
 
 
 def test_a_link_on_the_way_stays_a_link(tree):
     """What is shown by a path with a link in it is there by both, and nothing beside it."""
-    words = launch.view([*launch.needed(), tree / "link/lib/course/.venv"], [])
+    words = launch.mount_arguments([*launch.python_paths(), tree / "link/lib/course/.venv"], [])
     assert files(words, tree) == ["py/lib/course/.venv/lib/b"]
     assert files(words, tree / "link/lib") == ["course/.venv/lib/b"]
 
@@ -83,8 +83,8 @@ def test_a_virtual_environment_starts_wherever_it_lies(tmp_path, through_a_link)
     subprocess.run(
         [made_by / "bin/python3", "-m", "venv", "--without-pip", tmp_path / "env"], check=True
     )
-    code = "from json import dumps; from labkit.grader.sandbox.mounts import needed, view\n"
-    code += "print(dumps(view(needed(), [])))"
+    code = "from json import dumps; from labkit.grader.sandbox import mounts\n"
+    code += "print(dumps(mounts.mount_arguments(mounts.python_paths(), [])))"
     asked = subprocess.run(
         [python, "-c", code],
         env=dict(os.environ, PYTHONPATH=":".join([str(ROOT), *filter(None, sys.path)])),
@@ -108,7 +108,7 @@ def test_only_what_is_needed_is_shown(sandbox):
     look += "('/', 'etc', 'usr', 'usr/share', 'usr/local', 'dev', 'proc', 'sys') "
     look += "if os.path.exists(x)}))"
     found = {name: set(inside) for name, inside in json.loads(run(sandbox, look)).items()}
-    paths = [x for path in launch.needed() for x in (path, path.resolve())]
+    paths = [x for path in launch.python_paths() for x in (path, path.resolve())]
     assert found["/"] <= {path.parts[1] for path in paths} | {"lab", "proc", "dev", "tmp"}
     parts = {"bin", "lib", "lib32", "lib64"}
     assert found["usr"] <= parts | {"local", "share"}
@@ -151,12 +151,12 @@ def test_a_course_is_never_seen(place):
 
 def test_what_is_shown_below_tmp_is_there_in_each_session(monkeypatch, tmp_path):
     """Folders that a session gets anew still hold what the sandbox shows there, read-only."""
-    needed = launch.needed()
+    needed = launch.python_paths()
     (tmp_path / "with space" / "lib").mkdir(parents=True)
     (tmp_path / "with space" / "lib" / "a").write_text("library")
     (tmp_path / "with space" / "pyvenv.cfg").write_text("settings")
     more = [tmp_path / "with space" / name for name in ("lib", "pyvenv.cfg")]
-    monkeypatch.setattr(launch, "needed", lambda: [*needed, *more])
+    monkeypatch.setattr(launch, "python_paths", lambda: [*needed, *more])
     source = f"""
 import os
 print(open({str(more[0] / "a")!r}).read(), open({str(more[1])!r}).read())

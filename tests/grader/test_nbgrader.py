@@ -91,7 +91,7 @@ def test_nbgrader_and_labkit_agree(course, solved, capsys):
     assert main(["export", NAME, "--course", str(course.root)]) == 1
     out, err = capsys.readouterr()
     assert "\nada," in out and out.split("\nada,")[1].splitlines()[0].endswith(",24.0,")
-    assert "no mark: bob: handed in and not graded" in err
+    assert "no mark: bob: handed in but not graded" in err
     assert main(["grade", NAME, "--course", str(course.root)]) == 0
     out = capsys.readouterr().out
     assert "ada: 22 of 22 (as before)" in out and "not included: 2 points" in out

@@ -25,9 +25,9 @@ from labkit.grader import atomic as module
 from labkit.grader.atomic import write
 from labkit.grader.clean import clean_data
 from labkit.grader.each import Failure
+from labkit.grader.grading.current_results import current_results
 from labkit.grader.grading.grade import grade
 from labkit.grader.grading.results import Result, Results, engine_files
-from labkit.grader.grading.standing import standing
 
 WRONG = {
     "hashes {}": {"hashes": {}},
@@ -101,7 +101,7 @@ def test_results_of_another_version_are_refused(marked, numbers):
         LabkitError, match=r"^ada\.json has (format|physics) \d+, this labkit reads"
     ):
         results.read("ada")
-    (failed,) = [x for x in standing(marked, NAME) if isinstance(x, Failure)]
+    (failed,) = [x for x in current_results(marked, NAME) if isinstance(x, Failure)]
     assert str(failed).endswith(f"type: labkit grade {NAME} --student ada")
 
 

@@ -20,7 +20,7 @@ from labkit.grader.grading import grade as checker
 from labkit.grader.grading.grade import grade
 from labkit.grader.grading.plan import imports
 from labkit.grader.sandbox.launch import Sandbox
-from labkit.grader.sandbox.limits import REPLY, VALUES, Limits, TextBudget, slowness
+from labkit.grader.sandbox.limits import MAX_REPLY, MAX_VALUES, Limits, TextBudget, slowness
 from labkit.grader.sandbox.parse import read
 from labkit.grader.sandbox.session import MAX_LOST, RemoteFunction, Session, Step
 from labkit.grader.terms.release import release
@@ -68,9 +68,9 @@ def on_hidden_cases(solved, bundle, name, does):
 def test_what_cells_say_is_older_than_any_hidden_case(monkeypatch, solved, bundle, sandbox):
     """A process that ends itself on a hidden case runs its cells again, and nobody is told."""
     began, starts = [], []
-    guarded, run_cells = checker._guarded, Session._run_cells
+    guarded, run_cells = checker._mark_safely, Session._run_cells
     note = lambda times, call: lambda *args: times.append(time.time_ns()) or call(*args)  # noqa: E731
-    monkeypatch.setattr(checker, "_guarded", note(began, guarded))
+    monkeypatch.setattr(checker, "_mark_safely", note(began, guarded))
     monkeypatch.setattr(Session, "_run_cells", note(starts, run_cells))
     spy = (
         "import os, threading, time\nleak = os.pipe()\n"
@@ -106,8 +106,8 @@ def test_an_answer_that_is_too_large_costs_its_question_only(body, words, solved
 
 def test_the_limits_of_a_reply_have_a_margin():
     """The largest honest answer, of 1,600 bytes and 80 values, is far below the limits."""
-    assert REPLY > 100 * 1_600
-    assert VALUES > 100 * 80
+    assert MAX_REPLY > 100 * 1_600
+    assert MAX_VALUES > 100 * 80
 
 
 def test_what_a_submission_may_take_is_stated():
@@ -270,7 +270,7 @@ def test_no_result_is_longer_than_two_megabytes(what, solved, bundle, sandbox):
     assert len(result.text().encode()) <= LARGEST
     assert not result.rejected
     assert result.score == (0 if what == "sentences" else FULL)
-    cut = any("more text than is kept" in note for note in result.notes)
+    cut = any("texts are cut short here" in note for note in result.notes)
     assert cut == (what in {"outputs", "own cells", "sources"})
     assert len(result.tricks) == 101 or what != "tricks"
 

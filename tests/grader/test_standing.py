@@ -15,7 +15,7 @@ from made import NAME, changed, graded, handed_in, notebook_of, result_of
 
 from labkit.__main__ import main
 from labkit.errors import LabkitError
-from labkit.grader.grading.batch import GradeOptions, common_failures, keep
+from labkit.grader.grading.batch import GradeOptions, common_failures, keep_unless_lower
 from labkit.grader.grading.changes import Change, summary
 from labkit.grader.grading.results import OTHER_NOTEBOOK, Results
 from labkit.grader.marks.export import LAYOUTS
@@ -91,12 +91,12 @@ def handed_in_again(course):
 
 
 FAULTS = {
-    ungraded: "handed in and not graded",
+    ungraded: "handed in but not graded",
     unrecorded: "graded and not in the gradebook",
     half_recorded: "the result gives 3 for bang_bang, the gradebook nothing",
     recorded_otherwise: "the result gives 4 for circle, the gradebook 0",
     damaged: "ada.json is damaged",
-    handed_in_again: "handed in again and not graded since",
+    handed_in_again: "handed in again but not graded since",
 }
 
 
@@ -152,7 +152,7 @@ def test_a_mark_of_an_earlier_release_is_an_empty_cell(marked, capsys, change, s
     path.write_text(json.dumps(data))
     code, out, err = verb(marked, capsys, "export")
     assert code == 1
-    remedy = f"type: labkit grade {NAME}, and with --lower"
+    remedy = f"type: labkit grade {NAME}, and add --lower"
     assert f"no mark: ada: graded before the last release: {says}; {remedy}" in err
     rows = table(out)
     assert [rows[who]["score"] for who in ("ada", "bob", "carl")] == ["", "", "0.0"]
@@ -202,16 +202,16 @@ def test_a_mark_does_not_fall_because_its_result_cannot_be_read(marked, fault):
     results, lower = Results(marked, NAME), result_of(marked, "ada", share=0.5)
     before = results.path("ada").read_bytes()
     options = GradeOptions(recorded=partial(recorded, marked, NAME))
-    says = f"has 22 for what earns 11 now; .* type: labkit grade {NAME} --student ada --lower$"
+    says = f"has 22 for what now earns 11; .* type: labkit grade {NAME} --student ada --lower$"
     with pytest.raises(LabkitError, match=says):
-        keep(results, lower, options)
-    with pytest.raises(LabkitError, match=r"has \d+ for what earns 0 now"):
-        keep(results, result_of(marked, "ada", rejected="the file is empty"), options)
+        keep_unless_lower(results, lower, options)
+    with pytest.raises(LabkitError, match=r"has \d+ for what now earns 0"):
+        keep_unless_lower(results, result_of(marked, "ada", rejected="the file is empty"), options)
     assert results.path("ada").read_bytes() == before
-    assert keep(results, lower, replace(options, lower=True)).result == lower
+    assert keep_unless_lower(results, lower, replace(options, lower=True)).result == lower
     fault(marked)
     full = result_of(marked, "ada")
-    assert keep(results, full, options).result == full == results.get("ada")
+    assert keep_unless_lower(results, full, options).result == full == results.get("ada")
 
 
 def test_a_fall_in_per_cent_alone_is_listed(course):
@@ -229,12 +229,12 @@ def test_a_fall_in_per_cent_alone_is_listed(course):
 def test_nbgraders_own_button_lowers_no_mark_of_an_unchanged_submission(marked, monkeypatch):
     """Its autograde keeps a mark as `labkit grade` does; only --lower lets it fall."""
     full, none = (result_of(marked, "ada", share=share) for share in (1.0, 0.0))
-    monkeypatch.setattr(autograde, "grade_aside", lambda *_: iter([none]))
+    monkeypatch.setattr(autograde, "grade_without_saving", lambda *_: iter([none]))
     monkeypatch.chdir(marked.root)
     assert autograde._grade({"assignment": NAME, "student": "ada"}).score == full.score
     assert Results(marked, NAME).get("ada").score == full.score
     new = changed(none, 0, {"name": "new"})
-    monkeypatch.setattr(autograde, "grade_aside", lambda *_: iter([new]))
+    monkeypatch.setattr(autograde, "grade_without_saving", lambda *_: iter([new]))
     autograde._known.clear()
     with pytest.raises(LabkitError, match=f"--lower lets it fall.*type: labkit grade {NAME}"):
         autograde._grade({"assignment": NAME, "student": "ada"})
@@ -280,7 +280,7 @@ def test_only_handed_in_is_no_mark(course, capsys):
         "ada": "",
         "bob": "",
     }
-    assert err.count("handed in and not graded") == 2
+    assert err.count("handed in but not graded") == 2
 
 
 @pytest.mark.parametrize("fault", FAULTS)

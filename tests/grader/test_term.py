@@ -168,7 +168,7 @@ def test_grade_says_first_and_never_lowers_unasked(course, monkeypatch):
         s: r.score for s, r in before.items()
     }
     monkeypatch.setattr(
-        "labkit.grader.grading.batch.grade_aside", lambda *_: iter(())
+        "labkit.grader.grading.batch.grade_without_saving", lambda *_: iter(())
     )  # no more work
     again = list(grade_class(course, NAME, who, how))
     kept = {one.result.student for one in again if one.says.startswith("kept")}

@@ -17,7 +17,7 @@ from labkit.course.authoring.bundle import Bundle
 from labkit.course.authoring.layout import Course
 from labkit.grader.grading.grade import grade
 from labkit.grader.sandbox import mounts
-from labkit.grader.sandbox.apart import alive
+from labkit.grader.sandbox.isolation import processes_of
 from labkit.grader.sandbox.launch import Sandbox
 from labkit.grader.sandbox.limits import Limits
 from labkit.grader.sandbox.mounts import Isolation
@@ -121,6 +121,6 @@ def test_attacks_earn_nothing_by_user_id(term, kind, monkeypatch):
             result = grade(raw(work), "mallory", bundle, sandbox, FAST)
             said = " ".join(f"{cell['error']} {cell['output']}" for cell in result.cells)
             got = "GOT" in said and not any(x in name for x in SHARED)
-            if result.score or result.rejected or got or alive(sandbox.uid):
+            if result.score or result.rejected or got or processes_of(sandbox.uid):
                 wrong.append((name, result.score, result.rejected, said[-200:]))
     assert not wrong

@@ -17,7 +17,7 @@ from labkit.grader.each import Failure, Failures
 from labkit.grader.feedback.class_report import report
 from labkit.grader.feedback.page import write_feedback
 from labkit.grader.grading.batch import GradeOptions, common_failures, grade_class
-from labkit.grader.grading.standing import standing
+from labkit.grader.grading.current_results import current_results
 from labkit.grader.marks.export import LAYOUTS, as_csv
 from labkit.grader.marks.table import marks_of
 from labkit.grader.nbgrader.gradebook import record
@@ -68,7 +68,7 @@ def rehearse(
     graded = list(failures.sift(grade_class(stage, name, who, options), "not graded"))
     new = sum(one.says != "as before" for one in graded)
     yield clock.says(f"graded: {new} of {len(graded)} anew", each=new)
-    results = list(failures.sift(standing(stage, name), "left out"))
+    results = list(failures.sift(current_results(stage, name), "left out"))
     notes = list(failures.sift(record(stage, name, results), "not in the gradebook"))
     yield clock.says(f"in the gradebook: {len(results)}, {len(notes)} to look at")
     marks = list(marks_of(stage, name))

@@ -95,7 +95,7 @@ def class_report(
     The report counts mistakes by their names. Students have pseudonyms unless you add --names.
     """
     from ...course.authoring.bundle import Bundle
-    from ..feedback.class_report import FEWEST, for_jplag, report
+    from ..feedback.class_report import FEWEST, report, write_for_jplag
     from ..marks.table import marks_of
     from ..pseudonyms import pseudonyms
 
@@ -112,7 +112,7 @@ def class_report(
         truths = {p.name: p.truth for p in course.predictions(assignment)}
         write(report(assignment, marks, problems, called, fewest, asked, truths), to)
         if jplag:
-            written = for_jplag([m.result for m in marks if m.result], jplag, pseudonym)
+            written = write_for_jplag([m.result for m in marks if m.result], jplag, pseudonym)
             print(f"{written} answers in {jplag}", file=sys.stderr)
     return failures.code
 

@@ -31,7 +31,7 @@ from ..atomic import write
 from ..clean import clean_line
 from ..each import Failure, for_student
 from ..grading.grade import parse
-from ..grading.public_evidence import fitting, motion
+from ..grading.public_evidence import encode_to_fit, motion
 from ..grading.worker import in_sandbox
 from ..sandbox.launch import Sandbox
 from ..sandbox.limits import Limits, slowness
@@ -185,7 +185,7 @@ def _run(new: Entry, data: bytes, limits: Limits, on: Sequence[int], sandbox: Sa
             why = clean_line(cell or str(error))
     scores = tuple(round(x.score, 2) if np.isfinite(x.score) else None for x in runs)
     shown = motion(runs[0].log, f"The cup: {new.handle}") if runs else None
-    return replace(new, scores=scores, why=why, motion=fitting(shown) if shown else "")
+    return replace(new, scores=scores, why=why, motion=encode_to_fit(shown) if shown else "")
 
 
 def _controller(session: Session) -> Controller:

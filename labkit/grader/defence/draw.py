@@ -20,10 +20,10 @@ from ...course.verdict import Misconception, Outcome
 from ...errors import LabkitError
 from ..each import Failure
 from ..grading import public_evidence
+from ..grading.current_results import current_results
 from ..grading.grade import parse
 from ..grading.plan import Plan, imports, plan
 from ..grading.results import Answer, Numbers, Run
-from ..grading.standing import standing
 from ..grading.worker import in_sandbox
 from ..sandbox.launch import Sandbox
 from ..sandbox.limits import Limits, slowness
@@ -143,7 +143,7 @@ def accepted(course: Course, student: str) -> tuple[list[Accepted], list[str]]:
     roster = [one.id for one in read_roster(course).students]
     worked = False
     for name in sorted(path.stem for path in course.bundle.glob("*.json")):
-        for result in standing(course, name, student):
+        for result in current_results(course, name, student):
             worked = True
             if isinstance(result, Failure):
                 missing.append(f"{name}: {result.why}")

@@ -1,1 +1,1 @@
-"""What is read of graded work: students' pages, the class report, one answer explained."""
+"""What people read about graded work: students' pages, the class report, and `explain`."""

@@ -1,6 +1,7 @@
-"""The same text in several hand-ins: whom to ask how they came to it; the same is not yet copied.
+"""Find groups of students with identical answers, whom an instructor can ask how they found them.
 
-What was changed on the way is for JPlag to find: `labkit class-report --jplag`.
+Identical answers do not prove copying.  JPlag finds answers that were edited: type
+``labkit class-report --jplag``.
 """
 
 from __future__ import annotations
@@ -12,17 +13,17 @@ from itertools import combinations
 from ...course.verdict import Outcome
 from ..grading.results import Result
 
-LONG = 3
-"""Lines of an answer; among answers that are no longer, the same text is to be expected."""
+SHORT = 3
+"""Answers of no more lines than this are often identical by chance, and are not compared."""
 
 
 def same_text(graded: Sequence[Result], who: Mapping[str, str]) -> Iterator[str]:
-    """Three or more whose answers of some length are the same letter for letter, at least twice."""
+    """A sentence for each group of three or more students who share two or more longer answers."""
     by_text: dict[tuple[str, str], set[str]] = defaultdict(set)
     for result in graded:
         for q in result.questions:
             lines = [line for line in q.source.splitlines() if line.strip()]
-            if len(lines) > LONG and q.verdict.outcome is not Outcome.NOT_ATTEMPTED:
+            if len(lines) > SHORT and q.verdict.outcome is not Outcome.NOT_ATTEMPTED:
                 by_text[q.verdict.name, q.source.strip()].add(who[result.student])
     shared = [(name, those) for (name, _), those in by_text.items() if len(those) > 2]
     common = {frozenset(x & y) for (_, x), (_, y) in combinations(shared, 2)}

@@ -1,4 +1,4 @@
-"""What the class understood: marks, success, misconceptions by name, the same texts."""
+"""Report what a class understood: marks, success rates, misconceptions, identical answers."""
 
 from __future__ import annotations
 
@@ -25,14 +25,14 @@ from .alike import same_text
 
 SLOW = 30.0
 FEWEST = 5
-"""A report without names tells no count of fewer students."""
+"""A report without names does not give counts of fewer students than this."""
 COUNTED = (
     *(Outcome.RIGHT, Outcome.WRONG, Outcome.ERROR),
     *(Outcome.NOT_COUNTED, Outcome.NOT_ATTEMPTED),
 )
-"""Outcomes that have a column."""
+"""Outcomes that have a column of the table."""
 _Row = dict[str, Any]
-"""A row for the template, by the names that it uses."""
+"""A row for the template, whose keys are the names that the template uses."""
 
 
 def report(
@@ -44,21 +44,21 @@ def report(
     asked: Sequence[Question] = (),
     truths: Mapping[str, Any] | None = None,
 ) -> str:
-    """The report, in Markdown.
+    """The class report, in Markdown.
 
     Args:
-        assignment: Which.
-        marks: Of the class; the roster's students without one are left out.
-        problems: By name, for what to say in the lecture.
-        called: What a student is called in it: ``str``, or `pseudonyms`.
-        fewest: No count of fewer students is said, from which somebody could tell who they are.
-        asked: The assignment's questions, for their texts, the outcomes and the predictions.
-        truths: By prediction, what would have been right.
+        assignment: The name of the assignment.
+        marks: The marks of the class; students who did not hand in are left out.
+        problems: The problems by name, for what to say in the lecture.
+        called: Returns the name of a student in the report, as ``str`` or `pseudonyms` do.
+        fewest: Counts of fewer students are not given, as they could show who the students are.
+        asked: The questions of the assignment, for their texts, outcomes and predictions.
+        truths: The right value of each prediction, by name.
     """
     marks = [mark for mark in marks if not mark.absent]
     counted = [mark for mark in marks if mark.result and (mark.lines or not mark.missing)]
     results = [mark.result for mark in counted if mark.result]
-    who = {r.student: _as_text(called(r.student)) for r in results}
+    who = {r.student: _escape(called(r.student)) for r in results}
     graded = [r for r in results if not r.unanswered]
     rejected = [r for r in results if r.unanswered]
     times = sorted(((r.seconds.get("all", 0.0), who[r.student]) for r in graded), reverse=True)
@@ -68,7 +68,7 @@ def report(
         handed_in=len(marks),
         left_out=len(marks) - len(counted),
         open=sum(bool(mark.open) for mark in counted),
-        rejected=[f"{who[r.student]}: {_as_text(r.unanswered)}" for r in rejected],
+        rejected=[f"{who[r.student]}: {_escape(r.unanswered)}" for r in rejected],
         graded=len(graded),
         scores=sorted(
             float(m.score) for m in counted if m.raw is not None and m.result not in rejected
@@ -77,13 +77,13 @@ def report(
         mean=mean,
         median=median,
         changed=any(x.automatic not in (None, x.score) for mark in counted for x in mark.lines),
-        questions=(questions := list(_questions(graded))),
-        can=list(_can(questions, asked)),
-        texts={q.name: _brief(q) for q in asked},
-        believed=list(_believed(graded, asked, fewest, truths or {})),
-        mistakes=list(_mistakes(graded, problems)),
+        questions=(questions := list(_question_rows(graded))),
+        outcomes=list(_outcome_rows(questions, asked)),
+        texts={q.name: _short_question(q) for q in asked},
+        predictions=list(_prediction_rows(graded, asked, fewest, truths or {})),
+        mistakes=list(_mistake_rows(graded, problems)),
         count=lambda n: f"<{fewest}" if 0 < n < fewest else n,
-        tools=list(_tools(graded, who)),
+        tools=list(_tool_lines(graded, who)),
         doubtful=list(common_failures(graded)),
         slow_limit=f"{SLOW:g}",
         slow=[f"{name}: {seconds:.0f} s" for seconds, name in times if seconds > SLOW],
@@ -92,8 +92,8 @@ def report(
     return text.rstrip() + "\n"
 
 
-def for_jplag(results: Sequence[Result], folder: Path, called: Callable[[str], str]) -> int:
-    """Write the answers as JPlag wants them, a folder for each student; returns how many."""
+def write_for_jplag(results: Sequence[Result], folder: Path, called: Callable[[str], str]) -> int:
+    """Write answers for JPlag, in one folder for each student; return how many there are."""
     count = 0
     for result in results:
         for question in result.questions:
@@ -109,10 +109,10 @@ class _QuestionRow(NamedTuple):
     name: str
     counts: list[int]
     share: float | None
-    """Of the points, on average; None where the question has none."""
+    """The mean share of the points that was earned; None if the question has no points."""
 
 
-def _questions(graded: Sequence[Result]) -> Iterator[_QuestionRow]:
+def _question_rows(graded: Sequence[Result]) -> Iterator[_QuestionRow]:
     verdicts: dict[str, list[Verdict]] = defaultdict(list)
     for result in graded:
         for question in result.questions:
@@ -123,8 +123,8 @@ def _questions(graded: Sequence[Result]) -> Iterator[_QuestionRow]:
         yield _QuestionRow(name, [count[x] for x in COUNTED], mean(shares) if shares else None)
 
 
-def _can(rows: Sequence[_QuestionRow], asked: Sequence[Question]) -> Iterator[_Row]:
-    """For each outcome of the course, what the questions say that are evidence of it."""
+def _outcome_rows(rows: Sequence[_QuestionRow], asked: Sequence[Question]) -> Iterator[_Row]:
+    """For each learning outcome, the questions that assess it and their mean share of points."""
     shares = {row.name: row.share for row in rows if row.share is not None}
     for outcome, says in OUTCOMES.items():
         names = [q.name for q in asked if outcome in q.outcomes and q.name in shares]
@@ -134,10 +134,10 @@ def _can(rows: Sequence[_QuestionRow], asked: Sequence[Question]) -> Iterator[_R
             yield {"says": says, "questions": text, "share": share}
 
 
-def _believed(
+def _prediction_rows(
     graded: Sequence[Result], asked: Sequence[Question], fewest: int, truths: Mapping[str, Any]
 ) -> Iterator[_Row]:
-    """For each prediction, what is true and what the class committed to, the commonest first."""
+    """For each prediction, the truth and what the class committed to, most common first."""
     sources = [{q.verdict.name: q.source for q in result.questions} for result in graded]
     for question in asked:
         form = question.judge
@@ -146,7 +146,7 @@ def _believed(
             counts = Counter(form.words(x) for x in values if not form.problem(x))
             truth = form.words(truths[question.name]) if question.name in truths else ""
             common = [
-                f"{n} x {_as_text(words)}{', which is true' * (words == truth)}"
+                f"{n} x {_escape(words)}{', which is true' * (words == truth)}"
                 for words, n in counts.most_common()
                 if n >= fewest
             ]
@@ -159,7 +159,7 @@ def _believed(
 
 
 def _committed(source: str) -> Any:
-    """The value in ``name = predict("name", value)``; None if none is written down."""
+    """The value in ``name = predict("name", value)``; None if there is none."""
     try:
         for node in ast.walk(ast.parse(source)):
             match node:
@@ -170,8 +170,8 @@ def _committed(source: str) -> Any:
     return None
 
 
-def _mistakes(graded: Sequence[Result], problems: Mapping[str, Problem]) -> Iterator[_Row]:
-    """How many made each known mistake, and what to say of it, the commonest first."""
+def _mistake_rows(graded: Sequence[Result], problems: Mapping[str, Problem]) -> Iterator[_Row]:
+    """How many made each known mistake, and what to say about it, most common first."""
     verdicts = (question.verdict for result in graded for question in result.questions)
     made = Counter((v.name, v.mistake.name) for v in verdicts if v.mistake)
     for (name, mistake), count in made.most_common():
@@ -180,8 +180,8 @@ def _mistakes(graded: Sequence[Result], problems: Mapping[str, Problem]) -> Iter
         yield {"students": count, "question": name, "name": mistake, "say": say}
 
 
-def _tools(graded: Sequence[Result], who: Mapping[str, str]) -> Iterator[str]:
-    """What each student used that a question withholds, and what in a cell needs a look."""
+def _tool_lines(graded: Sequence[Result], who: Mapping[str, str]) -> Iterator[str]:
+    """For each student, the withheld tools that they used and the tricks in their cells."""
     for result in graded:
         verdicts = [question.verdict for question in result.questions]
         used = [f"{v.name} {uses(v.withheld)}" for v in verdicts if v.withheld]
@@ -191,12 +191,12 @@ def _tools(graded: Sequence[Result], who: Mapping[str, str]) -> Iterator[str]:
             yield f"{who[result.student]}, worth a look: {'; '.join(result.tricks[:20])}"
 
 
-def _brief(question: Question) -> str:
-    """What a question asks, in a cell of a table; predictions have a section of their own."""
+def _short_question(question: Question) -> str:
+    """The text of a question for a cell of a table; predictions have a section of their own."""
     is_prediction = isinstance(question.judge, Form)
     return "see below" if is_prediction else " ".join(question.asks.split()).replace("|", r"\|")
 
 
-def _as_text(text: str) -> str:
-    """A line in which Markdown sees no markup."""
+def _escape(text: str) -> str:
+    """A text as one line in which all Markdown markup is escaped."""
     return re.sub(r"([\\`*\[\]<>|&])", r"\\\1", clean_line(text))

@@ -1,7 +1,7 @@
-"""Figures of the feedback page: Matplotlib's SVG, in the colours of the page, light or dark.
+"""Draw the figures of the feedback page as SVG in the colours of the page, light or dark.
 
-Any numbers can be drawn.  Those that are not finite are left out; very large and very small ones
-are divided by a power of ten, which is written at the axis.
+All numbers can be drawn.  Numbers that are not finite are left out; very large and very small ones
+are divided by a power of ten, which the label of the axis names.
 """
 
 from __future__ import annotations
@@ -23,13 +23,13 @@ from numpy.typing import ArrayLike, NDArray
 from ..pages import TEMPLATES
 
 SIZE = (6.4, 2.8)
-"""Inches; the page scales it to its width."""
+"""The size in inches; the page scales a figure to its own width."""
 PLAIN = (1e-3, 1e6)
-"""Numbers of this size are drawn as they are."""
+"""Numbers are drawn without a power of ten if the largest is in this range."""
 LEAST = 1e-300
-"""What is smaller is drawn as 0."""
+"""Smaller numbers are drawn as 0."""
 TEXT, GRID, NO, TIP = "#000001", "#000002", "#000003", "#000004"
-"""Colours that stand for variables of ``feedback.css``."""
+"""Placeholder colours that become variables of ``feedback.css``."""
 _VARIABLES = {TEXT: "var(--text)", GRID: "var(--grid)", NO: "var(--no)", TIP: "var(--tip)"}
 _STYLE = rc_params_from_file(TEMPLATES / "figure.mplstyle", use_default_template=False)
 _SVG = "http://www.w3.org/2000/svg"
@@ -44,14 +44,14 @@ ET.register_namespace("xlink", "http://www.w3.org/1999/xlink")
 def curve(
     t: ArrayLike, y: ArrayLike, labels: tuple[str, str], alt: str, limit: float | None
 ) -> Markup:
-    """A curve over time.
+    """Draw a curve over time.
 
     Args:
         t: (n,) Times.
         y: (n,) Values.
-        labels: Of both axes.
-        alt: The figure in words.
-        limit: Drawn as a dashed line, where there is one.
+        labels: The labels of the two axes.
+        alt: A description of the figure in words.
+        limit: A value for a dashed line; None for no line.
     """
     with rc_context(_STYLE):
         figure, axes = _axes()
@@ -66,7 +66,7 @@ def curve(
 
 
 def side_by_side(expected: ArrayLike, given: ArrayLike, alt: str) -> Markup:
-    """The numbers of an answer (n,), crosses, beside those expected (n,), rings."""
+    """Draw the numbers of an answer (n,) as crosses, and those expected (n,) as rings."""
     with rc_context(_STYLE):
         figure, axes = _axes()
         values, unit = _scaled(np.stack([np.asarray(expected), np.asarray(given)]), None)
@@ -92,7 +92,7 @@ def _axes() -> tuple[Figure, Axes]:
 
 
 def _scaled(numbers: ArrayLike, limit: float | None) -> tuple[NDArray[np.float64], str]:
-    """Numbers and at last the limit, flat, as they can be drawn, and their unit."""
+    """The numbers, flat and followed by the limit, scaled for drawing, and their unit."""
     flat = np.append(np.ravel(np.asarray(numbers, dtype=float)), np.nan if limit is None else limit)
     flat[~np.isfinite(flat)] = np.nan
     size = float(np.nanmax(np.abs(flat), initial=0.0))
@@ -103,7 +103,7 @@ def _scaled(numbers: ArrayLike, limit: float | None) -> tuple[NDArray[np.float64
 
 
 def _svg(figure: Figure, alt: str) -> Markup:
-    """A figure as an element of a page whose policy allows no style of an element's own."""
+    """A figure as an element for a page whose content policy forbids inline styles."""
     text = io.StringIO()
     with rc_context({"svg.hashsalt": alt}):
         figure.savefig(text, format="svg", transparent=True, metadata={"Date": None})

@@ -1,7 +1,7 @@
-"""Explain: why one answer has its mark, with the numbers of the hidden case that decided.
+"""Explain why an answer has its mark, with the numbers of the hidden case that decided.
 
-The answer runs once more in a sandbox, and the hidden cases with it; what comes of that is for the
-instructor alone.
+The answer is tried once more in a sandbox, and the details of hidden cases are shown.  They are for
+the instructor only.
 """
 
 from __future__ import annotations
@@ -33,29 +33,29 @@ from ..sandbox.limits import Limits, slowness
 from ..submission import Submission, none_of
 from .page import page
 
-_ALONE = "all cases are laid open here, so this page is for instructors and not for students"
+_PRIVATE = "this page shows hidden cases, so it is for instructors and not for students"
 
 
 def explain(course: Course, student: str, question: str, assignment: str | None = None) -> str:
-    """Why an answer has its mark, for the instructor; nothing is run that a person marks.
+    """Explain to the instructor why an answer has its mark.
 
-    Any other answer is tried again with every hidden case laid open, and a page is written with its
-    numbers and runs.
+    An answer that tests check is tried again with all hidden cases shown, and a page is written
+    with its numbers and runs.  An answer that a person marks is not run.
 
     Args:
         course: The course.
-        student: Whose.
-        question: Which.
-        assignment: Where, if questions of several assignments have this name.
+        student: The student who gave the answer.
+        question: The name of the question.
+        assignment: The assignment, needed only if several have a question of this name.
 
     Raises:
-        UnknownName: No such question was released.
+        UnknownName: No question of this name was released.
         LabkitError: There is no mark to explain.
-        NoIsolation: No sandbox can be made here.
+        NoIsolation: No sandbox can be made on this machine.
     """
     bundle = _bundle(course, question, assignment)
     name, by_hand = bundle.data["assignment"], question in _by_hand(bundle)
-    everybody = marks_of(course, name, None if by_hand else student)  # a team's mark is for all
+    everybody = marks_of(course, name, None if by_hand else student)  # a team shares its mark
     mark = next((one for one in everybody if one.student == student), None)
     if mark is None or mark.result is None:
         why = (mark and mark.missing) or none_of(course, name, student)
@@ -68,7 +68,7 @@ def explain(course: Course, student: str, question: str, assignment: str | None 
 
 
 def _by_a_person(assignment: str, question: str, mark: Mark, result: Result) -> Iterator[str]:
-    """Why an answer that a person marks has its mark."""
+    """Explain the mark of an answer that a person marks."""
     line = next((line for line in mark.lines if line.name == question), None)
     if line is None:
         raise LabkitError(f"there is no mark to explain: {mark.missing}")
@@ -78,10 +78,10 @@ def _by_a_person(assignment: str, question: str, mark: Mark, result: Result) -> 
         says = f"It was left blank or as it was handed out. If it earns more, give it {where}."
     elif line.automatic is not None:
         says = (
-            "This why is not one of those that are drawn for a person to mark, so it has its "
-            f"points for being there. A mark that you give counts instead, {where}."
+            "This why was not one of those that are drawn for a person to mark, so it has full "
+            f"points because it was written. A mark that you give counts instead, {where}."
         )
-    yield _head(mark, line)
+    yield _heading(mark, line)
     yield wrapped(says)
     if line.comment:
         yield f"\nComment: {line.comment}"
@@ -91,19 +91,19 @@ def _by_a_person(assignment: str, question: str, mark: Mark, result: Result) -> 
 def _by_the_grader(
     course: Course, bundle: Bundle, question: str, mark: Mark, result: Result
 ) -> Iterator[str]:
-    """Why an answer that was tried has its mark."""
+    """Explain the mark of an answer that tests check."""
     student = mark.student
     before = next((x for x in result.questions if x.verdict.name == question), None)
     if before is None:
         name = bundle.data["assignment"]
         raise LabkitError(f"{question} is newer than the mark; type: labkit grade {name}")
     shown = before.verdict
-    again = _again(course, student, _laid_open(bundle.of_student(student), question))
+    again = _grade_again(course, student, _with_cases_public(bundle.of_student(student), question))
     now = again.questions[0].verdict
     lines = tuple(line for line in mark.lines if line.name == question)
     line = lines[0] if lines else MarkLine(question, shown.points, shown.earned)
-    yield _head(mark, line)
-    yield from map(wrapped, _judged(bundle, student, question, result))
+    yield _heading(mark, line)
+    yield from map(wrapped, _judging_notes(bundle, student, question, result))
     yield "\nWhat the student has read, and may be shown:"
     yield from (wrapped(f"Note: {note}.") for note in before.notes)
     yield from map(wrapped, summary(shown))
@@ -113,36 +113,36 @@ def _by_the_grader(
     changed = changed or "labkit" * (again.hashes["engine"] != result.hashes["engine"])
     as_before = (shown.right, shown.earned) == (now.right, now.earned)
     if shown.outcome is Outcome.NOT_ATTEMPTED:
-        pass  # no case decided it
+        pass  # no case decided the mark
     elif hidden:
         if not changed or (as_before and changed == "labkit"):
             yield "\nThe hidden case that decided; do not show it before the term ends:"
             yield from (wrapped(f"  {of_test(test)}") for test in now.tests if test.name in hidden)
     elif shown.outcome is Outcome.NOT_COUNTED:
-        pass  # the tool that it uses did
+        pass  # a withheld tool decided the mark
     elif not shown.right:
         yield "\nThe tests that the student has seen decided this mark; no hidden case did."
     if not as_before:
-        says = "ATTENTION: this time it came out otherwise:"
+        says = "ATTENTION: this time the outcome was a different one:"
         if changed:
             says = (
                 f"Since this mark was made {changed} has changed: now the answer earns "
                 f"{now.earned:g} of {now.points:g}. If that is to count, type: labkit grade "
-                f"{result.assignment} --student {student}, and with --lower if the mark is kept"
+                f"{result.assignment} --student {student}, and add --lower if the mark is kept"
             )
         yield "\n" + wrapped(says)
         yield from map(wrapped, summary(now))
     if line.comment:
         yield f"\nComment: {line.comment}"
-    yield f"\nThe answer:\n{_where_it_breaks(before.source) or '(none)'}"
+    yield f"\nThe answer:\n{_with_syntax_error(before.source) or '(none)'}"
     file = course.build / "explain" / student / f"{question}.html"
     head = replace(mark, lines=lines, penalty=0.0, late="", raw=line.score, points=line.points)
-    write(file, page(replace(again, notes=(*again.notes, _ALONE)), head))
-    yield f"\nNumbers and runs, for you alone: {file}"
+    write(file, page(replace(again, notes=(*again.notes, _PRIVATE)), head))
+    yield f"\nA page with numbers and runs, for you only: {file}"
 
 
-def _where_it_breaks(source: str) -> str:
-    """An answer; if Python cannot read it, the error is beside its line."""
+def _with_syntax_error(source: str) -> str:
+    """The text of an answer; if Python cannot read it, the error is beside its line."""
     try:
         parsed(source)
     except SyntaxError as error:
@@ -155,15 +155,15 @@ def _where_it_breaks(source: str) -> str:
     return source
 
 
-def _head(mark: Mark, line: MarkLine) -> str:
-    """Whose mark for what, and where it comes from."""
+def _heading(mark: Mark, line: MarkLine) -> str:
+    """A line with the student, the question, the mark and its origin."""
     given = "no mark" if line.score is None else f"{line.score:g}"
     origin = f" ({line.origin})" if line.origin else ""
     return f"{mark.student}, {line.name}: {given} of {line.points:g}{origin}"
 
 
-def _judged(bundle: Bundle, student: str, name: str, result: Result) -> Iterator[str]:
-    """By which arm a question about one's own is judged, and how near a number has to be."""
+def _judging_notes(bundle: Bundle, student: str, name: str, result: Result) -> Iterator[str]:
+    """The arm and the tolerance by which a question about one's own arm is judged, in words."""
     judge = next(q.judge for q in bundle.questions if q.name == name)
     if isinstance(judge, Measured | Found | Telling):
         given = bundle.arms.arm(student) is not None
@@ -173,8 +173,8 @@ def _judged(bundle: Bundle, student: str, name: str, result: Result) -> Iterator
         yield from (note for note in result.notes if note == PUBLIC_ARM)
 
 
-def _laid_open(bundle: Bundle, name: str) -> Bundle:
-    """One question of a bundle, every case of it public."""
+def _with_cases_public(bundle: Bundle, name: str) -> Bundle:
+    """A bundle with one question only, all of whose cases are public."""
     question = next(q for q in bundle.questions if q.name == name)
     tests = tuple(
         replace(test, cases=tuple(replace(case, hidden=False) for case in test.cases))
@@ -183,8 +183,8 @@ def _laid_open(bundle: Bundle, name: str) -> Bundle:
     return Bundle({**bundle.data, "questions": [question_data(replace(question, tests=tests))]})
 
 
-def _again(course: Course, student: str, bundle: Bundle) -> Result:
-    """Grade what a bundle asks of a submission, and keep nothing of it."""
+def _grade_again(course: Course, student: str, bundle: Bundle) -> Result:
+    """Grade the questions of a bundle in a submission, without storing the result."""
     submission = Submission.of(course, bundle.data["assignment"], student)
     data, note, why = submission.read()
     if why:
@@ -197,7 +197,7 @@ def _again(course: Course, student: str, bundle: Bundle) -> Result:
 
 
 def _bundle(course: Course, question: str, assignment: str | None) -> Bundle:
-    """The bundle that has a question."""
+    """The bundle that has the question."""
     names = [assignment] if assignment else [x.stem for x in sorted(course.bundle.glob("*.json"))]
     bundles = [Bundle.of(course, name) for name in names]
     asked = [[*(q["name"] for q in b.data["questions"]), *_by_hand(b)] for b in bundles]
@@ -206,7 +206,7 @@ def _bundle(course: Course, question: str, assignment: str | None) -> Bundle:
         raise UnknownName("question", question, dict.fromkeys(chain(*asked)))
     if len(here) > 1:
         several = ", ".join(b.data["assignment"] for b in here)
-        raise LabkitError(f"{several} have {question}; say which with --assignment")
+        raise LabkitError(f"{several} each have a question {question}; name one with --assignment")
     return here[0]
 
 

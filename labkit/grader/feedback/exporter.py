@@ -1,4 +1,4 @@
-"""The page of a student where nbgrader makes feedback: its button and its command write ours."""
+"""An exporter that makes nbgrader's button and command for feedback write our page."""
 
 from __future__ import annotations
 
@@ -16,12 +16,12 @@ from .page import page
 
 
 class StudentPage(HTMLExporter):
-    """Makes of an autograded notebook what `labkit feedback` makes of its result."""
+    """Turns an autograded notebook into the page that `labkit feedback` writes."""
 
     def from_filename(  # type: ignore[override]
         self, filename: str, resources: dict[str, Any] | None = None, **_: Any
     ) -> tuple[str, dict[str, Any]]:
-        """The page, and what a writer needs to know.
+        """The page of a student, and the resources for nbconvert's writer.
 
         Raises:
             LabkitError: The student has no mark.

@@ -1,10 +1,10 @@
-"""Feedback: one page for each student, verdicts in words, nothing that should stay hidden.
+"""Write feedback: a page for each student, with verdicts in words and nothing hidden.
 
-It is made from the result alone, so it cannot hold a hidden case or a reference value of one;
-whatever a student's code said is shown as text.  A page with a replay brings the viewer and the
-robot along, 1.7 MB; its policy names each script by its hash, and nothing is loaded from anywhere.
+A page is made from the result only, so it cannot show a hidden case or the value expected in one.
+What a student's code printed or raised is shown as text.  A page with a replay contains the viewer
+and the robot, 1.7 MB.  Its content policy names each script by its hash, and it loads nothing.
 
-Moodle takes pages back as a zip, and knows a participant by the number in the name of a folder,
+Moodle accepts pages as a zip, and recognises a participant by the number in the name of a folder,
 ``NAME_PARTICIPANT_assignfeedback_file`` (github.com/moodle/moodle,
 ``mod/assign/feedback/file/importziplib.php``).
 """
@@ -51,18 +51,18 @@ MEASURES = {
     "saturated": ("commands that a limit cut", "%", 100.0),
     "duration": ("duration", "s", 1.0),
 }
-"""What each field of `metrics.Summary` is called, its unit, and what one is in that unit."""
+"""The name of each field of `metrics.Summary`, its unit, and the factor to that unit."""
 
 
 class Picture(NamedTuple):
-    """A figure, and its words."""
+    """A figure, and its description in words."""
 
     svg: Markup
     words: str
 
 
 class Measure(NamedTuple):
-    """A line of the table of a run: value and limit with their unit, and whether it is over."""
+    """A row in the table of a run: value and limit, each with its unit, and whether it is over."""
 
     words: str
     value: str
@@ -73,16 +73,16 @@ class Measure(NamedTuple):
 def page(
     result: Result, mark: Mark | None = None, course: str = "", reviews: Sequence[Review] = ()
 ) -> str:
-    """The page of one student.
+    """The feedback page of one student.
 
     Args:
-        result: What came of the submission.
-        mark: What it is worth, as the gradebook has it; by default what the result says.
-        course: What the course is called.
-        reviews: What readers said of a report.
+        result: The result of the submission.
+        mark: The mark in the gradebook; by default that of the result.
+        course: The name of the course.
+        reviews: What the readers of a report wrote.
 
     Returns:
-        HTML in one piece, readable without its scripts.
+        HTML in one file, which can be read without its scripts.
     """
     mark = mark or mark_of(result)
     asked = {line.name: line for line in mark_of(result).lines}
@@ -111,11 +111,11 @@ def write_feedback(course: Course, assignment: str, marks: Iterable[Mark]) -> li
 
     Args:
         course: The course.
-        assignment: Which.
-        marks: Of its students.
+        assignment: The name of the assignment.
+        marks: The marks of its students.
 
     Returns:
-        The files; and for whom no page could be made.
+        For each student the file, or why no page could be made.
     """
     name, said = read_rules(course).name, reviews(course, assignment)[0]
 
@@ -123,7 +123,7 @@ def write_feedback(course: Course, assignment: str, marks: Iterable[Mark]) -> li
         if mark.result is None or (mark.missing and not mark.lines):
             raise LabkitError(mark.missing or "there is no result of theirs; grade again")
         path = course.root / "feedback" / mark.student / assignment / f"{assignment}.html"
-        result = replace(mark.result, student=mark.student)  # a report is of the whole team
+        result = replace(mark.result, student=mark.student)  # a report has one for the team
         write(path, page(result, mark, name, said.get(mark.author or mark.student, ())))
         return path
 
@@ -131,7 +131,7 @@ def write_feedback(course: Course, assignment: str, marks: Iterable[Mark]) -> li
 
 
 def error_over_time(run: Mapping[str, Any], motion: Mapping[str, Any]) -> Picture:
-    """The position error of a run's tip, with the largest that is allowed."""
+    """Draw the position error of the tip in a run, and the largest error allowed."""
     error = 1e3 * np.abs(unpack(motion["error"])[:, 0])
     t = motion["start"] + motion["period"] * np.arange(len(error))
     peak, limit = int(error.argmax()), run["limits"].get("max_mm")
@@ -147,7 +147,7 @@ def error_over_time(run: Mapping[str, Any], motion: Mapping[str, Any]) -> Pictur
 
 
 def number_by_number(found: Mapping[str, Any]) -> Picture:
-    """The numbers of an answer beside those expected."""
+    """Draw the numbers of an answer and those expected."""
     expected, given = found["expected"], found["given"]
     apart = [abs(a - b) for a, b in zip(expected, given, strict=True)]
     worst = max(range(len(apart)), key=apart.__getitem__)
@@ -159,7 +159,7 @@ def number_by_number(found: Mapping[str, Any]) -> Picture:
 
 
 def measures(run: Mapping[str, Any]) -> Iterator[Measure]:
-    """What was measured of a run, beside its limits."""
+    """The measures of a run and their limits."""
     for name, value in run["measures"].items():
         words, unit, factor = MEASURES.get(name, (name, "", 1.0))
         limit = run["limits"].get(name)
@@ -169,24 +169,24 @@ def measures(run: Mapping[str, Any]) -> Iterator[Measure]:
 
 
 def _plain(x: float) -> str:
-    """Three digits or more, without an exponent up to a billion."""
+    """A number with at least three digits, and without an exponent up to a billion."""
     return f"{x:.0f}" if 1e3 <= abs(x) < 1e9 else f"{x:.3g}"
 
 
 def moodle_zip(course: Course, assignment: str, pages: Iterable[Path], to: Path) -> int:
-    """Write the zip that Moodle takes under *Upload multiple feedback files in a zip*.
+    """Write the zip that Moodle accepts under *Upload multiple feedback files in a zip*.
 
     Args:
         course: The course.
-        assignment: Which.
-        pages: ``feedback/STUDENT/ASSIGNMENT/NAME.html``.
+        assignment: The name of the assignment.
+        pages: Files such as ``feedback/STUDENT/ASSIGNMENT/NAME.html``.
         to: The file to write.
 
     Returns:
-        How many pages are in it.
+        The number of pages in the zip.
 
     Raises:
-        LabkitError: No page is of a student whom Moodle's download named.
+        LabkitError: None of the pages is for a student named in Moodle's download.
     """
     people = lms_users(course, assignment)
     mine = [
@@ -196,13 +196,13 @@ def moodle_zip(course: Course, assignment: str, pages: Iterable[Path], to: Path)
     ]
     if not mine:
         raise LabkitError(
-            f"nobody's {assignment} was collected from Moodle, whose numbers the zip needs; "
-            f"first: labkit collect {assignment} MOODLES.zip"
+            f"no {assignment} was collected from Moodle, and the zip needs Moodle's numbers of the "
+            f"students; first type: labkit collect {assignment} MOODLES.zip"
         )
     to.parent.mkdir(parents=True, exist_ok=True)
     with zipfile.ZipFile(to, "w", zipfile.ZIP_DEFLATED) as archive:
         for who, page in mine:
-            name = re.sub(r"[_/\\]", " ", who.name)  # the number comes after the first underscore
+            name = re.sub(r"[_/\\]", " ", who.name)  # its first underscore ends a name
             folder = f"{name}_{who.number}_assignfeedback_file"
             archive.write(page, f"{folder}/{page.name}")
     return len(mine)

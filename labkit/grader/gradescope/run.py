@@ -1,9 +1,9 @@
 """Gradescope: what runs in its container for each submission; `setup_zip` brings it there.
 
-The container has no namespaces to give, so a submission is kept apart by user id, see
-`sandbox.apart.ByUser`.  Files and their meaning: gradescope-autograders.readthedocs.io, "Autograder
-Specifications" and "Submission Metadata"; half a processor, 768 MB and 10 minutes, after which
-nothing counts: "Troubleshooting", there.
+The container cannot make namespaces, so submissions are isolated by user id; see
+`sandbox.isolation.ByUser`.  The manual at gradescope-autograders.readthedocs.io describes the files
+under "Autograder Specifications" and "Submission Metadata", and under "Troubleshooting" the limits:
+half a processor, 768 MB and 10 minutes, after which nothing counts.
 """
 
 from __future__ import annotations

@@ -1,1 +1,1 @@
-"""From a submission to its result: what runs, who marks it, and a class at a time."""
+"""Everything from a submission to its result, for one notebook and for a whole class."""

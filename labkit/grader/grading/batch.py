@@ -1,4 +1,4 @@
-"""A batch: grade a class, resume where the last run stopped, say what the class has in common."""
+"""Grade a class: resume where the last run stopped, and report what many students failed."""
 
 from __future__ import annotations
 
@@ -26,13 +26,13 @@ from .results import Result, Results
 from .worker import Task, grade_submission
 
 FAILURE_RATE_ALERT = 0.3
-"""If more than this share of a class fails one test, the run asks whether the test is to blame."""
+"""If a larger share of the class fails a test, the run asks whether the test is to blame."""
 MIN_ATTEMPTS = 5
-"""Nothing is concluded from fewer than these."""
+"""With fewer attempts at a question than this, none of its tests is called into doubt."""
 MIN_FAILURES = 3
-"""Fewer failures than this, such as two of one known mistake, do not cast doubt on a test."""
-EVERY = 15.0
-"""Seconds between two sentences on how far it is."""
+"""With fewer failures of a test, such as two of one known mistake, the test is not doubted."""
+PROGRESS_INTERVAL = 15.0
+"""Seconds between two progress reports."""
 
 
 @dataclass(frozen=True)
@@ -40,14 +40,15 @@ class GradeOptions:
     """How to grade.
 
     Attributes:
-        jobs: Workers at once.
+        jobs: How many workers run at the same time.
         isolated: False only if somebody typed ``--unsafe-no-isolation``.
-        dask: Address of a scheduler, or None for this machine.
-        again: Whether to grade again what has a result that is up to date.
+        dask: The address of a Dask scheduler; None for this machine.
+        again: Whether to grade a submission again although its result is up to date.
         lower: Whether the mark of an unchanged submission may fall.
-        limits: What a submission may use, on a quick machine.
-        tell: Called every `EVERY` seconds with a sentence on how far it is.
-        recorded: What the gradebook has for a student's questions; asked where a result is damaged.
+        limits: What a submission may use on a fast machine.
+        tell: Called every `PROGRESS_INTERVAL` seconds with a sentence that reports progress.
+        recorded: Returns the points that the gradebook has for each question of a student;
+            called if the student's result file is damaged.
     """
 
     jobs: int = 1
@@ -62,11 +63,11 @@ class GradeOptions:
 
 @dataclass(frozen=True)
 class GradedSubmission:
-    """One submission, graded.
+    """A graded submission.
 
     Attributes:
-        result: The one that counts.
-        says: How it stands to the one before; empty if the mark is the same, or there was none.
+        result: The result that counts.
+        says: How the mark differs from the previous one; empty if it does not, or is the first.
     """
 
     result: Result
@@ -76,16 +77,16 @@ class GradedSubmission:
 def grade_class(
     course: Course, assignment: str, who: Sequence[str], options: GradeOptions
 ) -> Iterator[GradedSubmission | Failure]:
-    """Grade submissions, each into a result file of its own.
+    """Grade submissions, and write a result file for each.
 
     Args:
         course: The course.
-        assignment: Its name.
-        who: Whose submissions.
+        assignment: The name of the assignment.
+        who: The students whose submissions are graded.
         options: How to grade.
 
     Yields:
-        Each result, or what failed.
+        For each student the result, or why grading failed.
 
     Raises:
         LabkitError: The assignment was not released, or another run is under way.
@@ -96,34 +97,35 @@ def grade_class(
     with exclusive_run(results.folder):
         for student in who:
             submission = Submission.of(course, assignment, student)
-            before = None if options.again else still_good([results], submission, bundle, options)
-            aside = None if before else still_good([results.aside], submission, bundle, options)
+            before = None if options.again else reusable(results, submission, bundle, options)
+            ready = None if before else reusable(results.provisional, submission, bundle, options)
             if before is not None:
                 yield GradedSubmission(before, "as before")
-            elif aside is not None:
-                yield for_student(student, partial(keep, results, aside, options))
+            elif ready is not None:
+                yield for_student(student, partial(keep_unless_lower, results, ready, options))
             else:
                 todo.append(submission)
-        yield from _kept(results, grade_aside(course, bundle, todo, options), options)
+        yield from _keep_each(results, grade_without_saving(course, bundle, todo, options), options)
 
 
 def watch(
     course: Course, assignment: str, options: GradeOptions, pause: float = 1.0
 ) -> Iterator[GradedSubmission | Failure]:
-    """Grade submissions as they come, in workers that stay warm, until somebody stops it.
+    """Grade submissions as they arrive, in workers that keep running, until somebody stops it.
 
-    What is handed in and has no result of its own is the queue, so a run that is killed loses
-    nothing.  A new release puts everybody back into it.  One whose grading failed is tried again
-    once this student hands in something else, or the assignment is released again.
+    The queue consists of the submissions that have no up-to-date result, so a run that is killed
+    loses nothing, and a new release puts every submission back into the queue.  A submission
+    whose grading failed is tried again when the student hands in something else, or when the
+    assignment is released again.
 
     Args:
         course: The course.
-        assignment: Its name.
+        assignment: The name of the assignment.
         options: How to grade.
         pause: Seconds between two looks at ``submitted/``.
 
     Yields:
-        Each result, or what failed.
+        For each student the result, or why grading failed.
 
     Raises:
         LabkitError: The assignment was not released, or another run is under way.
@@ -136,33 +138,33 @@ def watch(
             todo: list[Submission] = []
             for student in students(course, assignment):
                 submission = Submission.of(course, assignment, student)
-                now = (*_look(submission.folder), bundle.data["hash"], bundle.arms)
+                now = (*_fingerprint(submission.folder), bundle.data["hash"], bundle.arms)
                 if looked.get(student) != now:
                     looked[student] = now
-                    if still_good([results], submission, bundle, options) is None:
+                    if reusable(results, submission, bundle, options) is None:
                         todo.append(submission)
-            yield from _kept(results, _graded(pool, course, bundle, todo, options), options)
+            yield from _keep_each(results, _graded(pool, course, bundle, todo, options), options)
             if not todo:
                 time.sleep(pause)
 
 
-def _look(folder: Path) -> tuple[float, int]:
-    """What changes when something else is handed in."""
+def _fingerprint(folder: Path) -> tuple[float, int]:
+    """A value that changes when a student hands in something else."""
     found = [path.lstat() for path in folder.glob("*.ipynb")]
     return max((x.st_mtime for x in found), default=0.0), sum(x.st_size for x in found)
 
 
-def grade_aside(
+def grade_without_saving(
     course: Course, bundle: Bundle, submissions: Iterable[Submission], options: GradeOptions
 ) -> Iterator[Result | Failure]:
-    """Grade submissions and keep nothing of it.
+    """Grade submissions without storing their results.
 
     Yields:
-        Each result as it is finished, or what failed.
+        Each result as soon as it is finished, or why grading failed.
 
     Raises:
-        NoIsolation: No sandbox can be made here.
-        LabkitError: There is no such Dask scheduler.
+        NoIsolation: No sandbox can be made on this machine.
+        LabkitError: There is no Dask scheduler at the address given.
     """
     with executor(options.jobs, options.dask) as pool:
         yield from _graded(pool, course, bundle, submissions, options)
@@ -181,31 +183,31 @@ def _graded(
     began = said = time.monotonic()
     left = set(whose)
     while left:
-        done, left = wait(left, EVERY, FIRST_COMPLETED)
+        done, left = wait(left, PROGRESS_INTERVAL, FIRST_COMPLETED)
         for future in done:
             yield for_student(whose[future], future.result, of_all=(NoIsolation,))
         now, count = time.monotonic(), len(tasks) - len(left)
-        if left and now >= said + EVERY:
+        if left and now >= said + PROGRESS_INTERVAL:
             said, minutes = now, (now - began) * len(left) / max(1, count) / 60
             rest = f", about {max(1, round(minutes))} min left" if count else ""
             options.tell(f"{count} of {len(tasks)} graded{rest}")
 
 
-def _kept(
+def _keep_each(
     results: Results, graded: Iterable[Result | Failure], options: GradeOptions
 ) -> Iterator[GradedSubmission | Failure]:
     for result in graded:
         if isinstance(result, Failure):
             yield result
         else:
-            yield for_student(result.student, partial(keep, results, result, options))
+            yield for_student(result.student, partial(keep_unless_lower, results, result, options))
 
 
-def keep(results: Results, result: Result, options: GradeOptions) -> GradedSubmission:
-    """Store a result, unless it would lower the mark of an unchanged submission unasked.
+def keep_unless_lower(results: Results, result: Result, options: GradeOptions) -> GradedSubmission:
+    """Store a result, unless it lowers the mark of an unchanged submission without ``--lower``.
 
     Raises:
-        LabkitError: The result before cannot be read, and the gradebook has a higher mark.
+        LabkitError: The previous result cannot be read, and the gradebook has a higher mark.
     """
     before = results.get(result.student)
     if before is not None and not options.lower and result.falls_from(before):
@@ -221,23 +223,23 @@ def keep(results: Results, result: Result, options: GradeOptions) -> GradedSubmi
 
 
 def _refuse_to_lower(result: Result, recorded: Mapping[str, float]) -> None:
-    """Compare with the gradebook; which submission its marks are of, nobody knows."""
+    """Refuse a lower mark than the gradebook's, which may be that of another submission."""
     now = {q.verdict.name: q.verdict.earned for q in result.questions}
     both = [name for name in recorded if name in now or result.rejected]
     had, has = sum(recorded[x] for x in both), sum(now.get(x, 0.0) for x in both)
     if had > has + 0.01:
         raise LabkitError(
-            f"the result before cannot be read, and the gradebook has {had:g} for what earns "
-            f"{has:g} now; if that is to count, type: labkit grade {result.assignment} --student "
+            f"the previous result cannot be read, and the gradebook has {had:g} for what now earns "
+            f"{has:g}; if that is to count, type: labkit grade {result.assignment} --student "
             f"{shlex.quote(result.student)} --lower"
         )
 
 
 def common_failures(results: Sequence[Result]) -> Iterator[str]:
-    """Name the questions with a test that many students fail: is the test to blame?
+    """Name the questions with a test that many students fail, as the test may be to blame.
 
     Yields:
-        One sentence for each such question, on the test that most students fail.
+        A sentence for each such question, about the test that most students fail.
     """
     graded = [r for r in results if not r.unanswered]
     failed: Counter[tuple[str, str]] = Counter()
@@ -249,28 +251,25 @@ def common_failures(results: Sequence[Result]) -> Iterator[str]:
             tried[question.verdict.name] += 1
             for one in question.verdict.tests:
                 failed[question.verdict.name, one.name] += one.outcome is not Outcome.RIGHT
-    loud: dict[str, list[tuple[int, str]]] = {}
+    doubtful: dict[str, list[tuple[int, str]]] = {}
     for (name, test), count in failed.most_common():
         share = FAILURE_RATE_ALERT * tried[name]
         if count > share and count >= MIN_FAILURES and tried[name] >= MIN_ATTEMPTS:
-            loud.setdefault(name, []).append((count, test))
-    for name, ((count, test), *others) in loud.items():
-        more = f"; so it is with {len(others)} more of its tests" if others else ""
+            doubtful.setdefault(name, []).append((count, test))
+    for name, ((count, test), *others) in doubtful.items():
+        more = f", and many fail {len(others)} more of its tests" if others else ""
         yield (
             f"{count} of {tried[name]} who tried {name} fail the test {test!r}{more}: "
-            "is it the test, the text or the lecture?"
+            "is the cause the test, the text or the lecture?"
         )
 
 
-def still_good(
-    places: Iterable[Results], submission: Submission, bundle: Bundle, options: GradeOptions
+def reusable(
+    results: Results, submission: Submission, bundle: Bundle, options: GradeOptions
 ) -> Result | None:
-    """A result before, if it came from these very contents."""
-    for results in places:
-        before = results.get(submission.student)
-        if before is None or (options.isolated and before.isolation.startswith("none")):
-            continue
-        data, _, _ = submission.read()
-        if before.hashes == hashes(data, bundle.of_student(submission.student)):
-            return before
-    return None
+    """The stored result, if the same submission, release and engine led to it."""
+    before = results.get(submission.student)
+    if before is None or (options.isolated and before.isolation.startswith("none")):
+        return None
+    data, _, _ = submission.read()
+    return before if before.hashes == hashes(data, bundle.of_student(submission.student)) else None

@@ -1,4 +1,4 @@
-"""Whose mark would change after a test has changed, known before anything is written."""
+"""Show whose mark a changed test would move, before any mark is written."""
 
 from __future__ import annotations
 
@@ -11,17 +11,17 @@ from ...course.authoring.layout import Course
 from ...errors import LabkitError
 from ..each import Failure, for_student
 from ..submission import Submission
-from .batch import GradeOptions, grade_aside, still_good
+from .batch import GradeOptions, grade_without_saving, reusable
 from .results import Result, Results
 
 
 @dataclass(frozen=True)
 class Change:
-    """A mark before and after.
+    """What a new release does to the mark of one student.
 
     Attributes:
-        before: The result that counts now, if there is one.
-        after: The new one.
+        before: The result that counts now; None if there is none.
+        after: The result with the new release.
     """
 
     before: Result | None
@@ -29,12 +29,12 @@ class Change:
 
     @property
     def by(self) -> float:
-        """How far the mark moves."""
+        """The difference between the new score and the old one."""
         return round(self.after.score - (self.before.score if self.before else 0.0), 4)
 
     @property
     def falls(self) -> bool:
-        """Whether it is lowered only with --lower."""
+        """Whether the new mark counts only with ``--lower``."""
         return self.before is not None and self.after.falls_from(self.before)
 
     def __str__(self) -> str:
@@ -59,9 +59,9 @@ class Change:
 def changes(
     course: Course, assignment: str, students: Sequence[str], options: GradeOptions
 ) -> Iterator[Change | Failure]:
-    """Grade aside, and compare with the results that count; no mark is changed.
+    """Grade submissions and compare with the results that count, without changing a mark.
 
-    What was graded is kept aside, so that `grade_class` need not do it again.
+    The new results are stored as provisional ones, so that `grade_class` need not grade again.
 
     Raises:
         LabkitError: The assignment's sources are newer than its release.
@@ -71,37 +71,38 @@ def changes(
     todo: list[Submission] = []
     for student in students:
         submission = Submission.of(course, assignment, student)
-        done = still_good((now.aside, now), submission, bundle, options)
+        done = reusable(now.provisional, submission, bundle, options)
+        done = done or reusable(now, submission, bundle, options)
         if done is None:
             todo.append(submission)
         else:
             yield Change(now.get(student), done)
-    for result in grade_aside(course, bundle, todo, options):
+    for result in grade_without_saving(course, bundle, todo, options):
         if isinstance(result, Failure):
             yield result
         else:
-            yield for_student(result.student, partial(_kept_aside, now, result))
+            yield for_student(result.student, partial(_keep_provisionally, now, result))
 
 
-def _kept_aside(now: Results, result: Result) -> Change:
-    now.aside.keep(result)
+def _keep_provisionally(now: Results, result: Result) -> Change:
+    now.provisional.keep(result)
     return Change(now.get(result.student), result)
 
 
 def _refuse_unreleased(course: Course, assignment: str) -> None:
-    """Refuse to compare with tests that were corrected since they were released."""
+    """Refuse to compare if the tests have been corrected since the assignment was released."""
     released = (course.bundle / f"{assignment}.json").stat().st_mtime
     sources = sorted(course.notebook_source(assignment).parent.glob("*.py"))
     newer = [file.name for file in sources if file.stat().st_mtime > released]
     if newer:
         raise LabkitError(
-            f"{', '.join(newer)} changed after {assignment} was released, so --diff would not try "
+            f"{', '.join(newer)} changed after {assignment} was released, so --diff would not see "
             f"the change; type: labkit release {assignment}, and correct what it refuses"
         )
 
 
 def summary(found: Sequence[Change]) -> Iterator[str]:
-    """Whose mark moves and how many there are, a sentence each."""
+    """A sentence for each mark that moves, and one that counts them."""
     for change in sorted(found, key=lambda m: m.by):
         if change.by or change.falls or change.before is None:
             yield str(change)

@@ -1,7 +1,8 @@
-"""Executors: functions called in worker processes, of this machine or of a Dask cluster.
+"""Executors, which call functions in worker processes of this machine or of a Dask cluster.
 
-Both kinds are a `concurrent.futures.Executor`.  A call whose worker dies is tried once more, by
-another worker, and no other call notices.  Arguments and results are pickled: they are our own.
+Both kinds are a `concurrent.futures.Executor`.  A call whose worker dies is tried once more by
+another worker, and no other call is affected.  Arguments and results are pickled, which is safe
+because they are the grader's own.
 """
 
 from __future__ import annotations
@@ -20,15 +21,15 @@ from queue import SimpleQueue
 from typing import Any
 
 from ...errors import LabkitError
-from ..sandbox.cgroup import sweep
+from ..sandbox.cgroup import remove_stale_groups
 
 TRIES = 2
-"""How often a call is tried whose worker dies; within a worker `worker.TRIES` counts anew."""
+"""How often a call is tried if its worker dies; in each worker `worker.TRIES` counts anew."""
 
 
 @contextmanager
 def executor(workers: int, dask: str | None = None) -> Iterator[Executor]:
-    """An executor for a block; where the block is left early, what still runs is ended."""
+    """An executor for a ``with`` block; an exception in the block ends all running calls."""
     with ExitStack() as stack:
         if dask is None:
             pool: Executor = LocalExecutor(workers)
@@ -48,10 +49,10 @@ def executor(workers: int, dask: str | None = None) -> Iterator[Executor]:
 
 
 class LocalExecutor(Executor):
-    """Processes of this machine, each in a pool of its own, so that a death concerns one task.
+    """Processes of this machine, each in its own pool, so that a crash affects one task only.
 
     Args:
-        workers: How many processes; each starts when it is first needed.
+        workers: How many processes there are; each starts when it is first needed.
     """
 
     def __init__(self, workers: int) -> None:
@@ -62,7 +63,7 @@ class LocalExecutor(Executor):
         self._end, self._open = Pipe(duplex=False)
 
     def submit(self, function: Callable[..., Any], /, *args: Any, **kwargs: Any) -> Future[Any]:
-        """Call a function in one of the processes, and again, once, if that process dies."""
+        """Call a function in one of the processes, and once more if that process dies."""
         return self._threads.submit(self._call, partial(function, *args, **kwargs))
 
     def _call(self, task: Callable[[], Any]) -> Any:
@@ -86,29 +87,29 @@ class LocalExecutor(Executor):
         return ProcessPoolExecutor(1, get_context("spawn"), _begin_worker, (self._end,))
 
     def shutdown(self, wait: bool = True, *, cancel_futures: bool = False) -> None:
-        """End the processes: when they have done what was submitted, or at once."""
+        """End the processes once they have done their work or, without ``wait``, at once."""
         self._threads.shutdown(wait, cancel_futures=cancel_futures or not wait)
         while wait and not self._idle.empty():
             pool = self._idle.get()
             if pool is not None:
                 pool.shutdown()
         self._open.close()
-        sweep()
+        remove_stale_groups()
 
 
 def _block_interrupts() -> None:
-    """Keep Ctrl-C from this thread and the processes that it starts; the main thread ends them."""
+    """Leave Ctrl-C to the main thread, which ends this thread and the processes that it starts."""
     signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
 
 
 def _begin_worker(end: Connection) -> None:
-    """Runs first in a process of a `LocalExecutor`."""
+    """Prepare a new process of a `LocalExecutor`."""
     os.dup2(2, 1)  # the grader's output has its own format
     threading.Thread(target=_end_with_executor, args=(end,), daemon=True).start()
 
 
 def _end_with_executor(end: Connection) -> None:
-    """End this process, and the kernel its sandbox, when the executor or its process has ended."""
+    """Exit when the executor or its process has ended; the kernel then ends the sandbox, too."""
     with suppress(EOFError, OSError):
         end.recv()
     os._exit(1)
@@ -118,10 +119,10 @@ def dask_client(address: str) -> Any:
     """A client of a Dask scheduler, to be closed after use.
 
     Args:
-        address: Such as ``tcp://127.0.0.1:8786``; use loopback or TLS.
+        address: An address such as ``tcp://127.0.0.1:8786``; use loopback or TLS.
 
     Raises:
-        LabkitError: distributed is missing, or nothing answers there.
+        LabkitError: The package ``distributed`` is missing, or no scheduler answers there.
     """
     try:
         from distributed import Client
@@ -129,12 +130,12 @@ def dask_client(address: str) -> Any:
     except ImportError:
         raise LabkitError("Dask is missing; type: pip install 'labkit[cluster]'") from None
     try:
-        resolve_address(address)  # a client takes 20 s to give up on what is not an address
+        resolve_address(address)  # given a malformed address, Client would try for 20 s
         return Client(address, timeout="10s", set_as_default=False)
     except (OSError, ValueError) as error:
         raise LabkitError(f"no Dask scheduler at {address}: {error}") from None
 
 
 def _allow_one_failure(dask_scheduler: Any) -> None:
-    """Runs in the scheduler: a task may take one worker down; by default it takes four."""
+    """Let a task end one worker, and not four, which is the scheduler's default."""
     dask_scheduler.allowed_failures = TRIES - 1

@@ -1,7 +1,7 @@
-"""Grade one notebook: read it, plan what runs, ask its functions, reach the verdicts.
+"""Grade one notebook: read it, plan which cells run, call its functions, and mark the answers.
 
-This side owns what is expected and shares no process with the student's code; what comes back is
-plain data, read with limits.
+This side knows what is expected, and shares no process with the student's code.  Answers return
+as plain data, which is read with limits.
 """
 
 from __future__ import annotations
@@ -23,7 +23,7 @@ from ...course.verdict import Kind, Outcome, Verdict
 from ...course.withheld import withheld_tools
 from ..clean import clean_data, clean_line
 from ..sandbox.launch import Sandbox
-from ..sandbox.limits import TRICKS, Limits, TextBudget
+from ..sandbox.limits import MAX_TEXT, MAX_TRICKS, Limits, TextBudget
 from ..sandbox.protocol import Disconnected, ProtocolError
 from ..sandbox.session import RemoteFunction, Session
 from ..submission import digest
@@ -32,8 +32,8 @@ from .plan import Plan, plan
 from .results import OTHER_NOTEBOOK, Answer, FailedCell, Hashes, OwnCell, Result, engine
 
 ADDED = (
-    "this question came after the notebook was handed in, which does not have it; it counts 0 "
-    "until the new notebook is handed in, into which `labkit merge` brings the work done so far"
+    "this question was added after the notebook was handed in, so the notebook lacks it; it counts "
+    "0 until the new notebook is handed in, into which `labkit merge` copies the work done so far"
 )
 
 PUBLIC_ARM = (
@@ -41,14 +41,14 @@ PUBLIC_ARM = (
     "gave this student"
 )
 
-_THEIRS = {
+_STUDENT_TEXTS = {
     "tricks": ("tricks",),
     "cells": ("error", "output"),
     "own": ("source",),
     "written": ("written",),
     "questions": ("source", "found"),
 }
-"""The texts of a result that the student wrote; what comes first is kept first."""
+"""The texts of a result that the student wrote; if there is too much, the last are cut."""
 
 
 def grade(
@@ -63,16 +63,16 @@ def grade(
     """Grade one notebook.
 
     Args:
-        data: The file.
-        student: Whose.
-        bundle: What it is held against.
+        data: The contents of the file.
+        student: The student who handed it in.
+        bundle: The release that it is compared with.
         sandbox: Where its code runs.
         limits: What it may use.
         note: What was unusual about the file.
-        listener: Called with each verdict on a question that was asked, as soon as it is reached.
+        listener: Called with the verdict on each question that was tried, as soon as it is known.
 
     Returns:
-        The result, whatever the notebook does.
+        The result; nothing that a notebook does raises an exception here.
     """
     began = time.perf_counter()
     given = bundle.arms.arm(student) is not None
@@ -91,11 +91,11 @@ def grade(
         with suppress(Disconnected):
             session.start()
         functions = [RemoteFunction(question, session) for question in questions]
-        tried = {function.question.name: _public(function) for function in functions}
-        failed = session.failed()  # nothing shown of cells is made after the first hidden case
+        tried = {function.question.name: _try_public(function) for function in functions}
+        failed = session.failed()  # what is shown of cells is fixed before the first hidden case
         verdicts = {}
         for function, (name, before) in zip(functions, tried.items(), strict=True):
-            verdicts[name] = _guarded(function, before)
+            verdicts[name] = _mark_safely(function, before)
             listener(verdicts[name])
         spent = session.spent
     result = replace(
@@ -104,7 +104,7 @@ def grade(
         questions=tuple(
             _answer(
                 question,
-                verdicts.get(question.name) or _untried(question, tools),
+                verdicts.get(question.name) or _unasked_verdict(question, tools),
                 tried.get(question.name),
                 todo,
             )
@@ -118,7 +118,7 @@ def grade(
         seconds={"all": round(time.perf_counter() - began, 4), "student": round(spent, 4)},
         receipt=receipt(cell["source"] for cell in cells),
     )
-    return _shortened(result)
+    return _cut_to_budget(result)
 
 
 def rejection(why: str, student: str, bundle: Bundle, level: str, data: bytes = b"") -> Result:
@@ -126,24 +126,24 @@ def rejection(why: str, student: str, bundle: Bundle, level: str, data: bytes = 
     return replace(_ungraded(student, bundle, level, data), rejected=clean_line(why))
 
 
-def _shortened(result: Result) -> Result:
-    """The same, every text in it cleaned, with no more of the student's than there is room for."""
+def _cut_to_budget(result: Result) -> Result:
+    """The result with every text cleaned, and the student's texts cut to what a result may hold."""
     budget, data = TextBudget(), record_data(result)
 
     def cut(x: Any, names: Collection[str], theirs: bool) -> Any:
         if isinstance(x, str):
             return budget.take(x) if theirs else x
         if isinstance(x, dict):
-            order = sorted(x, key=lambda name: name != "source")  # before what became of it
+            order = sorted(x, key=lambda name: name != "source")  # source first
             return {name: cut(x[name], names, theirs or name in names) for name in order}
         return [cut(y, names, theirs) for y in x] if isinstance(x, list | tuple) else x
 
-    more = len(data["tricks"]) - TRICKS
-    data["tricks"] = data["tricks"][:TRICKS]
-    for part, names in _THEIRS.items():
+    more = len(data["tricks"]) - MAX_TRICKS
+    data["tricks"] = data["tricks"][:MAX_TRICKS]
+    for part, names in _STUDENT_TEXTS.items():
         data |= cut({part: data[part]}, names, theirs=False)
     data["tricks"] += [f"and {more} more such things"] * (more > 0)
-    note = f"there is more text than is kept; {budget.cut} of its pieces are cut short here"
+    note = f"only {MAX_TEXT // 10**6} MB of text is kept, so {budget.cut} texts are cut short here"
     data["notes"] = [*data["notes"], *[note] * bool(budget.cut)]
     return read_record(Result, clean_data(data))
 
@@ -161,12 +161,12 @@ def _ungraded(student: str, bundle: Bundle, level: str, data: bytes) -> Result:
 
 
 def hashes(data: bytes, bundle: Bundle) -> Hashes:
-    """What a result is known by."""
+    """The hashes that identify what a result was made from."""
     return {"submission": digest(data), "bundle": bundle.data["hash"], "engine": engine()}
 
 
 def parse(data: bytes, sandbox: Sandbox, limits: Limits) -> list[dict[str, Any]] | str:
-    """The cells of a notebook, read in a process of its own; or why there are none."""
+    """The cells of a notebook, which a process of its own reads, or why it cannot be read."""
     try:
         with sandbox.spawn("parse", limits, size=len(data)) as process:
             process.connection.socket.settimeout(limits.parse)
@@ -181,7 +181,7 @@ def parse(data: bytes, sandbox: Sandbox, limits: Limits) -> list[dict[str, Any]]
 
 
 def _other_notebook(cells: list[dict[str, Any]], bundle: Bundle) -> str:
-    """That most cells with a name of nbgrader's are of another release, in a sentence, or ""."""
+    """A sentence if most cells that nbgrader named are from another assignment, else ""."""
     named = {cell["grade_id"] for cell in cells} - {""}
     ours = named & {cell.get("grade_id") for cell in bundle.data["cells"]}
     if 2 * len(ours) >= len(named):
@@ -190,39 +190,39 @@ def _other_notebook(cells: list[dict[str, Any]], bundle: Bundle) -> str:
     return f"{OTHER_NOTEBOOK}: only {len(ours)} of the {len(named)} named cells are of {name}"
 
 
-def _public(function: RemoteFunction) -> Tried:
-    """The public cases.  All questions' come before any hidden one, so that none can tell of it."""
+def _try_public(function: RemoteFunction) -> Tried:
+    """Try the public cases; all of them come before any hidden one, so none can reveal it."""
     try:
         tried = try_public(function.question, function)
         if tried.outcome is Outcome.RIGHT:
             function.session.right.append(function.question.name)
         return tried
     except Exception:
-        return Tried(_lost(function.question).tests, {})
+        return Tried(_incomparable(function.question).tests, {})
     finally:
         function.session.close_question()
 
 
-def _guarded(function: RemoteFunction, tried: Tried) -> Verdict:
-    """The verdict, even where an answer is so odd that comparing it fails."""
+def _mark_safely(function: RemoteFunction, tried: Tried) -> Verdict:
+    """Mark an answer, even one that is so odd that comparing it raises an exception."""
     question = function.question
     try:
         return mark(question, function, tried)
     except Exception:
-        return _lost(question)
+        return _incomparable(question)
     finally:
         function.session.close_question()
 
 
-def _untried(question: Question, tools: Mapping[str, tuple[str, ...]]) -> Verdict:
-    """Of a question that was not asked: it uses what is withheld, or is not in the notebook."""
+def _unasked_verdict(question: Question, tools: Mapping[str, tuple[str, ...]]) -> Verdict:
+    """The verdict on a question that was not tried: it uses a withheld tool, or is missing."""
     if tools[question.name]:
         return not_counted(question, tools[question.name])
     return all_alike(question, Outcome.NOT_ATTEMPTED)
 
 
-def _lost(question: Question) -> Verdict:
-    """Of a question whose answers cannot be compared with anything."""
+def _incomparable(question: Question) -> Verdict:
+    """The verdict on a question whose answers cannot be compared."""
     return all_alike(question, Outcome.ERROR, Kind.OTHER)
 
 
@@ -238,5 +238,5 @@ def _answer(question: Question, verdict: Verdict, tried: Tried | None, todo: Pla
             runs=public_evidence.runs(question, tried),
             numbers=public_evidence.numbers(question, tried),
         )
-    except Exception:  # it is too odd to be drawn
+    except Exception:  # the answer is too odd to be drawn
         return answer

@@ -1,7 +1,7 @@
-"""Which cells of a submission run, and which functions answer which questions.
+"""Plan which cells of a submission run, and which functions answer which questions.
 
-Cells are known by the release's manifest: by id, by what they define, by their text.  What a
-student's metadata says about points and roles is never read.
+Cells are matched with the release's manifest by their id, by the names that they define and by
+their text.  What a student's metadata says about points and roles is never read.
 """
 
 from __future__ import annotations
@@ -20,18 +20,18 @@ Cell = Mapping[str, Any]
 
 @dataclass(frozen=True)
 class Plan:
-    """What to run, in order.
+    """What runs, in order.
 
     Attributes:
-        steps: The cells.
+        steps: The cells to run.
         places: For each question, the number of the cell that answers it.
-        unread: For each question without one, the texts of its own cells.
+        unread: For each question that no cell answers, the text of the cells meant for it.
         notes: What was unusual, by question; under "" what concerns the whole notebook.
-        own: The student's own cells: the released cell ``after`` which each stands, its ``type``
-            and ``source``.
-        written: For each cell that a person marks, by its name, its text.
-        looks: What each step does with names, see `labkit.course.source.look`.
-        tricks: What in the student's own cells may be a way around a withheld tool, sentences.
+        own: The student's own cells, each with its ``type``, its ``source`` and the released cell
+            ``after`` which it comes.
+        written: The text of each cell that a person marks, by the name of the cell.
+        looks: How each step uses names; see `labkit.course.source.look`.
+        tricks: Sentences on what in the student's own cells may get around a withheld tool.
     """
 
     steps: tuple[Step, ...]
@@ -44,7 +44,7 @@ class Plan:
     tricks: tuple[str, ...] = ()
 
     def source(self, question: str) -> str:
-        """The text of the cell that answers a question, or is to; empty if there is none."""
+        """The text of the cell that answers a question or is meant to; empty if there is none."""
         place, unread = self.places.get(question), self.unread.get(question, "")
         return next((step.source for step in self.steps if step.number == place), unread)
 
@@ -57,33 +57,33 @@ def plan(cells: Sequence[Cell], manifest: Sequence[Cell]) -> Plan:
         manifest: As `release.manifest` returns it.
     """
     setup = [m["source"] for m in manifest if m["kind"] == "setup" and m["type"] == "code"]
-    walk = {_same(m["source"]) for m in manifest if m["kind"] == "walk" and m["type"] == "code"}
+    walk = {_strip(m["source"]) for m in manifest if m["kind"] == "walk" and m["type"] == "code"}
     released = _released(manifest)
     notes: dict[str, list[str]] = {}
     places: dict[str, int] = {}
-    spare: set[int] = set()
+    ignored: set[int] = set()
     unread: dict[str, set[int]] = {}
     code = {k: cell for k, cell in enumerate(cells) if cell["type"] == "code"}
-    own = {k: cell for k, cell in code.items() if _same(cell["source"]) not in released}
+    own = {k: cell for k, cell in code.items() if _strip(cell["source"]) not in released}
     for m in manifest:
         if m["kind"] == "answer" and "points" not in m:
             said = notes.setdefault(m["grade_id"], [])
             place, others = _answer(own, m, said)
-            spare |= others
+            ignored |= others
             if place is not None:
                 places[m["grade_id"]] = place
             else:
-                unread[m["grade_id"]] = _at_home(own, m)
+                unread[m["grade_id"]] = _home_cells(own, m)
     in_order = [places[m["grade_id"]] for m in manifest if m.get("grade_id") in places]
     if in_order != sorted(in_order):
         notes.setdefault("", []).append("the cells are in another order than in the release")
     needed = _needed(code, places.values())
-    by_hand = {m["grade_id"]: _at(cells, m) for m in manifest if "points" in m}
+    by_hand = {m["grade_id"]: _find_cells(cells, m) for m in manifest if "points" in m}
     known = (*by_hand.values(), *unread.values())
     steps = [Step(k - len(setup), source) for k, source in enumerate(setup)]
     looks: list[Cell] = [look(source) for source in setup]
     for k, cell in code.items():
-        if (k in own and k not in spare) or (k in needed and _same(cell["source"]) in walk):
+        if (k in own and k not in ignored) or (k in needed and _strip(cell["source"]) in walk):
             answers = tuple(name for name, place in places.items() if place == k)
             steps.append(Step(k, cell["source"], answers))
             looks.append(cell)
@@ -91,16 +91,16 @@ def plan(cells: Sequence[Cell], manifest: Sequence[Cell]) -> Plan:
         tuple(steps),
         places,
         notes={name: tuple(said) for name, said in notes.items() if said},
-        unread={name: _together(cells, sorted(found)) for name, found in unread.items()},
-        own=tuple(_own(cells, manifest, {*places.values(), *chain(*known)})),
-        written={name: _together(cells, found) for name, found in by_hand.items() if found},
+        unread={name: _join_sources(cells, sorted(found)) for name, found in unread.items()},
+        own=tuple(_own_cells(cells, manifest, {*places.values(), *chain(*known)})),
+        written={name: _join_sources(cells, found) for name, found in by_hand.items() if found},
         looks=tuple(looks),
         tricks=tuple(f"cell {k + 1} {what}" for k, cell in own.items() for what in cell["tricks"]),
     )
 
 
 def imports(manifest: Sequence[Cell]) -> tuple[str, ...]:
-    """Modules that the release's setup cells import, which every submission runs."""
+    """Modules that the setup cells of the release import; every submission runs these cells."""
     found: dict[str, None] = {}
     for m in manifest:
         if m["kind"] == "setup" and m["type"] == "code":
@@ -112,73 +112,73 @@ def imports(manifest: Sequence[Cell]) -> tuple[str, ...]:
     return tuple(found)
 
 
-def _own(
+def _own_cells(
     cells: Sequence[Cell], manifest: Sequence[Cell], places: set[int]
 ) -> Iterator[dict[str, str]]:
     """Cells that the release does not have."""
     released, ids, after = _released(manifest), {m["id"] for m in manifest}, ""
     for k, cell in enumerate(cells):
         after = cell["id"] if cell["id"] in ids else after
-        if k not in places and cell["source"].strip() and _same(cell["source"]) not in released:
+        if k not in places and cell["source"].strip() and _strip(cell["source"]) not in released:
             yield {"after": after, "type": cell["type"], "source": cell["source"]}
 
 
-def _at(cells: Sequence[Cell], m: Mapping[str, Any]) -> list[int]:
-    """Where a cell of the release is in a submission, by its name or its id."""
+def _find_cells(cells: Sequence[Cell], m: Mapping[str, Any]) -> list[int]:
+    """The positions in a submission of a cell of the release, found by its name or its id."""
     named = [k for k, cell in enumerate(cells) if cell["grade_id"] == m["grade_id"]]
     return named or [
         k for k, cell in enumerate(cells) if not cell["grade_id"] and cell["id"] == m["id"]
     ]
 
 
-def _together(cells: Sequence[Cell], found: Sequence[int]) -> str:
-    """The text of cells that are one answer; one that was doubled loses nothing."""
+def _join_sources(cells: Sequence[Cell], found: Sequence[int]) -> str:
+    """The text of the cells that make one answer; the text of a duplicated cell occurs once."""
     return "\n\n".join(dict.fromkeys(cells[k]["source"] for k in found))
 
 
 def _answer(
     own: Mapping[int, Cell], m: Mapping[str, Any], notes: list[str]
 ) -> tuple[int | None, set[int]]:
-    """The cell that answers a question, and empty stubs that must not take its place."""
+    """The cell that answers a question, and the empty stubs that must not replace it."""
     name = m["grade_id"]
-    at_home = _at_home(own, m)
+    home = _home_cells(own, m)
     defines = {k for k, cell in own.items() if name in cell["functions"]}
     binds = {k for k, cell in own.items() if name in cell["binds"]}
     stubs = {k for k in defines if name in own[k]["stubs"]}
-    written = (defines - stubs) or (binds & at_home) - stubs or binds - stubs
+    written = (defines - stubs) or (binds & home) - stubs or binds - stubs
     if len(written) > 1:
         notes.append(f"{len(written)} cells define {name}; the last one counts")
     if written:
         place = max(written)
-        lonely = {k for k in stubs if len(own[k]["binds"]) == 1}
+        stub_only = {k for k in stubs if len(own[k]["binds"]) == 1}
         if stubs:
-            notes.append(f"there is an empty {name} too; it is passed over")
-        if place not in at_home:
+            notes.append(f"there is an empty {name}, too; it is ignored")
+        if place not in home:
             notes.append(f"{name} was found by its name, outside its own cell")
-        return place, lonely
+        return place, stub_only
     if stubs:
         return max(stubs), set()
-    home = [own[k] for k in sorted(at_home)]
+    cells = [own[k] for k in sorted(home)]
     why = [
-        f"its cell cannot be read by Python: {cell['broken']}" for cell in home if cell["broken"]
+        f"its cell cannot be read by Python: {cell['broken']}" for cell in cells if cell["broken"]
     ]
     why += [
         f"its cell begins with %%{cell['magic']}, which keeps what it defines to itself"
-        for cell in home
+        for cell in cells
         if cell["magic"]
     ]
     notes.append(f"{name}: {why[0] if why else 'no cell defines it'}")
     return None, set()
 
 
-def _at_home(own: Mapping[int, Cell], m: Mapping[str, Any]) -> set[int]:
-    """Where the cell of a question is, by its name or its id."""
+def _home_cells(own: Mapping[int, Cell], m: Mapping[str, Any]) -> set[int]:
+    """The positions of the cells meant for a question, found by name or by id."""
     named = {k for k, cell in own.items() if cell["grade_id"] == m["grade_id"]}
     return named | {k for k, cell in own.items() if not cell["grade_id"] and cell["id"] == m["id"]}
 
 
 def _needed(code: Mapping[int, Cell], places: Iterable[int]) -> set[int]:
-    """Cells that the answers lean on, directly or through one another."""
+    """Cells that the answers depend on, directly or through other cells."""
     binders: dict[str, list[int]] = {}
     for k, cell in code.items():
         for name in cell["binds"]:
@@ -193,10 +193,10 @@ def _needed(code: Mapping[int, Cell], places: Iterable[int]) -> set[int]:
 
 
 def _released(manifest: Sequence[Cell]) -> set[str]:
-    """The texts of the release's cells, but for those that students are to change."""
-    return {_same(m["source"]) for m in manifest if m["kind"] != "answer"}
+    """The texts of the cells of the release that students are not meant to change."""
+    return {_strip(m["source"]) for m in manifest if m["kind"] != "answer"}
 
 
-def _same(source: str) -> str:
-    """A cell's text without what editors change unasked."""
+def _strip(source: str) -> str:
+    """The text of a cell without the white space that editors change on their own."""
     return "\n".join(line.rstrip() for line in source.replace("\r\n", "\n").strip().split("\n"))

@@ -1,6 +1,6 @@
-"""The evidence that students may see: runs of the arm and numbers, on public cases alone.
+"""The evidence that students may see: runs of the arm and numbers, from public cases only.
 
-It goes into the result file, small, so that a page can be made from the result and nothing else.
+A result file holds a compact form of the evidence, so the file alone is enough to make a page.
 """
 
 from __future__ import annotations
@@ -16,44 +16,44 @@ from ...log import Log
 from ...replay import Motion, motion_of
 from .results import Numbers, Run
 
-LARGEST = 60_000
-"""Bytes that one motion may take in a result."""
+MAX_BYTES = 60_000
+"""The largest size of one motion in a result, in bytes."""
 RATES = (25.0, 12.5, 6.25, 3.0)
-"""Samples per second of a motion; the finest that fits is taken."""
-FEWEST = 50
-"""Samples that even a short motion gets."""
-MOST = 400
-"""Numbers of an answer that are kept at most, beside those expected."""
+"""Samples per second of a motion; the first rate with which it fits is used."""
+MIN_SAMPLES = 50
+"""The least number of samples of a motion, however short."""
+MAX_NUMBERS = 400
+"""How many numbers of an answer are kept, each with the expected one."""
 
 
 def runs(question: Question, tried: Tried) -> tuple[Run, ...]:
     """The public runs of a question as data: measures, their limits, and the motion.
 
     Args:
-        question: What was asked.
-        tried: What came of its public cases.
+        question: The question.
+        tried: The outcome of its public cases.
 
     Returns:
-        One table for each run.  ``motion`` is what the viewer reads, as text, and empty where there
-        is nothing to be seen; ``words`` describes it; a measure that is infinite is None.
+        One table for each run.  ``motion`` is the text that the viewer reads, empty if there is
+        nothing to show, and ``words`` describes the motion.  An infinite measure is None.
     """
     return tuple(_run(question, ran) for ran in tried.runs(question))
 
 
 def numbers(question: Question, tried: Tried) -> Numbers | None:
-    """The numbers of the first public call whose answer differs; None if there are none.
+    """The numbers of the first public call whose answer is wrong; None if there are none.
 
     Returns:
-        The ``call``; the first `MOST` numbers that were ``expected`` and that were ``given``; and
-        ``of``, how many numbers the answer has.
+        The ``call``; the first `MAX_NUMBERS` numbers ``expected`` and ``given``; and ``of``, how
+        many numbers the answer has.
     """
     found = tried.evidence(question)
     if found is None or not len(found.given) or not np.isfinite(found.expected).all():
         return None
     return {
         "call": found.call,
-        "expected": [float(f"{x:.6g}") for x in found.expected[:MOST]],
-        "given": [float(f"{x:.6g}") for x in found.given[:MOST]],
+        "expected": [float(f"{x:.6g}") for x in found.expected[:MAX_NUMBERS]],
+        "given": [float(f"{x:.6g}") for x in found.given[:MAX_NUMBERS]],
         "of": len(found.given),
     }
 
@@ -68,21 +68,21 @@ def _run(question: Question, ran: Ran) -> Run:
         "says": says,
         "complete": ran.complete,
         "since": loop.settle,
-        "measures": {key: _short(x) for key, x in measures.items()},
-        "limits": {key: _short(x) for key, x in ran.case.expected.items()},
+        "measures": {key: _rounded(x) for key, x in measures.items()},
+        "limits": {key: _rounded(x) for key, x in ran.case.expected.items()},
         "words": "" if shown is None else shown.description,
-        "motion": "" if shown is None else fitting(shown),
+        "motion": "" if shown is None else encode_to_fit(shown),
     }
 
 
 def motion(log: Log, title: str) -> Motion | None:
-    """What the viewer shows of a run, as far as its numbers are numbers."""
+    """The motion that the viewer shows of a run, up to the first number that is not finite."""
     log = _finite(log)
     return motion_of(log, title, label="your arm") if len(log) > 1 else None
 
 
 def _finite(log: Log) -> Log:
-    """The rows of a log before the first that is not finite; an arm that runs away leaves some."""
+    """The rows of a log before the first that is not finite, as after an arm has run away."""
     bad = np.flatnonzero(~np.isfinite(np.hstack([log.q, log.dq])).all(axis=1))
     rows = int(bad[0]) if bad.size else len(log)
 
@@ -94,12 +94,12 @@ def _finite(log: Log) -> Log:
     return Log(**{f.name: cut(getattr(log, f.name)) for f in fields(log)})
 
 
-def fitting(motion: Motion) -> str:
-    """The motion as the viewer reads it, as fine as fits."""
-    short = FEWEST / (motion.t[-1] - motion.t[0])
+def encode_to_fit(motion: Motion) -> str:
+    """The motion as the text that the viewer reads, at the highest rate that fits."""
+    short = MIN_SAMPLES / (motion.t[-1] - motion.t[0])
     texts = (motion.to_json(max(rate, short)) for rate in RATES)
-    return next((text for text in texts if len(text.encode()) <= LARGEST), "")
+    return next((text for text in texts if len(text.encode()) <= MAX_BYTES), "")
 
 
-def _short(x: Any) -> float | None:
+def _rounded(x: Any) -> float | None:
     return float(f"{float(x):.6g}") if np.isfinite(x) else None

@@ -1,4 +1,4 @@
-"""Results: one file for each submission, known by the contents that it came from."""
+"""Results: one file for each submission, identified by hashes of what it was made from."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ _LABKIT = Path(labkit.__file__).parent
 OTHER_NOTEBOOK = "this looks like the notebook of another assignment"
 _NOTHING = hashlib.sha256(b"").hexdigest()
 _OF_A_WORKER = ("grading", "sandbox", "atomic.py", "clean.py", "each.py", "submission.py")
-"""Parts of the grader that a worker loads."""
+"""The parts of the grader that a worker loads."""
 
 
 class Run(TypedDict):
@@ -43,7 +43,7 @@ class Run(TypedDict):
 
 
 class Numbers(TypedDict):
-    """The numbers of an answer beside those expected; see `public_evidence.numbers`."""
+    """The numbers of an answer and those expected; see `public_evidence.numbers`."""
 
     call: str
     expected: list[float]
@@ -70,7 +70,7 @@ class OwnCell(TypedDict):
 
 
 class Hashes(TypedDict):
-    """What a result is known by; ``engine`` stands for the code that grades."""
+    """Hashes of what a result was made from; ``engine`` is that of the code that grades."""
 
     submission: str
     bundle: str
@@ -79,14 +79,14 @@ class Hashes(TypedDict):
 
 @dataclass(frozen=True)
 class Answer:
-    """What came of one question.
+    """The outcome of one question.
 
     Attributes:
-        verdict: As `mark` reached it.
-        notes: What was unusual, sentences.
-        source: The text of the cell that answers.
-        runs: The public runs of the arm.
-        numbers: The answer's numbers beside those expected, where they differ.
+        verdict: The verdict of `mark`.
+        notes: Sentences on what was unusual.
+        source: The text of the cell that answers the question.
+        runs: The runs of the arm on public cases.
+        numbers: The numbers of the answer and those expected, if they differ.
     """
 
     verdict: Verdict
@@ -98,25 +98,25 @@ class Answer:
 
 @dataclass(frozen=True)
 class Result:
-    """What came of one submission.
+    """The outcome of one submission.
 
     Attributes:
-        assignment: Which.
-        student: Whose.
-        score: Points; 0 where it was rejected.
-        points: What full marks would be.
-        seed: Of the hidden cases.
-        hashes: Of the submission, the release and the engine.
-        rejected: Why it could not be graded, in a sentence; empty where it was.
-        questions: One for each question.
-        notes: What was unusual about the whole.
-        cells: Cells that failed or were stopped, with their sentence.
-        own: The student's own cells, where they stood.
-        written: The text of each cell that a person marks, by its name.
-        tricks: What may be a way around a withheld tool, for the instructor, sentences.
-        isolation: What kept it apart while it ran.
-        seconds: How long it took: in all, and in the student's own code.
-        receipt: What `lk.hand_in` printed for this file; empty where it was rejected.
+        assignment: The name of the assignment.
+        student: The student who handed it in.
+        score: The points earned; 0 if the submission was rejected.
+        points: The points for a perfect submission.
+        seed: The seed of the hidden cases.
+        hashes: Hashes of the submission, the release and the engine.
+        rejected: Why the submission could not be graded, in a sentence; empty if it was.
+        questions: An answer for each question.
+        notes: What was unusual about the whole submission.
+        cells: The cells that failed or were stopped, and why.
+        own: The student's own cells, and where they are.
+        written: The text of each cell that a person marks, by the name of the cell.
+        tricks: Sentences for the instructor on what may get around a withheld tool.
+        isolation: What isolated the submission while it ran.
+        seconds: How long grading took in all, and how long the student's code ran.
+        receipt: What `lk.hand_in` printed for this file; empty if the submission was rejected.
     """
 
     assignment: str
@@ -137,20 +137,20 @@ class Result:
     receipt: str = ""
 
     def text(self) -> str:
-        """As JSON."""
+        """The result as JSON."""
         data = stamp() | record_data(self)
         return json.dumps(data, ensure_ascii=True, indent=1, allow_nan=False) + "\n"
 
     @classmethod
     def read(cls, text: str, name: str = "the result") -> Result:
-        """What `text` wrote, with every text in it made safe to store and to show.
+        """Read what `text` wrote, and make every text in it safe to store and to show.
 
         Args:
-            text: JSON.
-            name: What to call it where it is refused.
+            text: A result as JSON.
+            name: What a refusal calls it.
 
         Raises:
-            LabkitError: It is not a whole result, or one of another version; the sentence says so.
+            LabkitError: The text is not a complete result, or another version wrote it.
         """
         try:
             data = clean_data(json.loads(text, parse_constant=_refuse))
@@ -167,9 +167,9 @@ class Result:
         return result
 
     def _check_sums(self, name: str) -> None:
-        """Raise a LabkitError unless the score is what the questions earned, and none is missing.
+        """Raise a LabkitError unless the score is the sum of all questions, and none is missing.
 
-        A report has no question at all: people mark it.
+        The result of a report has no questions, because people mark the report.
         """
         verdicts = [question.verdict for question in self.questions]
         earned = [v.earned for v in verdicts if v.earned <= v.points]
@@ -186,16 +186,16 @@ class Result:
 
     @property
     def asked(self) -> dict[str, float]:
-        """The points of each question that it answers."""
+        """The points of each question of the release that made the result."""
         return {question.verdict.name: question.verdict.points for question in self.questions}
 
     def falls_from(self, before: Result) -> bool:
-        """Whether the same submission had more before, of the questions that both releases ask.
+        """Whether this submission had a higher mark in an earlier result.
 
-        A release can change what a question is worth, so the share of each question is compared,
-        times its points now; with the same points that is the mark.  A question that earned
-        something and is no longer asked may merely have a new name; the share of the whole is
-        then compared, too.  A file that could not be read is not taken for another submission.
+        Only questions that both releases ask are compared.  A release can change the points of a
+        question, so the earlier share of the points is applied to the points of today.  A question
+        that earned points and is no longer asked may have been renamed, so the shares of the whole
+        are then compared, too.  A file that cannot be read counts as the same submission.
         """
         unread = bool(self.rejected) and self.hashes["submission"] == _NOTHING
         if before.hashes["submission"] != self.hashes["submission"] and not unread:
@@ -214,7 +214,7 @@ class Result:
 
     @property
     def unanswered(self) -> str:
-        """Why nothing in it is an attempt at a question, in a sentence; "" if something may be."""
+        """A sentence if the submission cannot hold an attempt at any question, else ""."""
         other = (note for note in self.notes if note.startswith(OTHER_NOTEBOOK))
         return self.rejected or next(other, "")
 
@@ -226,25 +226,25 @@ class Results:
         self.folder, self.assignment = course.results / assignment, assignment
 
     @property
-    def aside(self) -> Results:
-        """Results that no mark is made of until `grade_class` takes them over."""
+    def provisional(self) -> Results:
+        """Results of ``--diff``, which make no mark until `grade_class` adopts them."""
         other = copy.copy(self)
         other.folder = self.folder / "aside"
         return other
 
     def path(self, student: str) -> Path:
-        """Where a student's result is."""
+        """The path of a student's result file."""
         return self.folder / f"{student}.json"
 
     def students(self) -> list[str]:
-        """Who has a file here, whole or not."""
+        """The students who have a result file, damaged or not."""
         return sorted(path.stem for path in self.folder.glob("*.json"))
 
     def read(self, student: str) -> Result | None:
         """A student's result, or None if there is no file.
 
         Raises:
-            LabkitError: The file is not a whole result of this student and this assignment.
+            LabkitError: The file is not a complete result of this student and this assignment.
         """
         path = self.path(student)
         try:
@@ -261,14 +261,14 @@ class Results:
         return result
 
     def get(self, student: str) -> Result | None:
-        """A student's result, or None if there is no whole one."""
+        """A student's result, or None if there is no complete one."""
         try:
             return self.read(student)
         except LabkitError:
             return None
 
     def keep(self, result: Result) -> None:
-        """Write a result; an older one that came from other contents goes to ``old/STUDENT/``."""
+        """Write a result, and move one made from other contents to ``old/STUDENT/``."""
         path, before = self.path(result.student), self.get(result.student)
         if path.exists() and (before is None or before.hashes != result.hashes):
             keys = [] if before is None else [str(x)[:8] for x in before.hashes.values()]
@@ -276,12 +276,12 @@ class Results:
             old.parent.mkdir(parents=True, exist_ok=True)
             if path.is_file():
                 shutil.copy2(path, old)  # with the time at which it was written
-            else:  # somebody's folder, which must make room
+            else:  # a folder that somebody made, which must make room
                 path.rename(old)
         write(path, result.text())
 
     def __iter__(self) -> Iterator[Result]:
-        """Whole results; `standing` also names those that are missing or damaged."""
+        """All complete results; `current_results` also names those missing or damaged."""
         for student in self.students():
             result = self.get(student)
             if result is not None:
@@ -299,7 +299,7 @@ def _refuse(constant: str) -> None:
 
 @cache
 def engine() -> str:
-    """A name for the code that grades: another version, another mark."""
+    """A hash of the code that grades, as other code may give other marks."""
     whole = hashlib.sha256()
     for path in engine_files():
         whole.update(str(path.relative_to(_LABKIT)).encode() + path.read_bytes())
@@ -307,10 +307,11 @@ def engine() -> str:
 
 
 def engine_files() -> Iterator[Path]:
-    """The code that a mark can depend on.
+    """The files of code that a mark can depend on.
 
-    It is the lab and the course, without what shows replays, and of the grader what a worker loads.
-    A corrected word in a page or in a command changes no mark, so nobody is graded again for it.
+    They are the lab and the course without the replay viewer, and the parts of the grader that a
+    worker loads.  Pages and commands cannot change a mark, so a change to them does not make
+    anybody be graded again.
     """
     for path in sorted(_LABKIT.rglob("*.py")):
         first, *more = path.relative_to(_LABKIT).parts

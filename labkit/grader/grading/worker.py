@@ -1,4 +1,4 @@
-"""A worker process: grades one submission after another in a sandbox that it keeps."""
+"""A worker process, which grades one submission after another in a sandbox that it keeps."""
 
 from __future__ import annotations
 
@@ -26,23 +26,23 @@ from .results import Result
 
 T = TypeVar("T")
 TRIES = 2
-"""How often something is tried whose sandbox is lost.
+"""How often a worker tries a submission if its sandbox is lost.
 
-The worker may die as well, and `executor.TRIES` gives the submission to another one, so it is tried
-four times at most.
+If the worker itself dies, `executor.TRIES` gives the submission to another worker, so a submission
+is tried four times at most.
 """
 
 
 @dataclass(frozen=True)
 class Task:
-    """One submission to be graded.
+    """A submission to be graded.
 
     Attributes:
-        course: Where it belongs; hidden from the sandbox.
+        course: The course, which the sandbox hides.
         submission: The student's files.
-        bundle_hash: Of the release that it is held against.
+        bundle_hash: The hash of the release that the submission is compared with.
         isolated: Whether its code runs in a sandbox.
-        limits: What it may use on a quick machine.
+        limits: What it may use on a fast machine.
     """
 
     course: Course
@@ -54,7 +54,7 @@ class Task:
 
 _busy = threading.Lock()
 _sandboxes: dict[tuple[Course, bool], Sandbox] = {}
-"""This process's sandbox, if it has one."""
+"""The sandbox of this process, if it has one."""
 
 
 def grade_submission(task: Task) -> Result:
@@ -63,12 +63,12 @@ def grade_submission(task: Task) -> Result:
     The kernel ends a worker that takes longer than `Limits.worker`, whatever it is doing.
 
     Raises:
-        NoIsolation: There is no sandbox on this machine.
-        LabkitError: The sandbox was lost each time, memory ran out, or the grader failed.
+        NoIsolation: No sandbox can be made on this machine.
+        LabkitError: The sandbox was lost in every attempt, memory ran out, or the grader failed.
     """
     with _busy, warnings.catch_warnings():
         _limit_once()
-        warnings.simplefilter("ignore")  # what a student's numbers overflow is in the verdict
+        warnings.simplefilter("ignore")  # the verdict reports numbers that overflow
         limits = task.limits.scaled(slowness())
         signal.setitimer(signal.ITIMER_REAL, limits.worker)
         try:
@@ -76,7 +76,7 @@ def grade_submission(task: Task) -> Result:
         except NoIsolation:
             raise
         except MemoryError:
-            why = f"judging it takes over {MEMORY >> 20} MB; look at it yourself"
+            why = f"judging it takes more than {MEMORY >> 20} MB of memory; look at it yourself"
         except LabkitError as error:
             why = str(error)
         except Exception as error:
@@ -103,17 +103,17 @@ def _grade(task: Task, limits: Limits) -> Result:
 def in_sandbox(
     do: Callable[[Sandbox], T], course: Course, loads: Sequence[str], *, isolated: bool = True
 ) -> T:
-    """Do something in the sandbox that this process keeps; once more, in a new one, if it is lost.
+    """Call a function with this process's sandbox, and once more with a new one if it is lost.
 
     Args:
-        do: What to do.
-        course: What the sandbox hides; for another course there is another sandbox.
-        loads: Modules to be loaded once for all.
-        isolated: Whether code is kept apart there.
+        do: The function.
+        course: The course that the sandbox hides; each course needs a sandbox of its own.
+        loads: Modules that the sandbox loads once, for all submissions.
+        isolated: Whether the sandbox isolates the code in it.
 
     Raises:
-        NoIsolation: There is no sandbox on this machine.
-        LabkitError: It was lost each time.
+        NoIsolation: No sandbox can be made on this machine.
+        LabkitError: The sandbox was lost in every attempt.
     """
     lost = ""
     for _ in range(TRIES):
@@ -129,7 +129,7 @@ def in_sandbox(
 
 
 def _sandbox(course: Course, loads: Sequence[str], isolated: bool) -> Sandbox:
-    """The sandbox there is, or a new one if it is to hide another course."""
+    """The sandbox of this process, or a new one if that one hides another course."""
     key = course, isolated
     if key not in _sandboxes:
         close_sandbox()
@@ -147,10 +147,10 @@ def close_sandbox() -> None:
 
 @lru_cache(maxsize=4)
 def _bundle(course: Course, assignment: str, key: str, arms: str) -> Bundle:
-    """The bundle with a hash; ``arms`` are those that it has, as they may be given out later."""
+    """The bundle with a given hash; with other ``arms`` it is read again, not cached."""
     bundle = Bundle.of(course, assignment)
     if bundle.data["hash"] != key:
-        raise LabkitError(f"{assignment} was released again while it was graded; grade again")
+        raise LabkitError(f"{assignment} was released again while it was being graded; grade again")
     return bundle
 
 

@@ -17,8 +17,8 @@ from ...course.authoring.layout import DEFENCE, Course
 from ...course.notebook import question_of
 from ..clean import clean_line, clean_text, how_many
 from ..each import Failure
+from ..grading.current_results import current_results, full_marks, how_to_grade
 from ..grading.results import Result
-from ..grading.standing import full_marks, grade_again, standing
 from ..nbgrader.gradebook import open_gradebook
 from ..rules import FILE as RULES
 from ..rules import read_rules, settle_lateness
@@ -65,7 +65,7 @@ def _own_marks(course: Course, assignment: str, only: str | None) -> Iterator[Ma
     """The mark of each student for what they handed in themselves."""
     by_platform, handed_in = lms_users(course, assignment), set(students(course, assignment))
     roster = read_roster(course)
-    stand = {one.student: one for one in standing(course, assignment, only)}
+    stand = {one.student: one for one in current_results(course, assignment, only)}
     with open_gradebook(course) as book:
         settle_whys(course, book, assignment)
         settle_lateness(course, book, assignment)
@@ -116,7 +116,7 @@ def _marked(row: Mark, submission: Any, one: Result | Failure | None, assignment
     elif one is not None:
         row = replace(row, result=one)
     if submission is None:
-        why = f"graded and not in the gradebook; {grade_again(assignment, row.student)}"
+        why = f"graded and not in the gradebook; {how_to_grade(assignment, row.student)}"
         return replace(row, missing=row.missing or why)
     if not row.listed:
         who = submission.student
@@ -175,7 +175,7 @@ def _differs(assignment: str, row: Mark, lines: tuple[MarkLine, ...]) -> str:
         if line.automatic != score:
             return (
                 f"the result gives {_said(score)} for {line.name}, the gradebook "
-                f"{_said(line.automatic)}; {grade_again(assignment, row.student)}"
+                f"{_said(line.automatic)}; {how_to_grade(assignment, row.student)}"
             )
     return ""
 

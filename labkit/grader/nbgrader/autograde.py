@@ -22,7 +22,7 @@ from ...course.authoring.bundle import Bundle
 from ...course.authoring.layout import Course
 from ...errors import LabkitError
 from ..each import Failure, for_student
-from ..grading.batch import GradeOptions, grade_aside, keep
+from ..grading.batch import GradeOptions, grade_without_saving, keep_unless_lower
 from ..grading.results import Result, Results
 from ..lock import exclusive_run
 from ..submission import Submission, is_name, unfit
@@ -125,10 +125,10 @@ def _grade(about: dict[str, Any]) -> Result:
         results = Results(course, about["assignment"])
         options = GradeOptions(recorded=partial(recorded, course, about["assignment"]))
         with exclusive_run(results.folder):
-            (graded,) = grade_aside(course, bundle, [submission], options)
+            (graded,) = grade_without_saving(course, bundle, [submission], options)
             if isinstance(graded, Failure):
                 raise LabkitError(str(graded))
-            kept = for_student(graded.student, partial(keep, results, graded, options))
+            kept = for_student(graded.student, partial(keep_unless_lower, results, graded, options))
             if isinstance(kept, Failure):
                 raise LabkitError(str(kept))
         result = kept.result

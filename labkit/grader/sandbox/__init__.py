@@ -1,4 +1,4 @@
-"""The sandbox of a submission; what runs inside knows no answer and no hidden case.
+"""The sandbox of a submission; the code inside knows neither answers nor hidden cases.
 
-`launch`, `mounts`, `cgroup`, `limits` and `session` are the worker's side of it, outside.
+`launch`, `mounts`, `cgroup`, `limits` and `session` run outside, in the worker.
 """

@@ -1,6 +1,6 @@
-"""Limits that the kernel keeps: of the process that judges, and of groups of processes.
+"""Limits that the kernel enforces on the process that judges and on groups of processes.
 
-Groups are limited where the kernel lets us count their processes together.
+A limit on a group needs a control group, which not every machine lets us make.
 """
 
 from __future__ import annotations
@@ -15,14 +15,14 @@ from pathlib import Path
 SANDBOX: Mapping[str, int] = {
     "memory": 3 * 2**30,  # bytes: what is loaded, one submission and its folder in memory
     "processes": 100,
-    "processor": 100_000,  # us in 100 ms: one core, so that nobody's neighbours starve
+    "processor": 100_000,  # us in 100 ms: one core, which leaves the others to other programs
 }
 """What a whole sandbox may use."""
 WORKER: Mapping[str, int] = {"memory": 2 * 2**30}
-"""What the process that judges may use; its sandbox is counted apart."""
+"""What the process that judges may use; the sandbox has limits of its own."""
 
 MEMORY = 2**30
-"""What the process that judges may use beside what is loaded, in bytes."""
+"""What the process that judges may use in addition to what is loaded, in bytes."""
 
 _ROOT = Path("/sys/fs/cgroup")
 _FILES = {
@@ -30,30 +30,30 @@ _FILES = {
     "processes": (("", "pids.max"), ("pids", "pids.max")),
     "processor": (("", "cpu.max"), ("cpu", "cpu.cfs_quota_us")),
 }
-"""Where a limit is set, in the newer interface and in the older one, which has a tree for each."""
+"""Where each limit is set, in cgroup v2 and in v1, which has a tree for each controller."""
 
 
 @dataclass(frozen=True)
 class Group:
-    """One control group, or its parts under the older interface.
+    """A control group; in cgroup v1, one group for each controller.
 
     Attributes:
-        folders: Where it is.
-        says: What it counts.
+        folders: The folders of the group.
+        description: What the group limits, in words.
     """
 
     folders: tuple[Path, ...]
-    says: str
+    description: str
 
     @classmethod
     def make(cls, name: str, limits: Mapping[str, int]) -> Group | None:
-        """A group with limits, or None where we may not make one.
+        """A group with limits, or None if this process may not make one.
 
         Args:
-            name: The id of the process that makes it, a hyphen, and what else tells it apart.
-            limits: As `SANDBOX`.
+            name: The id of this process, a hyphen, and a suffix that makes the name unique.
+            limits: A table such as `SANDBOX`.
         """
-        sweep()
+        remove_stale_groups()
         folders: dict[Path, None] = {}
         counted: list[str] = []
         for what, value in limits.items():
@@ -65,19 +65,19 @@ class Group:
         return cls(tuple(folders), f"cgroup for {', '.join(counted)}") if folders else None
 
     def enter(self) -> None:
-        """Put this process into the group; all that it starts stays there."""
+        """Move this process into the group; the processes that it starts stay in it."""
         for folder in self.folders:
             (folder / "cgroup.procs").write_text(str(os.getpid()))
 
     def remove(self) -> None:
-        """Remove the empty group."""
+        """Remove the group, which must be empty."""
         for folder in self.folders:
             with suppress(OSError):
                 folder.rmdir()
 
 
 def limit_memory() -> None:
-    """Limit this process: whatever a submission makes it keep ends in a MemoryError of its own."""
+    """Limit the memory of this process, so that a submission can only cause a MemoryError."""
     with open("/proc/self/status") as file:
         used = next(int(line.split()[1]) * 1024 for line in file if line.startswith("VmData"))
     _, most = resource.getrlimit(resource.RLIMIT_DATA)
@@ -87,8 +87,8 @@ def limit_memory() -> None:
         group.enter()
 
 
-def sweep() -> None:
-    """Remove groups whose makers are gone; one in which something still runs stays."""
+def remove_stale_groups() -> None:
+    """Remove groups whose makers have ended; the kernel keeps those with processes."""
     for tree in {tree for places in _FILES.values() for tree, _ in places}:
         for folder in (_ROOT / tree).glob("labkit-*-*"):
             if not Path("/proc", folder.name.split("-")[1]).exists():

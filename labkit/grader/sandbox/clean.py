@@ -1,6 +1,6 @@
-"""Text that a stranger wrote, made safe to store and to show, where it enters.
+"""Make text by a stranger safe to store and to show, as soon as it arrives.
 
-A result is cleaned as a whole, too, when it is made and when it is read.
+A whole result is also cleaned when it is made and when it is read.
 """
 
 from __future__ import annotations
@@ -13,20 +13,20 @@ _SURROGATE = re.compile("[\ud800-\udfff]")
 
 
 def clean_text(text: str) -> str:
-    """A text of several lines that any file, database and terminal takes.
+    """Make a text of several lines safe for every file, database and terminal.
 
-    Lone surrogates, which UTF-8 cannot hold, become U+FFFD.  Control characters other than tab and
-    newline are left out, among them a terminal's escape, the marks that turn the direction of
-    writing, and a carriage return before a newline.
+    Lone surrogates, which UTF-8 cannot encode, become U+FFFD.  Control characters other than tab
+    and newline are removed, such as the escape character, the marks that change the direction of
+    writing, and the carriage return before a newline.
     """
     return _UNSAFE.sub("", _SURROGATE.sub("\ufffd", text))
 
 
 def clean_line(text: str, most: int = 500) -> str:
-    """A text as one short line: `clean_text`, with every run of white space as one space.
+    """Make a text one short, safe line, with each run of white space replaced by a space.
 
     Args:
         text: A sentence, or the name of a person or of a file.
-        most: Characters to keep.
+        most: How many characters to keep.
     """
     return re.sub(r"\s+", " ", _UNSAFE.sub(" ", _SURROGATE.sub("\ufffd", text))).strip()[:most]

@@ -1,4 +1,4 @@
-"""Confinement of one process: its own mounts, no privileges, limits, a filter of system calls."""
+"""Confine one process: its own mounts, no privileges, limits, and a system call filter."""
 
 from __future__ import annotations
 
@@ -13,9 +13,9 @@ from typing import Any
 from . import seccomp
 
 DEVICES = ("/dev/null", "/dev/zero", "/dev/full", "/dev/random", "/dev/urandom")
-"""Those that a sandbox has."""
-_OWN = ("/tmp", "/dev/shm")
-"""Folders in memory, new for each process that is confined."""
+"""The devices that a sandbox has."""
+_PRIVATE_FOLDERS = ("/tmp", "/dev/shm")
+"""Folders in memory that each confined process has for itself."""
 _NEW_MOUNTS, _NEW_IPC, NEW_PIDS = 0x00020000, 0x08000000, 0x20000000
 _READ_ONLY, _NO_SUID, _NO_DEV, _REMOUNT, _BIND = 1, 2, 4, 32, 4096
 _RECURSIVE, _PRIVATE = 16384, 1 << 18
@@ -25,87 +25,87 @@ libc = ctypes.CDLL(None, use_errno=True)
 
 
 def check(result: int, what: str) -> None:
-    """Raise what the C library reported."""
+    """Raise an OSError if a call of the C library failed."""
     if result:
         number = ctypes.get_errno()
         raise OSError(number, f"{what}: {os.strerror(number)}")
 
 
 def lock_devices() -> None:
-    """Make the sandbox's devices read-only: they can be written to, but not changed.
+    """Mount the sandbox's devices read-only: they can still be written to, but not changed.
 
-    They are the machine's own, shown here, and times set on one would be seen by everybody.
+    They are the devices of the machine itself, so every sandbox would see a change of their times.
     """
     for device in DEVICES:
         flags = os.statvfs(device).f_flag & (_NO_SUID | os.ST_NOEXEC)
         _mount(None, device, None, _REMOUNT | _BIND | _READ_ONLY | flags)
 
 
-def cover_kernel() -> None:
-    """Hide what the C library has read of the kernel; see `mounts`."""
+def hide_sys() -> None:
+    """Hide ``/sys``, which the C library has read by now; see `mounts`."""
     if os.path.exists("/sys"):
         _mount("tmpfs", "/sys", "tmpfs", _READ_ONLY | _NO_SUID | _NO_DEV, "size=0")
 
 
-def shown_below() -> list[str]:
-    """What the sandbox shows below the folders that are new for each process.
+def mounts_under_tmp() -> list[str]:
+    """The mounts below the folders that each confined process has for itself.
 
-    A course below ``/tmp`` may have its Python there.
+    The Python of a course below ``/tmp``, for example, is mounted there.
     """
     with open("/proc/self/mountinfo") as file:
-        places = [re.sub(r"\\(\d{3})", _character, line.split()[4]) for line in file]
-    below = [x for x in places if x.startswith(tuple(f"{own}/" for own in _OWN))]
+        places = [re.sub(r"\\(\d{3})", _unescape, line.split()[4]) for line in file]
+    below = [x for x in places if x.startswith(tuple(f"{own}/" for own in _PRIVATE_FOLDERS))]
     return [x for x in below if not any(x.startswith(f"{other}/") for other in below)]
 
 
 def confine(limits: dict[str, Any], uid: int, shown: Sequence[str] = ()) -> None:
-    """Take away from this process everything that a student's code does not need.
+    """Take away everything from this process that a student's code does not need.
 
-    It must be the first process of its own process namespace.
+    The process must be the first one of its own process namespace.
 
     Args:
         limits: See `labkit.grader.sandbox.limits.Limits`.
-        uid: User and group to become; the present one if that is not root.
-        shown: What `shown_below` found.
+        uid: The id of the user and group to become; ignored unless this is root.
+        shown: What `mounts_under_tmp` found.
 
     Raises:
         OSError: Something could not be taken away.
     """
     check(libc.unshare(_NEW_MOUNTS | _NEW_IPC), "unshare")
-    first_to_go()
+    raise_oom_score()
     _mount(None, "/", None, _RECURSIVE | _PRIVATE)
     held = [(place, os.open(place, os.O_PATH)) for place in shown]
     size = f"size={limits['files'] * _MEGA},nr_inodes=4096,mode=1777"
-    for place in _OWN:
+    for place in _PRIVATE_FOLDERS:
         _mount("tmpfs", place, "tmpfs", _NO_SUID | _NO_DEV, size)
     for place, end in held:
-        _show_again(place, end)
+        _mount_again(place, end)
     _mount("tmpfs", "/proc", "tmpfs", _READ_ONLY | _NO_SUID | _NO_DEV, "size=0")
-    renounce(limits, uid, "/tmp")
+    drop_privileges(limits, uid, "/tmp")
 
 
-def first_to_go() -> None:
-    """If memory runs out, the kernel ends this process and its children before any other."""
+def raise_oom_score() -> None:
+    """Make the kernel end this process and its children first if memory runs out."""
     with suppress(OSError), open("/proc/self/oom_score_adj", "w") as file:
         file.write("1000")
 
 
-def renounce(limits: dict[str, Any], uid: int, folder: str) -> None:
-    """Become a user without any rights, in a folder, within limits, behind the filter of calls."""
+def drop_privileges(limits: dict[str, Any], uid: int, folder: str) -> None:
+    """Become an unprivileged user in a folder, with limits and the filter of system calls."""
     if os.geteuid() == 0 and uid:
-        with suppress(PermissionError):  # a user namespace has but one group
+        with suppress(PermissionError):  # a user namespace has only one group
             os.setgroups([])
         os.setresgid(uid, uid, uid)
         os.setresuid(uid, uid, uid)
-    drop_privileges()
+    drop_capabilities()
     os.chdir(folder)
     os.umask(0o077)
     set_limits(limits)
     seccomp.install(libc)
 
 
-def drop_privileges() -> None:
-    """Give up every capability, for this process and all that it may start."""
+def drop_capabilities() -> None:
+    """Give up every capability, for this process and for all that it starts."""
     check(libc.prctl(38, 1, 0, 0, 0), "no new privileges")  # PR_SET_NO_NEW_PRIVS
     for capability in range(64):
         libc.prctl(24, capability, 0, 0, 0)  # PR_CAPBSET_DROP; unknown ones fail harmlessly
@@ -114,7 +114,7 @@ def drop_privileges() -> None:
 
 
 def set_limits(limits: dict[str, Any]) -> None:
-    """Limits of the kernel on processor time, memory, files and processes."""
+    """Set the kernel's limits on processor time, memory, files and processes."""
     memory = limits["address_space"] + limits["memory"] * _MEGA
     for what, value in (
         (resource.RLIMIT_CPU, int(limits["wall"]) + 1),
@@ -130,18 +130,18 @@ def set_limits(limits: dict[str, Any]) -> None:
 
 
 def address_space() -> int:
-    """How much this process has mapped already, in bytes."""
+    """The size of what this process has mapped so far, in bytes."""
     with open("/proc/self/statm") as file:
         return int(file.read().split()[0]) * resource.getpagesize()
 
 
-def _character(octal: re.Match[str]) -> str:
-    """What the kernel writes as its number: a space, a tab, a newline, a backslash."""
+def _unescape(octal: re.Match[str]) -> str:
+    """The character that the kernel escaped: a space, a tab, a newline or a backslash."""
     return chr(int(octal[1], 8))
 
 
-def _show_again(place: str, end: int) -> None:
-    """Show what lay at a place before something was mounted above it, as read-only as it was."""
+def _mount_again(place: str, end: int) -> None:
+    """Mount again what was at a place before its parent was covered; it stays read-only."""
     before = f"/proc/self/fd/{end}"
     if os.path.isdir(before):
         os.makedirs(place)

@@ -1,8 +1,8 @@
-"""The forkserver, first process in a sandbox: loads what notebooks import, forks for each session.
+"""The first process in a sandbox: it loads what notebooks import and forks for each session.
 
-It runs no student's code.  Parsers are forked from a twin of it that has loaded next to nothing,
-in two thirds of the time.  Each child becomes the first process of its own process namespace and
-gives up everything (see `confine`) before it reads a word that a student wrote.
+The forkserver does not run students' code.  Parsers are forked from its twin, which has loaded very
+little, so that a fork takes two thirds of the time.  Each child becomes the first process of its
+own process namespace and gives up everything (see `confine`) before it reads what a student wrote.
 """
 
 from __future__ import annotations
@@ -20,27 +20,27 @@ from importlib import import_module
 from typing import Any
 
 from . import confine, parse
-from .apart import Bare, ByUser, Namespaces
+from .isolation import Bare, ByUser, Namespaces
 from .protocol import Connection, Disconnected
 
 MAGIC = "IPython.core.inputtransformer2"
-"""What reads a notebook's own ``%`` and ``!`` lines."""
+"""The module that translates the ``%`` and ``!`` lines of a notebook."""
 LOADED = ("numpy", "scipy.linalg", "matplotlib.pyplot", MAGIC)
-"""What answers lean on, loaded once; not more, as a fork takes longer the more is loaded.
+"""Modules that most answers need; each of them makes every fork slower, so there are no more.
 
-The rest of scipy would take 6 % of the processor time of each submission, used or not.
+The rest of scipy would cost every submission 6 % of its processor time, used or not.
 """
 
 Serve = Callable[[Connection, dict[str, Any]], None]
-"""What a child does, given the connection and the request that it was forked for."""
+"""What a child runs, given its connection and the request for which it was forked."""
 
 
 def main() -> None:
-    """Serve the worker until it closes its end: stdin's is for students, stdout's for parsers.
+    """Serve the worker until it closes its sockets: stdin is for students, stdout for parsers.
 
-    Modules named on the command line are loaded too.  With ``--bare`` nothing is confined, see
-    `labkit grade --unsafe-no-isolation`; with ``--by-user`` by user id alone, see
-    `apart.ByUser`.
+    Modules named on the command line are loaded, too.  ``--bare`` turns confinement off, for
+    ``labkit grade --unsafe-no-isolation``; ``--by-user`` confines only by user id, see
+    `isolation.ByUser`.
     """
     kinds: dict[str, type[Bare]] = {"--bare": Bare, "--by-user": ByUser}
     kind = next((kinds[word] for word in sys.argv if word in kinds), Namespaces)
@@ -92,9 +92,9 @@ def main() -> None:
 
 
 def _load(modules: Sequence[str]) -> Serve:
-    """Import what notebooks use, and put the stubs in place; return what runs a notebook."""
+    """Import what notebooks use and install the stubs; return the function that runs a notebook."""
     with suppress(FileNotFoundError, KeyError):
-        shutil.copytree("/lab/mpl", os.environ["MPLCONFIGDIR"])  # making the list of fonts is slow
+        shutil.copytree("/lab/mpl", os.environ["MPLCONFIGDIR"])  # listing the fonts takes long
     for name in (*LOADED, *modules):
         import_module(name)
     import labkit
@@ -108,19 +108,19 @@ def _load(modules: Sequence[str]) -> Serve:
 
 
 def _parse(connection: Connection, request: dict[str, Any]) -> None:
-    """Read a notebook of ``size`` bytes that follow, and send its cells."""
+    """Read a notebook, of which ``size`` bytes follow, and send its cells."""
     data = bytearray()
     connection.socket.settimeout(request["limits"]["parse"])
     while len(data) < request["size"]:
         piece = connection.socket.recv(min(1 << 20, request["size"] - len(data)))
         if not piece:
-            raise Disconnected("the file never came")
+            raise Disconnected("the file did not arrive")
         data += piece
     connection.send(parse.read(bytes(data)))
 
 
 def _read(control: socket.socket) -> tuple[dict[str, Any], list[int]]:
-    """A request, and the socket that comes with it, if one does."""
+    """Receive a request, and the socket that comes with it, if any."""
     control.settimeout(None)
     data, ends, _, _ = socket.recv_fds(control, 65536, 1)
     if not data:

@@ -1,7 +1,7 @@
-"""A sandbox: bubblewrap around a forkserver, which forks a process for each submission.
+"""Start a sandbox: bubblewrap around a forkserver, which forks a process for each submission.
 
-No network, no environment, no files but Python and labkit (see `mounts`), a folder in memory that
-ends with the submission.
+Inside there is no network, no environment and no file except Python and labkit (see `mounts`), and
+a folder in memory that disappears with the submission.
 """
 
 from __future__ import annotations
@@ -28,16 +28,16 @@ from .protocol import Connection, Disconnected, ProtocolError, Timeout
 
 FIRST_UID = 64000
 MAX_USERS = 1000
-"""When root grades, each sandbox is given a user of its own among these."""
+"""If root grades, each sandbox has its own user among these."""
 START = 120.0  # seconds
-_ROLES = ("student", "parse")  # the forkservers, on stdin and stdout of the process inside
+_ROLES = ("student", "parse")  # the two forkservers, reached by stdin and stdout
 _numbers = itertools.count()
 
 
 class SandboxLost(BaseException):
-    """A sandbox was lost, at its start or later; a fresh one may work.
+    """A sandbox was lost, at its start or later; a new one may work.
 
-    It is not an `Exception`, so that marking never takes it for one of the student's.
+    This is not an `Exception`, so that marking never mistakes it for one that a student raised.
     """
 
 
@@ -45,8 +45,8 @@ class SandboxProcess:
     """A process in the sandbox.
 
     Args:
-        connection: To the process.
-        kill: Asks its forkserver to kill the process, if ``whole``, and all that it started.
+        connection: The connection to the process.
+        kill: Makes the forkserver kill all that it started and, if ``whole``, the process, too.
     """
 
     def __init__(self, connection: Connection, kill: Callable[..., Any]) -> None:
@@ -69,16 +69,16 @@ class SandboxProcess:
 
 
 class Sandbox:
-    """One sandbox, for one submission at a time.
+    """A sandbox, for one submission at a time.
 
     Args:
-        loads: Modules that submissions will import, to be loaded once for all.
-        hidden: Folders that must not be seen inside, wherever they lie.
-        isolation: What keeps submissions apart; nothing weaker than bubblewrap is taken unasked.
+        loads: Modules that submissions will import, loaded once for all of them.
+        hidden: Folders that must not be visible inside, wherever they are.
+        isolation: What isolates submissions; only an explicit choice is weaker than bubblewrap.
 
     Raises:
-        NoIsolation: It cannot be made here.
-        SandboxLost: It was killed while it started.
+        NoIsolation: The sandbox cannot be made on this machine.
+        SandboxLost: The sandbox was killed while it started.
     """
 
     def __init__(
@@ -104,7 +104,7 @@ class Sandbox:
                 stderr=self._log,
                 env=variables,
                 process_group=0,
-                preexec_fn=self._count_apart,
+                preexec_fn=self._set_own_limits,
             )
         except OSError as error:
             raise NoIsolation(f"no sandbox: {error}; try: {INSTALL}") from None
@@ -113,29 +113,29 @@ class Sandbox:
                 end.close()
         self._wait_until_ready()
 
-    def _count_apart(self) -> None:
-        """Run in the process to come: its memory is not the worker's."""
+    def _set_own_limits(self) -> None:
+        """Give the new process limits of its own, as its memory is not the worker's."""
         _, most = resource.getrlimit(resource.RLIMIT_DATA)
         resource.setrlimit(resource.RLIMIT_DATA, (most, most))
         if self.group is not None:
             self.group.enter()
 
     def _wait_until_ready(self) -> None:
-        """Wait until both forkservers say so; close the sandbox where one does not."""
+        """Wait until both forkservers are ready; close the sandbox if one does not start."""
         try:
             for forkserver in self._forkservers.values():
                 self._wait_for(forkserver)
         except ProtocolError as error:
-            why = self._last_words() or str(error)
+            why = self._last_log_line() or str(error)
             self.close()
-            if isinstance(error, Disconnected) and self.process.returncode != 1:  # 1 is a failure's
+            if isinstance(error, Disconnected) and self.process.returncode != 1:  # 1 is a failure
                 raise SandboxLost("it was killed while it started") from None
             raise NoIsolation(
                 f"the sandbox did not start: {why}; `labkit doctor` says what is missing"
             ) from None
 
     def _wait_for(self, forkserver: Connection) -> None:
-        """Wait for its first word, as long as bubblewrap runs."""
+        """Wait for the first message of a forkserver, as long as bubblewrap runs."""
         until = time.monotonic() + START
         while True:
             try:
@@ -149,24 +149,25 @@ class Sandbox:
 
     @property
     def level(self) -> str:
-        """What keeps a submission apart here, in a line."""
+        """What isolates a submission here, in one line."""
         if self.isolation is Isolation.NONE:
             return str(self.isolation.value)
         who = f"user {self.uid}" if self.uid else "an unprivileged user"
-        group = self.group.says if self.group else "no cgroup"
+        group = self.group.description if self.group else "no cgroup"
         return f"{self.isolation.value}, {who}, no network, seccomp, limits, {group}"
 
     def spawn(self, role: str, limits: Limits, **more: Any) -> SandboxProcess:
-        """Fork a fresh process inside, to be closed after use; nothing of it stays.
+        """Fork a new process inside; close it after use, and nothing of it remains.
 
         Args:
             role: "student" or "parse".
-            limits: What it may use.
+            limits: What the process may use.
             more: What else its forkserver needs to know.
 
         Raises:
-            NoIsolation: It could not be confined, nor could any before it.
-            SandboxLost: Nothing could be started, or confined any more: no fault of the student's.
+            NoIsolation: The process could not be confined, and neither could any before it.
+            SandboxLost: The process could not be started, or not confined although earlier ones
+                could; the student is not to blame.
         """
         forkserver = self._forkservers[role]
         ours, theirs = socket.socketpair()
@@ -182,7 +183,7 @@ class Sandbox:
             reply = process.connection.read(20.0)
         except ProtocolError as error:
             process.close()
-            raise SandboxLost(f"nothing could be started: {error}") from None
+            raise SandboxLost(f"no process could be started: {error}") from None
         if "confined" not in reply:
             process.close()
             kind = SandboxLost if self._confines else NoIsolation
@@ -191,12 +192,12 @@ class Sandbox:
         return process
 
     def close(self) -> None:
-        """End everything inside."""
+        """End all processes of the sandbox, and remove what belongs to it."""
         for forkserver in self._forkservers.values():
-            forkserver.close()  # which sees it, and ends
+            forkserver.close()  # the forkserver notices, and ends
         with suppress(subprocess.TimeoutExpired):
             self.process.wait(2.0)
-        with suppress(ProcessLookupError):  # killed early, bubblewrap leaves a half behind
+        with suppress(ProcessLookupError):  # bubblewrap killed early leaves a process
             os.killpg(self.process.pid, signal.SIGKILL)
         self.process.wait()
         os.close(self._log)
@@ -214,32 +215,33 @@ class Sandbox:
     def _request(
         self, forkserver: Connection, message: dict[str, Any], end: socket.socket | None = None
     ) -> dict[str, Any]:
-        """Have a forkserver do something, perhaps with a socket, and return its reply."""
+        """Send a request to a forkserver, perhaps with a socket, and return the reply."""
         try:
             data = json.dumps(message).encode()
             socket.send_fds(forkserver.socket, [data], [end.fileno()] if end else [])
             return forkserver.read(20.0)
         except (OSError, ProtocolError) as error:
-            why = self._last_words() or "nothing"
-            raise SandboxLost(f"{error}; its last words: {why}") from None
+            why = self._last_log_line() or "none"
+            raise SandboxLost(f"{error}; the last line of its log: {why}") from None
 
-    def _last_words(self) -> str:
-        """The last line that bubblewrap or the forkserver wrote, empty if there is none."""
+    def _last_log_line(self) -> str:
+        """The last line that bubblewrap or the forkserver wrote; empty if there is none."""
         lines = os.pread(self._log, 100_000, 0).decode(errors="replace").strip().splitlines()
         return lines[-1][:300] if lines else ""
 
 
 def _user() -> tuple[int, socket.socket | None]:
-    """A user that no other sandbox has, and what claims it until that is closed; 0 without root.
+    """The id of a user that no other sandbox has, and a socket that reserves it until it is closed.
 
-    The kernel counts processes by user, so two graders on one machine must not share one.
+    The kernel counts processes by user, so two graders on one machine must not share a user.
+    Without root, the id is 0 and there is no socket.
     """
     if os.geteuid():
         return 0, None
     for uid in range(FIRST_UID, FIRST_UID + MAX_USERS):
         claim = socket.socket(socket.AF_UNIX)
         try:
-            claim.bind(f"\0labkit-sandbox-{uid}")  # ends with the process, however that ends
+            claim.bind(f"\0labkit-sandbox-{uid}")  # freed however this process ends
         except OSError:
             claim.close()
             continue

@@ -1,4 +1,4 @@
-"""How much a submission may use, how much of its text is kept, and how fast this machine is."""
+"""What a submission may use, how much of its text is kept, and how fast this machine is."""
 
 from __future__ import annotations
 
@@ -8,37 +8,37 @@ import time
 from dataclasses import dataclass, replace
 from functools import cache
 
-REPLY = 256_000
-"""The longest answer to one call, in bytes; the longest honest one has 1,600."""
-VALUES = 10_000
-"""How many numbers, texts, lists and objects an answer may have; the largest honest one has 80."""
-TRICKS = 100
-"""How many of the tricks in a notebook are named."""
-TEXT = 1_000_000
-"""How much of a student's text a result keeps, in bytes; the rest may be as large."""
+MAX_REPLY = 256_000
+"""The size of the longest answer to a call, in bytes; the longest honest one has 1,600."""
+MAX_VALUES = 10_000
+"""How many numbers, texts, lists and objects an answer may have; honest ones have up to 80."""
+MAX_TRICKS = 100
+"""How many tricks of one notebook are named."""
+MAX_TEXT = 1_000_000
+"""How much of a student's text a result keeps, in bytes; all else may need as much again."""
 _TIMES = ("parse", "cell", "cells", "call", "question", "wall", "grace")
 
 
 @dataclass(frozen=True)
 class Limits:
-    """What one submission may use; times in [s], sizes in [MiB].
+    """What one submission may use, with times in [s] and sizes in [MiB].
 
-    The times of one cell and of one call are processor time; code that waits instead is stopped
-    after ``patience`` times as long.  All other times are those of the clock.
+    The times for one cell and for one call are processor time; code that waits instead is stopped
+    after ``patience`` times as long.  All other times are wall time.
 
     Attributes:
-        parse: For reading the file.
-        cell: For one cell.
-        cells: For all cells together; once it is spent, each that is left has a twentieth of it.
-        call: For one call of a function.
-        question: For all calls of a question; runs of the arm count where the function is asked.
-        wall: For all cells and calls.
-        grace: How long a process has to stop by itself before it is killed.
-        patience: How much longer waiting may take than computing, on a busy machine.
-        memory: For each process, beside what was there before.
-        files: In its own temporary folder, and for one file.
-        output: Characters of text from the cells, in all.
-        processes: At once.
+        parse: The time for reading the file.
+        cell: The time for one cell.
+        cells: The time for all cells; once it is spent, each cell left has a twentieth of it.
+        call: The time for one call of a function.
+        question: The time for all calls of a question, without what the simulator needs.
+        wall: The time for all cells and calls.
+        grace: The time that a process has to stop by itself before it is killed.
+        patience: How many times longer code may wait than compute, for a busy machine.
+        memory: The memory of each process, in addition to what was loaded before.
+        files: The size of the temporary folder, and of one file.
+        output: The number of characters that all cells together may print.
+        processes: The number of processes at the same time.
     """
 
     parse: float = 15.0
@@ -56,11 +56,11 @@ class Limits:
 
     @property
     def worker(self) -> float:
-        """How long a worker may take for one submission, its own start and judging included."""
+        """The time a worker may take for one submission, its own start and judging included."""
         return 3.0 * (self.parse + self.wall)
 
     def scaled(self, factor: float) -> Limits:
-        """The same with all times multiplied."""
+        """The same limits with all times multiplied by a factor."""
         return replace(self, **{name: getattr(self, name) * factor for name in _TIMES})
 
 
@@ -68,15 +68,15 @@ class TextBudget:
     """How much of a student's text a result still has room for.
 
     Attributes:
-        left: Bytes, as JSON.
-        cut: How many texts were shortened.
+        left: The room that is left, in bytes of JSON.
+        cut: The number of texts that were shortened.
     """
 
-    def __init__(self, left: int = TEXT) -> None:
+    def __init__(self, left: int = MAX_TEXT) -> None:
         self.left, self.cut = left, 0
 
     def take(self, text: str) -> str:
-        """The text, or as much of it as there is room for."""
+        """Return the text, cut to the room that is left, and deduct its size."""
         size = len(json.dumps(text))
         if size > self.left:
             text = text[: self.left // 12]  # no character takes more than 12 bytes
@@ -87,22 +87,22 @@ class TextBudget:
 
 
 def slowness() -> float:
-    """How much slower this machine is than the one that the limits were made on, 1 to 8.
+    """How much slower this machine is than the one for which the limits were set, 1 to 8.
 
-    A slow machine gets more time, and so does one that has more to do than it has processors; a
-    quick one never less.
+    A slow machine gets more time, and so does one with more work than processors.  A fast machine
+    does not get less.
     """
     busy = os.getloadavg()[0] / (os.cpu_count() or 1)
-    return min(8.0, max(1.0, round(_slower() * max(1.0, busy), 1)))
+    return min(8.0, max(1.0, round(_measured_slowness() * max(1.0, busy), 1)))
 
 
 @cache
-def _slower() -> float:
-    """By the best of three tries, as a busy machine disturbs some."""
-    return max(1.0, min(_loop() for _ in range(3)) / 0.012)
+def _measured_slowness() -> float:
+    """The slowness by the best of three attempts, as other work may disturb some."""
+    return max(1.0, min(_time_loop() for _ in range(3)) / 0.012)
 
 
-def _loop() -> float:
+def _time_loop() -> float:
     start = time.perf_counter()
     total = 0
     for k in range(200_000):

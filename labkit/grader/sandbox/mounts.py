@@ -1,9 +1,9 @@
-"""The command that makes a sandbox: bubblewrap, and what it shows of the disk.
+"""The command that makes a sandbox: bubblewrap, and the part of the disk that it shows.
 
-Shown, read-only, are the folders with the system's programs and libraries, those of each Python
-that takes part (a virtual environment and what it was made from), the system's fonts, and labkit.
-The rest of the disk is not there: no ``/usr/share``, no ``/opt``, no ``/home``.  Where a course or
-a checkout is inside a shown folder, an empty one covers it.
+A sandbox sees, read-only, the folders with the system's programs and libraries, those of each
+Python involved (a virtual environment and the one from which it was made), the system's fonts, and
+labkit.  It does not see the rest of the disk, such as ``/usr/share``, ``/opt`` and ``/home``.  If a
+course or a checkout is within a folder that is shown, an empty folder covers it.
 """
 
 from __future__ import annotations
@@ -26,10 +26,10 @@ INSTALL = "apt-get install bubblewrap"
 _PACKAGE = Path(labkit.__file__).parent
 _LAB = "/lab"
 _PARTS = ("bin", "lib", "lib32", "lib64", "pyvenv.cfg")
-"""What is shown of the system, of ``/usr`` and of each Python."""
+"""The parts that are shown of the system, of ``/usr`` and of each Python."""
 _HUGE_PAGES = "/sys/kernel/mm/transparent_hugepage"
-"""What the C library asks about pages of 2 MB; covered before anything is forked."""
-_MORE = ("/usr/share/fonts", "/etc/ld.so.cache", "/etc/alternatives", _HUGE_PAGES)
+"""Where the C library reads about pages of 2 MB; hidden before anything is forked."""
+_ALSO_SHOWN = ("/usr/share/fonts", "/etc/ld.so.cache", "/etc/alternatives", _HUGE_PAGES)
 _FORKSERVER = (sys.executable, "-P", "-s", "-m", "labkit.grader.sandbox.forkserver")
 _VARIABLES = {
     "PYTHONHASHSEED": "0",
@@ -49,20 +49,20 @@ _INSIDE = _VARIABLES | {
     "GLIBC_TUNABLES": "glibc.malloc.hugetlb=1",
     "PYTHONMALLOC": "malloc",
 }
-"""The last two put what is loaded on pages of 2 MB (glibc 2.35 or newer; else they do nothing).
+"""The variables inside; the last two put what is loaded on pages of 2 MB, from glibc 2.35 on.
 
-Each question is answered by forks, which copy the table of all pages: a submission of four
-questions takes 0.88 of the processor time that it takes without the two, and 0.95 with the first
-alone, as Python's own allocator asks for no such pages.
+Each question is answered by a fork, which copies the page table, so larger pages save time: a
+submission of four questions takes 0.88 of the processor time that it takes without the two
+variables, and 0.95 with the first alone, as Python's own allocator does not ask for large pages.
 """
 
 
 class NoIsolation(LabkitError):
-    """This machine cannot keep a student's code apart; the sentence says how it could."""
+    """This machine cannot isolate a student's code; the message says what to do."""
 
 
 class Isolation(Enum):
-    """What keeps a student's code apart, in words; chosen by the code that starts a sandbox."""
+    """What isolates a student's code, in words; the code that starts a sandbox chooses."""
 
     BUBBLEWRAP = "bubblewrap"
     USER = "no bubblewrap but a user id"
@@ -73,29 +73,29 @@ def command(isolation: Isolation, hidden: Iterable[Path]) -> tuple[list[str], di
     """The command that starts the forkserver, and its environment.
 
     Args:
-        isolation: What keeps its children apart.
-        hidden: Folders of which nothing may be seen inside; bubblewrap alone can hide them.
+        isolation: What isolates the children of the forkserver.
+        hidden: Folders that must not be visible inside; only bubblewrap can hide them.
 
     Raises:
-        NoIsolation: It cannot be had here.
+        NoIsolation: This machine does not have this isolation.
     """
     match isolation:
         case Isolation.BUBBLEWRAP:
-            return isolated(hidden)
+            return bubblewrap_command(hidden)
         case Isolation.USER:
-            return by_user()
+            return user_command()
         case Isolation.NONE:
-            return bare()
+            return bare_command()
 
 
-def isolated(hidden: Iterable[Path] = ()) -> tuple[list[str], dict[str, str]]:
+def bubblewrap_command(hidden: Iterable[Path] = ()) -> tuple[list[str], dict[str, str]]:
     """The command that makes a sandbox with the forkserver in it, and bubblewrap's environment.
 
     Args:
-        hidden: Folders of which nothing may be seen inside, such as the course's.
+        hidden: Folders that must not be visible inside, such as the course's.
 
     Raises:
-        NoIsolation: There is no bubblewrap, or no filter for this processor.
+        NoIsolation: Bubblewrap is missing, or there is no filter for this processor.
     """
     program = shutil.which("bwrap")
     if program is None:
@@ -112,7 +112,7 @@ def isolated(hidden: Iterable[Path] = ()) -> tuple[list[str], dict[str, str]]:
     for device in DEVICES:
         words += ["--dev-bind", device, device]
     words += ["--dir", "/dev/shm", "--proc", "/proc"]
-    words += view(needed(), [*hidden, *_checkout()])
+    words += mount_arguments(python_paths(), [*hidden, *_checkout()])
     words += ["--perms", "0755", "--dir", _LAB, "--ro-bind", str(_PACKAGE), f"{_LAB}/labkit"]
     words += ["--ro-bind", str(_font_list()), f"{_LAB}/mpl"]
     for name, value in _INSIDE.items():
@@ -121,8 +121,8 @@ def isolated(hidden: Iterable[Path] = ()) -> tuple[list[str], dict[str, str]]:
     return words, {"PATH": os.environ.get("PATH", "/usr/bin:/bin")}
 
 
-def by_user() -> tuple[list[str], dict[str, str]]:
-    """The command that starts the forkserver for `by_user`, and its environment.
+def user_command() -> tuple[list[str], dict[str, str]]:
+    """The command that starts the forkserver for isolation by user id, and its environment.
 
     Raises:
         NoIsolation: This is not root, or there is no filter for this processor.
@@ -135,31 +135,31 @@ def by_user() -> tuple[list[str], dict[str, str]]:
     return [*_FORKSERVER, "--by-user"], _INSIDE | more
 
 
-def bare() -> tuple[list[str], dict[str, str]]:
+def bare_command() -> tuple[list[str], dict[str, str]]:
     """The command that starts the forkserver without a sandbox, and its environment."""
     variables = {**os.environ, **_VARIABLES, "PYTHONPATH": str(_PACKAGE.parent)}
     return [*_FORKSERVER, "--bare"], variables
 
 
-def needed() -> list[Path]:
-    """What must be shown for Python and its packages to work."""
+def python_paths() -> list[Path]:
+    """The paths that must be shown so that Python and its packages work."""
     program = Path(sys.executable)
     prefixes = {Path("/"), Path("/usr"), Path("/usr/local")}
     prefixes |= {Path(sys.prefix), Path(sys.base_prefix), program.parents[1]}
-    while program.is_symlink():  # a virtual environment's, which leads to the one it was made from
+    while program.is_symlink():  # from a virtual environment to its Python
         program = Path(os.path.normpath(program.parent / os.readlink(program)))
         prefixes.add(program.parents[1])
-    places = [*(prefix / part for prefix in prefixes for part in _PARTS), *map(Path, _MORE)]
+    places = [*(prefix / part for prefix in prefixes for part in _PARTS), *map(Path, _ALSO_SHOWN)]
     return sorted(place for place in places if place.exists())
 
 
-def view(shown: Iterable[Path], hidden: Iterable[Path]) -> list[str]:
-    """Bubblewrap's words for a disk on which some places are shown and nothing else is.
+def mount_arguments(shown: Iterable[Path], hidden: Iterable[Path]) -> list[str]:
+    """Bubblewrap's arguments for a disk that shows some places and nothing else.
 
     Args:
-        shown: To be seen, read-only; a link stays a link, and what it leads to is shown too.
-        hidden: Folders that are empty inside, even within a shown one; a shown place within a
-            hidden folder is shown.
+        shown: Places to show, read-only; a link stays a link, and its target is shown, too.
+        hidden: Folders that are empty inside, even within one that is shown; a place to show
+            within a hidden folder is shown.
     """
     links: dict[Path, str] = {}
     kinds = {_without_links(place, links): "show" for place in shown}
@@ -186,7 +186,7 @@ def view(shown: Iterable[Path], hidden: Iterable[Path]) -> list[str]:
 
 
 def _without_links(place: Path, links: dict[Path, str]) -> Path:
-    """The place without links on the way to it; those that were there are noted."""
+    """The path of a place without symbolic links; those on the way are added to ``links``."""
     for above in (*reversed(place.parents), place):
         if above.is_symlink():
             links[above] = os.readlink(above)
@@ -196,7 +196,7 @@ def _without_links(place: Path, links: dict[Path, str]) -> Path:
 
 
 def _folders(folder: Path, made: set[Path]) -> Iterator[str]:
-    """Make the folders above a place, readable: bubblewrap would close them to all but root."""
+    """Arguments that make parent folders readable; by default, only root could enter them."""
     for above in (*reversed(folder.parents), folder):
         if above not in made and above not in {Path("/"), Path("/tmp"), Path("/dev")}:
             yield from ("--perms", "0755", "--dir", str(above))
@@ -204,13 +204,13 @@ def _folders(folder: Path, made: set[Path]) -> Iterator[str]:
 
 
 def _checkout() -> Sequence[Path]:
-    """The folder around labkit, where that is a course with its solutions."""
+    """The folder that contains labkit, if it is a course with its solutions."""
     around = _PACKAGE.parent
     return [around] if (around / "nbgrader_config.py").exists() else []
 
 
 def _font_list() -> Path:
-    """Where Matplotlib keeps its list of fonts; made once, as that takes a while."""
+    """The folder with Matplotlib's list of fonts, made once because that takes long."""
     base = Path(os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache")
     folder = base / "labkit" / "matplotlib"
     if not any(folder.glob("fontlist*")):

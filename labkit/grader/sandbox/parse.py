@@ -1,7 +1,7 @@
-"""Read a stranger's notebook: its sources, and what each cell defines and uses.
+"""Read a stranger's notebook: its sources, and the names that each cell defines and uses.
 
-Outputs are dropped unread, so a notebook full of pictures is as welcome as any.  Sources are
-cleaned here, and not only with the rest of the result: what runs is what an instructor reads.
+Outputs are ignored, so a notebook may be full of pictures.  Sources are cleaned here, before they
+run, and not only with the whole result, so an instructor reads exactly what ran.
 """
 
 from __future__ import annotations
@@ -13,21 +13,21 @@ from typing import Any
 from ...course.notebook import grade_id
 from ...course.source import look
 from .clean import clean_text
-from .tricks import tricks
+from .tricks import find_tricks
 
 MOST_CELLS = 1000
 MOST_SOURCE = 2_000_000  # characters, in all cells together
 
 
 class Rejected(Exception):
-    """The file is not a notebook that can be graded; the message says why, in one sentence."""
+    """The file is not a notebook that can be graded; the message is a sentence that says why."""
 
 
 def read(data: bytes) -> dict[str, Any]:
-    """The cells of a notebook, or why there are none.
+    """Read the cells of a notebook, or say why it is rejected.
 
     Args:
-        data: The file.
+        data: The contents of the file.
 
     Returns:
         ``{"cells": [...]}``, or ``{"rejected": sentence}``.  Each cell has ``id``, ``grade_id``,
@@ -78,10 +78,10 @@ def _cells(notebook: dict[str, Any]) -> Iterator[dict[str, Any]]:
             "grade_id": _name(grade_id(cell)),
             "type": kind,
             "source": source,
-            **({**look(source), "tricks": tricks(source)} if kind == "code" else {}),
+            **({**look(source), "tricks": find_tricks(source)} if kind == "code" else {}),
         }
 
 
 def _name(x: Any) -> str:
-    """A name of a cell's, which is compared with those of the release and shown to nobody."""
+    """The name of a cell, which is compared with those of the release and never shown."""
     return x[:100] if isinstance(x, str) else ""

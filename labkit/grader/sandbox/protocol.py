@@ -1,4 +1,4 @@
-"""JSON messages over a socket, one a line, with limits on their size and on the time they take."""
+"""JSON messages over a socket, one per line, with limits on their size and time."""
 
 from __future__ import annotations
 
@@ -9,27 +9,27 @@ import time
 from typing import Any
 
 MAX_BYTES = 2**25
-"""The longest message, where the caller sets no lower limit."""
+"""The longest message, unless the caller sets a lower limit."""
 
 
 class ProtocolError(Exception):
-    """No message came."""
+    """No valid message arrived."""
 
 
 class Disconnected(ProtocolError):
-    """The other side closed its end."""
+    """The other side closed its end of the socket."""
 
 
 class Timeout(ProtocolError):
-    """Nothing came in time."""
+    """No message arrived in time."""
 
 
-class MessageTooLarge(ProtocolError):
-    """The other side sent more than is allowed, or something that is not a message."""
+class BadMessage(ProtocolError):
+    """The other side sent too much, or something that is not a message."""
 
 
 class Connection:
-    """One end of a conversation; it trusts nothing that comes in."""
+    """One end of a socket; it does not trust what it receives."""
 
     def __init__(self, end: socket.socket) -> None:
         self.socket = end
@@ -39,7 +39,7 @@ class Connection:
         """Write one message.
 
         Raises:
-            Disconnected: Nobody reads, or nobody has read for that long.
+            Disconnected: The other side is gone, or has not read for that long.
         """
         self.socket.settimeout(seconds)
         try:
@@ -53,35 +53,35 @@ class Connection:
         """Read one message.
 
         Args:
-            seconds: How long to wait; None waits for ever.
-            max_bytes: The longest message.
-            max_values: How many numbers, texts, lists and objects it may have in all.
+            seconds: How long to wait; None waits forever.
+            max_bytes: The size of the longest message.
+            max_values: How many numbers, texts, lists and objects it may have in total.
 
         Raises:
             Disconnected: The other side has closed its end.
-            Timeout: It took longer than ``seconds``.
-            MessageTooLarge: It is larger than that, or not a JSON object.
+            Timeout: No message arrived within ``seconds``.
+            BadMessage: The message is too large, or not a JSON object.
         """
         data = self._read_line(seconds, max_bytes)
         if data.count(b",") + data.count(b"[") + data.count(b"{") > max_values:
-            raise MessageTooLarge(f"more than {max_values:,} values came back")
+            raise BadMessage(f"more than {max_values:,} values came back")
         try:
             message = json.loads(data)
         except (ValueError, RecursionError):
-            raise MessageTooLarge("what came back is not JSON") from None
+            raise BadMessage("what came back is not JSON") from None
         if not isinstance(message, dict):
-            raise MessageTooLarge("what came back is not a message")
+            raise BadMessage("what came back is not a message")
         return message
 
     def request(
         self, message: dict[str, Any], seconds: float, max_bytes: int, max_values: int = MAX_BYTES
     ) -> dict[str, Any]:
-        """Write one message and read the reply, each within ``seconds``; raises as `read` does."""
+        """Write one message and read the reply, each within ``seconds``; raise as `read` does."""
         self.send(message, seconds)
         return self.read(seconds, max_bytes, max_values)
 
     def _read_line(self, seconds: float | None, max_bytes: int) -> bytes:
-        """One line without its end; raises as `read` does."""
+        """Read one line without its newline; raise as `read` does."""
         until = None if seconds is None else time.monotonic() + seconds
         start = 0
         while (end := self._received.find(b"\n", start)) < 0:
@@ -90,7 +90,7 @@ class Connection:
                 break
             left = None if until is None else max(0.0, until - time.monotonic())
             if not select.select([self.socket], [], [], left)[0]:
-                raise Timeout("nothing came in time")
+                raise Timeout("no message came in time")
             self.socket.settimeout(None)
             try:
                 piece = self.socket.recv(65536)
@@ -100,11 +100,11 @@ class Connection:
                 raise Disconnected("the other side is gone")
             self._received += piece
         if not 0 <= end <= max_bytes:
-            raise MessageTooLarge(f"more than {max_bytes // 1000:,} kB came back")
+            raise BadMessage(f"more than {max_bytes // 1000:,} kB came back")
         line = bytes(self._received[:end])
         del self._received[: end + 1]
         return line
 
     def close(self) -> None:
-        """Close this end."""
+        """Close this end of the socket."""
         self.socket.close()

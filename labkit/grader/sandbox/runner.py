@@ -1,6 +1,6 @@
-"""The runner, a submission's own process: runs the cells; a fork of it answers for each question.
+"""The runner, a submission's own process, which runs the cells and forks for each question.
 
-Everything in here belongs to the student: whatever they do to it costs nobody else anything.
+Everything in this process belongs to the student; nothing they do to it harms anybody else.
 """
 
 from __future__ import annotations
@@ -31,11 +31,11 @@ from .protocol import Connection, Disconnected
 
 
 def serve(connection: Connection, request: dict[str, Any]) -> None:
-    """Do what the worker asks, until it closes its end.
+    """Serve the worker until it closes its end of the socket.
 
     Args:
-        connection: To the worker.
-        request: With the ``limits``, and the ``uid`` that is this submission's alone.
+        connection: The connection to the worker.
+        request: The ``limits``, and the ``uid`` of a user that only this submission has.
     """
     notebook = Notebook(request["limits"], request["uid"])
     signal.signal(signal.SIGALRM, _time_up)
@@ -53,7 +53,7 @@ def serve(connection: Connection, request: dict[str, Any]) -> None:
 
 
 class Notebook:
-    """The student's names, and the functions that answer for the questions."""
+    """The namespace of the notebook, and the functions in it that answer questions."""
 
     def __init__(self, limits: dict[str, Any], uid: int) -> None:
         module = type(sys)("__main__")
@@ -62,24 +62,24 @@ class Notebook:
         self.names.update(__builtins__=__builtins__, In=[""], Out={})
         self.functions: dict[str, Any] = {}
         self.limits, self.output = limits, limits["output"]
-        self.unmade: set[str] = set()  # names of cells that wanted the student's own arm
-        self.alone = os.getpid() == 1 or os.getuid() == uid  # -1 is then its own processes
+        self.own_arm_names: set[str] = set()  # bound by cells that need the student's own arm
+        self.isolated = os.getpid() == 1 or os.getuid() == uid  # so kill(-1) reaches nobody else
         shell = getattr(builtins, "get_ipython", None)
         if shell is not None:
             shell().user_ns = self.names
 
     def run(self, cell: int, source: str, answers: list[str], seconds: float) -> dict[str, Any]:
-        """Run one cell, and keep the functions that it is to define."""
+        """Run one cell, and keep the functions that answer questions."""
         out = Capped(min(20_000, self.output))
         error = raised = ""
-        with _streams(out):
+        with _captured(out):
             try:
                 with self._alarm(seconds):
                     self._execute(f"<cell {cell}>", source)
             except TimeUp:
                 raised, error = "TimeUp", f"it was stopped after {seconds:g} s"
             except BaseException as why:
-                if not self._wants_own_arm(why, source):
+                if not self._needs_own_arm(why, source):
                     raised, error = kind(why), _sentence(why)
         for name in answers:
             if name in self.names:
@@ -87,21 +87,21 @@ class Notebook:
         self.output -= out.size
         return {"ran": cell, "kind": raised, "error": error, "output": out.getvalue()}
 
-    def _wants_own_arm(self, why: BaseException, source: str) -> bool:
-        """Whether a cell stopped for want of the student's own arm, or of what it would have made.
+    def _needs_own_arm(self, why: BaseException, source: str) -> bool:
+        """Whether a cell stopped because the student's own arm, or what it measures, is missing.
 
-        It is not their fault, and nothing is said of it.
+        This is not the student's fault, so it is not reported.
         """
         wants = isinstance(why, stubs.NoOwnArm)
-        wants |= isinstance(why, NameError) and why.name in self.unmade
+        wants |= isinstance(why, NameError) and why.name in self.own_arm_names
         if wants:
-            self.unmade.update(look(source)["binds"])
+            self.own_arm_names.update(look(source)["binds"])
         return wants
 
     def _execute(self, name: str, source: str) -> None:
         text = plain(source)
         linecache.cache[name] = (len(text), None, text.splitlines(True), name)
-        code = compile(text, name, "exec", flags=0x2000)  # await is allowed at the top level
+        code = compile(text, name, "exec", flags=0x2000)  # allow await at the top level
         found = eval(code, self.names)
         if inspect.iscoroutine(found):
             asyncio.run(found)
@@ -109,8 +109,8 @@ class Notebook:
     def fork(
         self, connection: Connection, question: str, withheld: list[str], right: list[str]
     ) -> int:
-        """Answer for one question in a fork of this process; return how the fork ended."""
-        if self.alone:
+        """Answer one question in a fork of this process; return the exit code of the fork."""
+        if self.isolated:
             _kill_all_others()
         child = os.fork()
         if child:
@@ -125,11 +125,11 @@ class Notebook:
         os._exit(0)
 
     def _answer(self, connection: Connection, name: str) -> None:
-        """Answer one call after another, until none follows."""
+        """Answer one call after another until a message is not a call."""
         kwargs: dict[str, Any] = {}
         connection.send({"ready": name})
         while "args" in (asked := connection.read()):
-            with _streams(Capped(0)):
+            with _captured(Capped(0)):
                 try:
                     args = [decode(x) for x in asked["args"]]
                     if asked["kwargs"] is not None:
@@ -143,7 +143,7 @@ class Notebook:
         seconds = self.limits["call"]
         if name not in self.functions:
             why = f"the notebook defines no {name}"
-            if name in self.unmade:
+            if name in self.own_arm_names:
                 why = f"{name} comes from runs of your arm, which are not made here; type the value"
             raise NameError(why)
         try:
@@ -154,9 +154,9 @@ class Notebook:
 
     @contextmanager
     def _alarm(self, seconds: float) -> Iterator[None]:
-        """Raise `TimeUp` after some seconds of computing, and again, should it be caught.
+        """Raise `TimeUp` after a number of seconds of computing, and again if it is caught.
 
-        Code that only waits is stopped after ``patience`` times as long; code that computes where
+        Code that only waits is stopped after ``patience`` times as long.  Code that computes where
         no exception can reach it is ended by the kernel soon after.
         """
         signal.setitimer(signal.ITIMER_PROF, seconds, 0.5)
@@ -171,7 +171,7 @@ class Notebook:
 
 
 def _kill_all_others() -> None:
-    """End what the cells left running; a question needs a process of its own within the limit."""
+    """Kill what the cells left running, so that a fork stays within the limit on processes."""
     with suppress(ProcessLookupError):
         os.kill(-1, signal.SIGKILL)
     with suppress(ChildProcessError):
@@ -191,7 +191,7 @@ def _time_up(number: int, frame: Any) -> None:
 
 
 def _limit_cpu(seconds: float | None) -> None:
-    """Let the kernel end this process after that much more computing; None lifts the limit."""
+    """Let the kernel end this process after so much more processor time; None lifts the limit."""
     _, hard = resource.getrlimit(resource.RLIMIT_CPU)
     soft = hard if seconds is None else min(hard, math.ceil(_cpu() + seconds))
     with suppress(ValueError, OSError):
@@ -204,8 +204,8 @@ def _cpu() -> float:
 
 
 @contextmanager
-def _streams(out: Capped) -> Iterator[None]:
-    """Put Python's own streams into a buffer, and silence warnings, for a block."""
+def _captured(out: Capped) -> Iterator[None]:
+    """Redirect Python's standard streams to a buffer and silence warnings in a block."""
     sys.stdout = sys.stderr = out
     warnings.simplefilter("ignore")
     try:

@@ -1,16 +1,16 @@
-"""Which system calls a student's process may make: a small filter for the kernel.
+"""A seccomp filter: the system calls that a student's process may make.
 
-A list of what is allowed (`syscalls`): what Python, NumPy with its threads, Pinocchio, PyBullet,
-OpenCV, Matplotlib, `multiprocessing` and `subprocess` use.  A call that nobody thought of, or that
-a later kernel adds, is thus refused.  It fails with ENOSYS, as on a kernel that does not have it,
-so that the C library falls back to an older call (`clone3` to `clone`) and a program that probes
+The filter is a list of allowed calls (`syscalls`): those that Python, NumPy with its threads,
+Pinocchio, PyBullet, OpenCV, Matplotlib, `multiprocessing` and `subprocess` use.  Every other call,
+such as one that a later kernel adds, is refused.  It fails with ENOSYS, as on a kernel without it,
+so that the C library falls back to an older call (`clone3` to `clone`), and a program that probes
 for a feature does without it.
 
-Five calls are allowed for some arguments only, and fail with EPERM for others: `clone` makes
-processes and threads, no namespaces; sockets are of AF_UNIX; `fcntl` takes no lock and no lease,
-and `ioctl` asks only about terminals and descriptors.  Locks and leases belong to files, which all
-sandboxes share, so one submission could signal to another by them; `flock` is refused for the same
-reason.
+Five calls are allowed with some arguments only, and fail with EPERM otherwise: `clone` makes
+processes and threads but not namespaces; `socket` and `socketpair` make sockets of AF_UNIX; `fcntl`
+does not take locks or leases; `ioctl` only asks about terminals and descriptors.  Locks and leases
+belong to files, which all sandboxes share, so one submission could send signals to another with
+them.  `flock` is refused for the same reason.
 """
 
 from __future__ import annotations
@@ -43,14 +43,14 @@ _ARGUMENTS: dict[str, tuple[int, tuple[int, ...]]] = {
         + (termios.FIOCLEX, termios.FIONCLEX),
     ),
 }
-"""Which argument of a call is looked at, and the values that it may have."""
+"""The argument of each call that the filter checks, and the values that it may have."""
 
 _MACHINES = {"x86_64": (0, 0xC000003E), "aarch64": (1, 0xC00000B7)}
-"""A processor's column in `syscalls`, and what the kernel calls it."""
+"""The column of a processor in `syscalls`, and its number in the kernel."""
 
 _ALLOW, _KILL, _ERRNO = 0x7FFF0000, 0x80000000, 0x00050000
 _LOAD, _EQUAL, _ANY_BIT, _RETURN = 0x20, 0x15, 0x45, 0x06
-_NUMBER, _ARCH, _FIRST_ARGUMENT = 0, 4, 16  # where the kernel puts them; arguments have 8 bytes
+_NUMBER, _ARCH, _FIRST_ARGUMENT = 0, 4, 16  # offsets in the kernel's data; an argument has 8 bytes
 
 
 def supported() -> bool:
@@ -60,7 +60,7 @@ def supported() -> bool:
 
 @cache
 def program(machine: str) -> bytes:
-    """The filter as the kernel's instructions; made once, before any process that it is put on.
+    """The filter as instructions for the kernel, compiled once, before the first fork.
 
     Args:
         machine: "x86_64" or "aarch64".
@@ -69,7 +69,7 @@ def program(machine: str) -> bytes:
 
 
 def _steps(column: int, arch: int) -> Iterator[tuple[int, int, int, int]]:
-    """Each instruction: its code, how many to skip if it holds and if not, its value."""
+    """The instructions: code, number to skip if true, number to skip if false, value."""
     allow = (_RETURN, 0, 0, _ALLOW)
     yield _LOAD, 0, 0, _ARCH
     yield _EQUAL, 1, 0, arch
@@ -90,7 +90,7 @@ def _steps(column: int, arch: int) -> Iterator[tuple[int, int, int, int]]:
 def _if_called(
     number: int, place: int, tests: Iterable[tuple[int, int, int, int]]
 ) -> Iterator[tuple[int, int, int, int]]:
-    """For one call, tests of an argument; a call that passes none is refused."""
+    """Tests of an argument of one call; if it passes none of them, the call is refused."""
     steps = [
         (_LOAD, 0, 0, _FIRST_ARGUMENT + 8 * place),
         *tests,
@@ -101,10 +101,10 @@ def _if_called(
 
 
 def install(libc: ctypes.CDLL) -> None:
-    """Put the filter on this process and all its children, for good.
+    """Install the filter in this process and all its children, irrevocably.
 
     Raises:
-        OSError: The kernel refused.
+        OSError: The kernel refused the filter.
     """
     code = program(platform.machine())
     buffer = ctypes.create_string_buffer(code, len(code))

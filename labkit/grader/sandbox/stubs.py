@@ -1,6 +1,6 @@
-"""Stubs of what a notebook has around it: checks that check nothing, a shell that does little.
+"""Stubs for what a notebook expects: checks that check nothing, and a shell that does little.
 
-A submission is marked elsewhere; in here `check` only has to exist.
+A submission is marked outside the sandbox, so `check` only has to exist.
 """
 
 from __future__ import annotations
@@ -14,13 +14,13 @@ from typing import Any
 
 
 def install() -> None:
-    """Put the stubs in the places where a notebook looks."""
+    """Put the stubs where a notebook looks for the originals."""
     import labkit
 
     checks = ModuleType("labkit.course")
     for function in (check, cup, hint, predict, use):
         setattr(checks, function.__name__, function)
-    vars(checks).update(also=hint, case=hint)  # none of which a given cell calls
+    vars(checks).update(also=hint, case=hint)  # released cells do not call these
     for name in ("course", "check"):  # notebooks of version 0.1 say labkit.check
         sys.modules[f"labkit.{name}"] = checks
         vars(labkit)[name] = checks
@@ -36,39 +36,39 @@ def install() -> None:
 
 
 def ready() -> None:
-    """Nothing: whether the machine is ready is not a student's business here."""
+    """Do nothing, as the machine is not the student's."""
 
 
 def check(name: str, function: Callable[..., Any] | None = None) -> float:
-    """No verdict; that is reached elsewhere."""
+    """Give no verdict; the grader does, outside."""
     return 0.0
 
 
 def hint(name: str, level: int = 1) -> None:
-    """No hint."""
+    """Give no hint."""
 
 
 class NoOwnArm(Exception):
-    """A cell wants to run the student's own arm, whose numbers they have written down."""
+    """Raised if a cell runs the student's own arm, which the sandbox does not have."""
 
 
 def my_arm(*_: Any, **__: Any) -> None:
-    """Nobody's arm is here; the cells that run it are left out."""
+    """Stop a cell that runs the student's own arm."""
     raise NoOwnArm
 
 
 def predict(name: str, said: Any = None, *, truth: Any = None) -> Any:
-    """What was committed to."""
+    """Return the prediction that the student committed to."""
     return said
 
 
 def cup(make: Callable[..., Any], workspace: bool = False) -> None:
-    """Keep the controller that is entered; its runs are made elsewhere."""
+    """Keep the controller that is entered; its runs are made outside."""
     vars(cup).update(make=make, workspace=workspace)
 
 
 right: set[str] = set()
-"""Questions whose public cases the student's functions passed, as the grader says."""
+"""Questions whose public cases the student's functions passed; the grader sends them."""
 
 
 def use(
@@ -78,9 +78,9 @@ def use(
     yours: Callable[..., Any] | None = None,
     **options: Any,
 ) -> Callable[..., Any]:
-    """The student's function where it is right, else the one given, as in a notebook.
+    """The student's function if it is right, else the given one, as in a notebook.
 
-    The cells run before any function is tried, so each call finds out anew which of the two it is.
+    The cells run before any function is tried, so the choice is made in each call.
     """
 
     def either(*args: Any, **kwargs: Any) -> Any:
@@ -93,27 +93,27 @@ def display(*things: Any, **options: Any) -> None:
     """Show nothing."""
 
 
-class Nothing:
-    """What has every attribute and takes every call, such as the shell's ``events.register``."""
+class NullObject:
+    """An object with every attribute and every method, such as ``events.register``."""
 
-    def __getattr__(self, name: str) -> Nothing:
-        return Nothing()
+    def __getattr__(self, name: str) -> NullObject:
+        return NullObject()
 
     def __call__(self, *args: Any, **options: Any) -> None:
         """Do nothing."""
 
 
-class Shell(Nothing):
-    """As much of IPython's shell as a cell may ask for; it runs no commands."""
+class Shell(NullObject):
+    """The part of IPython's shell that cells may use; it does not run commands."""
 
     def __init__(self) -> None:
         self.user_ns: dict[str, Any] = {}
 
     def run_line_magic(self, name: str, line: str, *rest: Any, **options: Any) -> None:
-        """``%time x`` runs x; any other magic does nothing."""
+        """Run x for ``%time x``; ignore all other magics."""
         if name == "time":
             exec(compile(line, "<magic>", "exec"), self.user_ns)
 
     def getoutput(self, command: str) -> list[str]:
-        """No output."""
+        """Return no output."""
         return []

@@ -1,6 +1,6 @@
-"""System calls by name, with their numbers on x86-64 and on aarch64 (None: there is none).
+"""System calls by name, with their numbers on x86-64 and on aarch64, None if there is none.
 
-From the kernel's own headers, ``asm/unistd_64.h`` and ``asm-generic/unistd.h``.
+The numbers are from the kernel's own headers, ``asm/unistd_64.h`` and ``asm-generic/unistd.h``.
 """
 
 from __future__ import annotations
@@ -73,10 +73,10 @@ ALLOWED: dict[str, tuple[int | None, int | None]] = {
     # the rest
     "uname": (63, 160), "getrandom": (318, 278),
 }
-"""What a student's process may call, whatever the arguments."""
+"""Calls that a student's process may make with any arguments."""
 
 CONDITIONAL: dict[str, tuple[int, int]] = {
     "clone": (56, 220), "socket": (41, 198), "socketpair": (53, 199), "ioctl": (16, 29),
     "fcntl": (72, 25),
 }
-"""What it may call with some arguments only; see `seccomp`."""
+"""Calls that it may make with some arguments only; see `seccomp`."""

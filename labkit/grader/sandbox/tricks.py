@@ -1,7 +1,7 @@
-"""Tricks: what in a cell may go around a withheld tool, for the instructor to look at.
+"""Find tricks: code that may get around a withheld tool, for the instructor to look at.
 
-Nothing here changes a mark.  It names what no answer to the course's questions needs: labkit's
-insides, text that is run as code, modules loaded by hand.
+Tricks do not change a mark.  They are what no answer to the course's questions needs: labkit's
+internals, text that is run as code, and modules that are loaded dynamically.
 """
 
 from __future__ import annotations
@@ -16,35 +16,35 @@ MODULES = {
     "builtins", "code", "codeop", "ctypes", "dill", "gc", "imp", "importlib", "marshal",
     "multiprocessing", "pickle", "pkgutil", "runpy", "solutions", "subprocess", "zipimport",
 }  # fmt: skip
-"""Modules that load, rebuild or find things that have a name of their own, or start a Python."""
+"""Modules that load, rebuild or find objects without naming them, or that start Python."""
 CALLS = {"__import__", "compile", "eval", "exec"}
 ATTRIBUTES = {
     "__bases__", "__closure__", "__code__", "__dict__", "__getattribute__", "__globals__",
     "__init__", "__loader__", "__mro__", "__new__", "__reduce__", "__reduce_ex__", "__setattr__",
     "__spec__", "__subclasses__", "__wrapped__", "_getframe", "_pin", "attrgetter", "methodcaller",
 }  # fmt: skip
-"""Attributes by which one gets at what has been put away."""
+"""Attributes that give access to what has been put away."""
 INSIDE = (
     *("labkit.course.", "labkit.grader.", "sys.modules.", "sys.meta_path.", "sys.path_hooks."),
     *("os.exec", "os.popen.", "os.posix_spawn", "os.spawn", "os.system.", "operator.attrgetter."),
     *("operator.methodcaller.", "asyncio.create_subprocess_", "concurrent.futures.ProcessPool"),
 )
 OURS = ("labkit", "numpy", "pinocchio", "builtins", "sys")
-"""Modules that no answer changes."""
+"""Modules that no answer needs to change."""
 _TELLING = (ast.Import, ast.ImportFrom, ast.Name, ast.Attribute, ast.Call)
 STUDENTS = {"labkit.course"} | {
     f"labkit.course.{name}" for name in ("check", "hint", "predict", "use")
 }
 
 
-def tricks(source: str) -> list[str]:
-    """What a code cell does that no answer needs.
+def find_tricks(source: str) -> list[str]:
+    """Find what a code cell does that no answer needs.
 
     Args:
-        source: Python as a notebook understands it.
+        source: The text of the cell, in which magics are allowed.
 
     Returns:
-        The ends of sentences that begin with the cell: "imports pickle".
+        Predicates of sentences whose subject is the cell, such as "imports pickle".
     """
     try:
         return list(dict.fromkeys(_found(parsed(source)[1])))
@@ -75,7 +75,7 @@ def _found(tree: ast.AST) -> Iterator[str]:
 
 
 def _full(node: ast.AST, means: Mapping[str, str]) -> str:
-    """A dotted name with its first part as it was imported."""
+    """A dotted name whose first part is replaced by what was imported under it."""
     root, dot, rest = dotted(node).partition(".")
     return means.get(root, root) + dot + rest
 

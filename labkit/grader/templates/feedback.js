@@ -1,4 +1,4 @@
-// In a feedback page with replays: builds each one when it is about to be seen.
+// In a feedback page with replays, build each one when it is about to be seen.
 (() => {
   const dark = matchMedia("(prefers-color-scheme: dark)");
   const dress = () => { document.documentElement.dataset.theme = dark.matches ? "dark" : "light"; };

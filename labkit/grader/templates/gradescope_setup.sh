@@ -1,6 +1,6 @@
 #!/bin/sh
-# Gradescope runs this once, as root, while it makes the image. Python goes where every user can
-# read it; what Gradescope unpacks here holds hidden cases, and stays root's.
+# Gradescope runs this once, as root, to make the image. Python is installed where every user can
+# read it. What Gradescope unpacks here contains hidden cases, so only root may read it.
 set -e
 cd "$(dirname "$0")"
 chmod 700 .

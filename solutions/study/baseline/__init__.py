@@ -1,6 +1,6 @@
-"""The built-in method, to compare with: plan, time, execute, as MoveIt and Rethink's server do.
+"""The built-in method, as a baseline: plan, time and execute as MoveIt and Rethink's server do.
 
-Needs the extra ``labkit[baseline]`` (ompl, toppra); its recorded runs need nothing.
+The method needs the extra ``labkit[baseline]`` (ompl, toppra); its recorded runs do not.
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""Record the built-in method, for all without a planner: ``python -m solutions.study.baseline``."""
+"""Record the built-in method, so nobody needs a planner: ``python -m solutions.study.baseline``."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ from . import RATE, PlanningScene, PositionServer, VelocityServer, along, plan, 
 
 
 def drive(task: Task, server: PositionServer | VelocityServer, seed: int = 0) -> tuple[Log, Log]:
-    """The built-in method from neutral through a task: the log of the approach, and of the task."""
+    """Run the built-in method from neutral through a task; return both logs, approach and task."""
     with Arm(task.side, BAXTER, seed) as arm:
         scene = PlanningScene(task.side, (Table(),))
         approach = quickest(plan(scene, arm.robot.neutral, task.q0, seed=seed))
@@ -29,7 +29,7 @@ def drive(task: Task, server: PositionServer | VelocityServer, seed: int = 0) ->
 
 
 def main() -> None:
-    """Write the files and say what they hold."""
+    """Write the files and print what they contain."""
     argparse.ArgumentParser(description=__doc__).parse_args()
     position, velocity = PositionServer(), VelocityServer()
     logs = {}

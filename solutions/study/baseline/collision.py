@@ -1,9 +1,9 @@
-"""What the planner sees: the arm, the rest of Baxter and boxes, as simple shapes.
+"""The scene of the planner: the arm, the rest of Baxter and boxes, as simple shapes.
 
-Approximations: Rethink's own collision cylinders and boxes for the links, out of which the arm's
-housings stick by up to 5 cm (10 cm at the shoulder, which goes nowhere); stacks of boxes for torso
-and pedestal; the other arm at rest in its neutral pose (``make_collision.py``).  MoveIt saw
-Baxter so too.  The distances are those of coal, by way of Pinocchio.
+The shapes are approximations.  Rethink's own collision cylinders and boxes stand for the links; the
+housings of the arm stick out of them by up to 5 cm (10 cm at the shoulder, which does not move).
+Stacks of boxes stand for torso and pedestal, and the other arm rests in its neutral pose
+(``make_collision.py``).  MoveIt saw Baxter in the same way.  Pinocchio uses coal for distances.
 """
 
 from __future__ import annotations
@@ -34,7 +34,7 @@ class Box:
     """An obstacle with edges along the world's axes.
 
     Attributes:
-        name: What sentences call it.
+        name: Its name in messages.
         centre: Its centre in the world, shape (3,) in [m].
         size: Its edges, shape (3,) in [m].
     """
@@ -57,7 +57,7 @@ class PlanningScene:
     Attributes:
         robot: Names and limits of the arm.
         obstacles: All things around the arm besides Baxter's own body.
-        margin: How near two shapes may come, in [m].
+        margin: The least distance between two shapes, in [m].
     """
 
     def __init__(
@@ -98,20 +98,20 @@ class PlanningScene:
         return k
 
     def free(self, q: Any) -> bool:
-        """Whether nothing comes nearer than the margin at joint angles ``q``, shape (7,) [rad]."""
+        """Whether all shapes keep the margin at joint angles ``q``, shape (7,) [rad]."""
         q = as_array(q, (7,), "q")
         hit = pin.computeCollisions(self._model, self._data, self._shapes, self._results, q, True)
         return not hit
 
     def clearance(self, q: Any) -> tuple[float, str, str]:
-        """The nearest two shapes that may not meet.
+        """Find the two nearest shapes that may not touch.
 
         Args:
             q: Joint angles, shape (7,) in [rad].
 
         Returns:
-            Their distance in [m], negative inside each other, and their names, first that of the
-            one further along the arm.
+            Their distance in [m], negative if they overlap, and their names, first that of the one
+            further along the arm.
         """
         q = as_array(q, (7,), "q")
         k = pin.computeDistances(self._model, self._data, self._shapes, self._results, q)
@@ -126,14 +126,14 @@ class PlanningScene:
 
         Args:
             q: Joint angles, shape (7,) in [rad].
-            name: What to call them in the sentence.
+            name: What a message calls them.
 
         Returns:
-            The same.
+            The joint angles as an array.
 
         Raises:
             JointLimitExceeded: A joint is outside its range.
-            Blocked: Two shapes are too near; the sentence says which.
+            Blocked: Two shapes are too close; the message names them.
         """
         angles: Array = as_array(q, (7,), name)
         low, high = self.robot.lower - 1e-9, self.robot.upper + 1e-9
@@ -147,7 +147,7 @@ class PlanningScene:
         return angles
 
     def why(self, q: Any) -> str:
-        """A sentence's end that names what meets at ``q``, shape (7,) [rad]."""
+        """The end of a sentence that names the shapes in contact at ``q``, shape (7,) [rad]."""
         distance, a, b = self.clearance(q)
         if distance > 0.0:
             return (
@@ -158,7 +158,7 @@ class PlanningScene:
 
 
 class Blocked(LabkitError, ValueError):
-    """A place or a way where the arm would hit something."""
+    """The arm would hit something at these joint angles or on this path."""
 
 
 _FIXED = ("base",)
@@ -182,5 +182,5 @@ def _shape(shape: dict[str, Any]) -> Any:
 
 
 def _plain(name: str) -> str:
-    """A part's name as people say it: without the number of the shape."""
+    """The name of a part without the number of its shape, for messages."""
     return "the " + name.split("/")[0]

@@ -1,4 +1,4 @@
-"""Where to go: OMPL's RRT-Connect between places of the joints, MoveIt's way along a tip's path.
+"""Plan paths: OMPL's RRT-Connect between joint angles, and MoveIt's method for a path of the tip.
 
 Kuffner & LaValle 2000, "RRT-Connect: an efficient approach to single-query path planning".
 """
@@ -23,34 +23,34 @@ with quiet():
     from ompl import base, geometric, util
 
 CHECKS = 20_000
-"""How many places the planner may try before it gives up, about a second, and no clock decides."""
+"""How many joint angles the planner tries before it gives up, which takes about a second."""
 STEP = 0.02
-"""How far apart, in [rad], the places are that are looked at along a way."""
+"""The distance in [rad] between two collision checks along a path."""
 
 
 class NoWay(Blocked):
-    """The planner found no way."""
+    """The planner did not find a path."""
 
 
 def plan(scene: PlanningScene, start: Any, goal: Any, *, seed: int = 0) -> Spline:
-    """A way from ``start`` to ``goal`` that touches nothing.
+    """Plan a path from ``start`` to ``goal`` that does not touch anything.
 
-    The same seed gives the same way: the planner's patience is counted in places tried, not in
-    seconds.
+    The same seed gives the same path, because the planner's limit is a number of joint angles, not
+    a time.
 
     Args:
         scene: The arm among obstacles.
         start: Joint angles, shape (7,) in [rad].
         goal: Joint angles, shape (7,) in [rad].
-        seed: Of the planner's random tree.
+        seed: The seed of the planner's random tree.
 
     Returns:
-        A smooth path of joint angles, every part of it looked at in steps of `STEP`.
+        A smooth path of joint angles, checked for collisions in steps of `STEP`.
 
     Raises:
-        Blocked: Start or goal would hit something; says what.
-        JointLimitExceeded: Start or goal is out of a joint's range.
-        NoWay: None was found; says what blocks the straight way.
+        Blocked: Start or goal would hit something; the message names it.
+        JointLimitExceeded: Start or goal is outside the range of a joint.
+        NoWay: No path was found; the message says what blocks the straight one.
     """
     start = scene.require_free(start, "start")
     goal = scene.require_free(goal, "goal")
@@ -79,7 +79,7 @@ def plan(scene: PlanningScene, start: Any, goal: Any, *, seed: int = 0) -> Splin
 
 
 def first_hit(scene: PlanningScene, path: Path[Sample]) -> float | None:
-    """The first place s along a path of joint angles where something is too near; None if none.
+    """The first s on a path of joint angles at which shapes are too close; None if there is none.
 
     Args:
         scene: The arm among obstacles.
@@ -98,9 +98,9 @@ def along(
 ) -> Trajectory | Chain | Hold:
     """A path of the tip, planned as MoveIt's computeCartesianPath does.
 
-    Inverse kinematics along the path, a look at every step for collisions, then a schedule of its
-    own by TOPP-RA: the target's geometry is kept and its timing is not, save that the tip is on
-    average nowhere faster than the target at its fastest.
+    Inverse kinematics gives joint angles along the path, each step is checked for collisions, and
+    TOPP-RA computes a new schedule.  The path keeps the geometry of the target but not its timing,
+    except that ds/dt never exceeds its largest value in the target.
 
     Args:
         scene: The arm among obstacles.
@@ -108,14 +108,14 @@ def along(
         target: A `Trajectory` of the tip, or a `Chain` of them and of `Hold` (it stops between
             its parts).
         q0: Joint angles at the start, shape (7,) in [rad].
-        limits: Joint speeds and accelerations to keep to.
+        limits: The limits on joint speeds and accelerations.
 
     Returns:
         A target of joint angles.
 
     Raises:
         Unreachable: The tip cannot follow the path.
-        Blocked: Something is in the way; says where along the path and what.
+        Blocked: Something is in the way; the message says what, and where along the path.
     """
     joints = model.joint_trajectory(target, as_array(q0, (7,), "q0"))
     parts = [
@@ -137,7 +137,7 @@ def _timed(scene: PlanningScene, part: Trajectory | Hold, limits: JointLimits) -
 
 
 def _search(scene: PlanningScene, start: Array, goal: Array, seed: int) -> Array | None:
-    """The corners of a way, shape (k, 7), or None."""
+    """The corners of a path, shape (k, 7), or None if there is none."""
     tried = 0
 
     def free(state: Any) -> bool:
@@ -145,9 +145,9 @@ def _search(scene: PlanningScene, start: Array, goal: Array, seed: int) -> Array
         tried += 1
         return bool(scene.free(np.array([state[i] for i in range(7)])))
 
-    with quiet():  # it talks on the process's streams
+    with quiet():  # OMPL writes to the process's streams
         util.setLogLevel(util.LogLevel.LOG_NONE)
-        util.RNG.setSeed(seed + 1)  # zero would mean a seed from the clock
+        util.RNG.setSeed(seed + 1)  # with 0 OMPL would take a seed from the clock
         space = base.RealVectorStateSpace(7)
         bounds = base.RealVectorBounds(7)
         for i in range(7):

@@ -1,10 +1,10 @@
-"""Who drives: Rethink's joint trajectory action server, as two controllers.
+"""Rethink's joint trajectory action server, as two controllers.
 
-Source: baxter_interface, joint_trajectory_action.py and its cfg files.  The server asks for the
-trajectory's point a hundred times a second.  In position mode it passes that point on to the arm.
-In velocity mode it turns the error into a speed and adds *no* feed-forward, so the arm trails a
-moving target by its speed divided by kp.  The inverse-dynamics feed-forward of its third mode is
-inside the robot and not public; it is left out.
+The source is joint_trajectory_action.py of baxter_interface, with its cfg files.  The server
+evaluates the trajectory a hundred times a second.  In position mode it sends that point to the arm.
+In velocity mode it sends a speed proportional to the error, *without* feed-forward, so the arm
+trails a moving target by the target's speed divided by kp.  The third mode is left out: its
+inverse-dynamics feed-forward is inside the robot and not public.
 """
 
 from __future__ import annotations
@@ -20,7 +20,7 @@ from labkit.shapes import Array, as_number
 from labkit.trajectory import Sample
 
 RATE = 100.0
-"""How often the server speaks to the arm, in [Hz]."""
+"""How often the server sends a command, in [Hz]."""
 
 
 class PathTolerance(LabkitError):
@@ -29,7 +29,7 @@ class PathTolerance(LabkitError):
 
 @dataclass(frozen=True)
 class PositionServer:
-    """Position mode: tell the arm where to be.
+    """Position mode, which sends the joint angles of the trajectory.
 
     Attributes:
         tolerance: Largest joint error before it gives up, in [rad]; Rethink's default.
@@ -52,10 +52,10 @@ class PositionServer:
 
 @dataclass(frozen=True)
 class VelocityServer:
-    """Velocity mode: a speed in proportion to the error, and nothing else.
+    """Velocity mode, which sends speeds proportional to the error and nothing else.
 
     Attributes:
-        kp: In [1/s]; Rethink's default.
+        kp: The gain in [1/s]; Rethink's default.
         tolerance: Largest joint error before it gives up, in [rad]; Rethink's default.
     """
 

@@ -1,4 +1,4 @@
-"""How fast: the quickest schedule along a path within speed and acceleration limits (TOPP-RA).
+"""Find the fastest schedule along a path within speed and acceleration limits (TOPP-RA).
 
 Pham & Pham 2018, "A new approach to time-optimal path parameterization based on reachability
 analysis".
@@ -23,7 +23,7 @@ from labkit.trajectory import Path, Sample, Trajectory
 
 @dataclass(frozen=True, eq=False)
 class JointLimits:
-    """What a schedule keeps to.
+    """The limits of a schedule.
 
     Attributes:
         speed: Largest joint speeds, shape (7,) in [rad/s].
@@ -45,33 +45,33 @@ MOVEIT = JointLimits(
     speed=(0.27, 0.27, 0.27, 0.27, 0.3, 0.3, 0.5),
     acceleration=(0.5,) * 7,
 )
-"""What MoveIt keeps to on Baxter, joint_limits.yaml of moveit_robots' baxter_moveit_config."""
+"""MoveIt's limits on Baxter, joint_limits.yaml of moveit_robots' baxter_moveit_config."""
 
 HARDWARE = JointLimits(
     speed=(1.5, 1.5, 1.5, 1.5, 4.0, 4.0, 4.0),
     acceleration=(5.0,) * 7,
 )
-"""The arm's own speed limits; Rethink states no accelerations, and ten of MoveIt's are taken."""
+"""The arm's own speed limits; Rethink states no accelerations, so we take ten times MoveIt's."""
 
 
 _NO_LIMIT = 1e3  # more than any arm needs
-_PLACES = 801  # along a path, at which the limits are looked at
+_PLACES = 801  # along a path, where the limits are checked
 
 
 class Schedule:
-    """A time scaling given by its speed at places along the path, the acceleration even between.
+    """A time scaling with given speeds at places along the path, and constant acceleration between.
 
     Attributes:
         s: Places along the path, from 0 to 1, shape (k,).
         speed: ds/dt there, shape (k,) in [1/s], zero at both ends.
-        duration: How long it lasts, in [s].
+        duration: The duration in [s].
     """
 
     def __init__(self, s: Any, speed: Any) -> None:
         """Take ``speed`` at the places ``s``.
 
         Raises:
-            OutOfRange: The speed vanishes over a whole stretch, so the end is never reached.
+            OutOfRange: The speed is zero over a whole interval, so the end is never reached.
         """
         self.s = locked(np.array(as_array(s, np.shape(s), "s")))
         self.speed = locked(np.array(as_array(speed, self.s.shape, "speed")))
@@ -100,11 +100,11 @@ class Schedule:
 def quickest(
     path: Path[Sample], limits: JointLimits = MOVEIT, *, ds_dt: float | None = None
 ) -> Trajectory:
-    """The quickest trajectory along a path of joint angles, at rest at both ends.
+    """The fastest trajectory along a path of joint angles, at rest at both ends.
 
     Args:
         path: Joint angles over s, samples of shape (7,) in [rad].
-        limits: Joint speeds and accelerations to keep to.
+        limits: The limits on joint speeds and accelerations.
         ds_dt: A ceiling for ds/dt too, in [1/s]; None sets none.  (A tip that may not exceed v_max
             on a path of even pace and of this length has v_max / length.)
 
@@ -113,7 +113,7 @@ def quickest(
 
     Raises:
         ShapeError: The path is not one of joint angles.
-        OutOfRange: No schedule keeps the limits, which only a path with a jump brings about.
+        OutOfRange: No schedule keeps the limits; this happens only if the path has a jump.
     """
     as_array(path(0.0).position, (7,), "the path's position")
     places = np.linspace(0.0, 1.0, _PLACES)
@@ -122,7 +122,7 @@ def quickest(
         constraint.JointVelocityConstraint(_both_signs(limits.speed, ceiling)),
         constraint.JointAccelerationConstraint(_both_signs(limits.acceleration, _NO_LIMIT)),
     ]
-    with quiet():  # it reports to the process's streams
+    with quiet():  # toppra writes to the process's streams
         solver = algorithm.TOPPRA(keep, _Geometry(path), gridpoints=places)
         profile = solver.compute_parameterization(0.0, 0.0, return_data=True)[1]
     if profile is None or not np.isfinite(profile).all():
@@ -134,7 +134,7 @@ def quickest(
 
 
 class _Geometry(AbstractGeometricPath):  # type: ignore[misc]
-    """A labkit path as toppra reads one, with s itself as an eighth joint to put a ceiling on."""
+    """A labkit path in toppra's form, with s as an eighth joint whose speed can be limited."""
 
     def __init__(self, path: Path[Sample]) -> None:
         self._path = path
@@ -153,7 +153,7 @@ class _Geometry(AbstractGeometricPath):  # type: ignore[misc]
 
     @property
     def path_interval(self) -> Array:
-        """Where s begins and ends."""
+        """The first and the last value of s."""
         return np.array([0.0, 1.0])
 
 

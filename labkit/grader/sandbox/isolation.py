@@ -1,4 +1,4 @@
-"""What keeps the children of a forkserver apart: namespaces, a user id alone, or nothing."""
+"""What isolates the children of a forkserver: namespaces, only a user id, or nothing."""
 
 from __future__ import annotations
 
@@ -12,30 +12,30 @@ from typing import Any
 
 from . import confine, seccomp
 
-TRIES = 50
-"""How often a user's processes are killed before they count as immortal."""
+KILL_ATTEMPTS = 50
+"""How often the grader tries to kill a user's processes before it gives up."""
 
 
 class Bare:
-    """Nothing: a folder and limits, where somebody typed ``--unsafe-no-isolation``."""
+    """No isolation but a folder and limits, for ``--unsafe-no-isolation``."""
 
     def fork(self) -> int:
-        """Fork; as `os.fork`."""
+        """Fork, as `os.fork` does."""
         return os.fork()
 
     def enter(self, limits: dict[str, Any], uid: int) -> None:
-        """Confine this process, a child; here it goes to a new folder, within limits.
+        """Confine this process, a child; this class only sets limits and makes a new folder.
 
         Args:
             limits: See `labkit.grader.sandbox.limits.Limits`.
-            uid: Of a user that is this sandbox's alone; 0 if nobody can be given one.
+            uid: The id of a user that only this sandbox has; 0 if it has none.
         """
         os.chdir(tempfile.mkdtemp(prefix="labkit-"))
         confine.set_limits(limits | {"processes": 4096})
 
     def kill(self, child: int, *, whole: bool) -> None:
-        """Kill what a child started and, if ``whole``, the child too."""
-        for pid in _family(child) - (set() if whole else {child}):
+        """Kill all that a child started and, if ``whole``, the child, too."""
+        for pid in _descendants(child) - (set() if whole else {child}):
             with suppress(ProcessLookupError):
                 os.kill(pid, signal.SIGKILL)
         if whole:
@@ -43,39 +43,39 @@ class Bare:
                 os.waitpid(child, 0)
 
     def close(self) -> None:
-        """Clear away what is left, at the end; here that ends with the sandbox."""
+        """Remove what is left; nothing to do here, as it disappears with the sandbox."""
 
 
 class Namespaces(Bare):
-    """Bubblewrap's inside: each child has a process namespace, mounts and folders of its own."""
+    """Namespaces inside bubblewrap: each child has its own processes, mounts and folders."""
 
     def __init__(self) -> None:
         confine.lock_devices()
-        confine.cover_kernel()
+        confine.hide_sys()
         seccomp.program(platform.machine())
-        self._home = os.open("/proc/self/ns/pid", os.O_RDONLY)
-        self._shown = confine.shown_below()
+        self._outer = os.open("/proc/self/ns/pid", os.O_RDONLY)
+        self._shown = confine.mounts_under_tmp()
 
     def fork(self) -> int:
-        """Fork; the child begins a process namespace."""
+        """Fork; the child is the first process of a new process namespace."""
         confine.check(confine.libc.unshare(confine.NEW_PIDS), "unshare")
         child = os.fork()
         if child:
-            confine.check(confine.libc.setns(self._home, confine.NEW_PIDS), "setns")
+            confine.check(confine.libc.setns(self._outer, confine.NEW_PIDS), "setns")
         return child
 
     def enter(self, limits: dict[str, Any], uid: int) -> None:
-        """Take away everything; see `confine.confine`."""
-        os.close(self._home)
+        """Take away everything that the child does not need; see `confine.confine`."""
+        os.close(self._outer)
         confine.confine(limits, uid, self._shown)
 
 
 class ByUser(Bare):
-    """A user id alone, for a container of one submission in which nothing can be mounted.
+    """Isolation by user id only, for a container of one submission that cannot mount anything.
 
-    The child is an unprivileged user behind the same filter of system calls, without network, with
-    the same limits, in a folder that is its own.  It sees ``/proc`` and whatever files the
-    container shows to everybody, and can fill its disk; what it must not see is for root alone.
+    The child is an unprivileged user with its own folder, behind the same filter of system calls,
+    without network and with the same limits.  It sees ``/proc`` and all files that the container
+    shows to everybody, and it can fill the disk.  What it must not see belongs to root.
     """
 
     def __init__(self) -> None:
@@ -84,68 +84,68 @@ class ByUser(Bare):
         os.chmod(self._folder, 0o711)
 
     def enter(self, limits: dict[str, Any], uid: int) -> None:
-        """Become the user, in a folder of its own."""
+        """Become the user, in a new folder that belongs to them."""
         if not uid:
             raise PermissionError("only root can give a process another user id")
-        confine.first_to_go()
-        own = self._own(os.getpid())
+        confine.raise_oom_score()
+        own = self._folder_of(os.getpid())
         os.mkdir(own, 0o700)
         os.chown(own, uid, uid)
         os.environ.update(HOME=own, TMPDIR=own, IPYTHONDIR=own)
         tempfile.tempdir = own
-        confine.renounce(limits, uid, own)
+        confine.drop_privileges(limits, uid, own)
 
     def kill(self, child: int, *, whole: bool) -> None:
-        """Kill the user's processes, wherever they went; without ``whole`` all but the child."""
+        """Kill all processes of the user, but spare the child unless ``whole``."""
         try:
-            uid = os.stat(self._own(child)).st_uid
-        except FileNotFoundError:  # it was ended before it had become the user
+            uid = os.stat(self._folder_of(child)).st_uid
+        except FileNotFoundError:  # the child ended before it had become the user
             super().kill(child, whole=whole)
             return
         if not whole:
-            for pid in alive(uid) - {child}:
+            for pid in processes_of(uid) - {child}:
                 with suppress(ProcessLookupError):
                     os.kill(pid, signal.SIGKILL)
             return
-        end_user(uid)
+        kill_user(uid)
         with suppress(ChildProcessError):
             os.waitpid(child, 0)
-        shutil.rmtree(self._own(child), ignore_errors=True)
+        shutil.rmtree(self._folder_of(child), ignore_errors=True)
 
     def close(self) -> None:
-        """End what still runs; the worker may have been killed in the middle of a submission."""
+        """Kill what still runs, as the worker may have been killed while it graded."""
         for child in os.listdir(self._folder):
             self.kill(int(child), whole=True)
         shutil.rmtree(self._folder, ignore_errors=True)
 
-    def _own(self, child: int) -> str:
+    def _folder_of(self, child: int) -> str:
         return f"{self._folder}/{child}"
 
 
-def end_user(uid: int) -> None:
-    """Kill all processes of a user, those included that they start meanwhile.
+def kill_user(uid: int) -> None:
+    """Kill all processes of a user, including those that they start meanwhile.
 
     Raises:
-        OSError: Some cannot be killed.
+        OSError: Some processes cannot be killed.
     """
-    for _ in range(TRIES):
+    for _ in range(KILL_ATTEMPTS):
         killer = os.fork()
         if not killer:
             try:
                 os.setgroups([])
                 os.setresgid(uid, uid, uid)
                 os.setresuid(uid, uid, uid)
-                os.kill(-1, signal.SIGKILL)  # at one go: all that this user may kill, but itself
+                os.kill(-1, signal.SIGKILL)  # all that this user may kill, at once
             finally:
                 os._exit(0)
         os.waitpid(killer, 0)
-        if not alive(uid):
+        if not processes_of(uid):
             return
     raise OSError(f"processes of user {uid} cannot be killed")
 
 
-def alive(uid: int) -> set[int]:
-    """Processes of a user that still run."""
+def processes_of(uid: int) -> set[int]:
+    """The processes of a user that still run."""
     found = set()
     for name in filter(str.isdigit, os.listdir("/proc")):
         with suppress(OSError), open(f"/proc/{name}/status") as file:
@@ -155,8 +155,8 @@ def alive(uid: int) -> set[int]:
     return found
 
 
-def _family(child: int) -> set[int]:
-    """A process and all that descends from it."""
+def _descendants(child: int) -> set[int]:
+    """A process and all its descendants."""
     parents = {}
     for name in filter(str.isdigit, os.listdir("/proc")):
         with suppress(OSError, ValueError), open(f"/proc/{name}/stat") as file:
