@@ -19,12 +19,12 @@ from ..sim import chosen
 from .brief import WORDS
 from .checks_file import read_checks
 from .forms import COMMITTED, OWN_ARM
-from .gaps import bring_back, calculated, changed_since, first_error, undefined
+from .gaps import calculated_from_runs, changed_since, first_error, how_to_restore, undefined_names
 from .messages import head
 from .notebook import PLACEHOLDER, check_id, defines, grade_id, kind, last_verdict, read_cells
 from .own_arm import FILE, arms_for, opens_the_public_arm
 from .serialize import decode
-from .source import look
+from .source import analyse
 from .verdict import Outcome, Verdict
 from .withheld import withheld_tools
 
@@ -113,14 +113,14 @@ def examine(path: Path) -> HandIn:
             f"it has {size:.0f} MB, more than {LARGEST:g}; clear the outputs of large cells"
         )
     for question in questions:
-        more, worth_knowing = _cells_of(cells, question["name"], name)
+        more, worth_knowing = _review(cells, question["name"], name)
         problems += more
         notes += worth_knowing
-    problems += undefined(cells, [question["name"] for question in questions])
+    problems += undefined_names(cells, [question["name"] for question in questions])
     code = [cell["source"] for cell in cells if cell["cell_type"] == "code"]
     for question in questions:
         if any(test["name"] == OWN_ARM for test in question["tests"]["items"]):
-            problems += filter(None, [calculated(code, question["name"])])
+            problems += filter(None, [calculated_from_runs(code, question["name"])])
     problems += filter(None, [first_error(cells)])
     verdicts = {question["name"]: _verdict(cells, question) for question in questions}
     predictions = [
@@ -140,7 +140,7 @@ def examine(path: Path) -> HandIn:
         f"the cell of {name} says None, although you had committed to a prediction; the cell is "
         "what is marked, so write your prediction into it again and run it"
         for name in predictions
-        if (said := verdicts[name]) and said.right and _holds_nothing(code, name)
+        if (said := verdicts[name]) and said.right and _lacks_prediction(code, name)
     ]
     stale = [name for name in verdicts if changed_since(cells, name)]
     if stale:
@@ -164,11 +164,11 @@ def examine(path: Path) -> HandIn:
             if most and words > int(most[1]):
                 notes.append(f"{grade_id(cell)} has {words} words; it may have at most {most[1]}")
     wrong = [name for name, v in verdicts.items() if v and not v.right]
-    for says, foretold in (
+    for says, predicted in (
         ("not yet right: {}; what is right counts all the same", False),
         ("not predicted yet: {}; right or wrong, a prediction counts", True),
     ):
-        if which := [name for name in wrong if (name in predictions) == foretold]:
+        if which := [name for name in wrong if (name in predictions) == predicted]:
             notes.append(says.format(", ".join(which)))
     return HandIn(name, tuple(problems), tuple(notes), verdicts, predictions, texts)
 
@@ -196,25 +196,25 @@ def _on_the_public_arm(
     ]
 
 
-def _holds_nothing(code: list[str], name: str) -> bool:
+def _lacks_prediction(code: list[str], name: str) -> bool:
     """Whether the last cell with a prediction says None."""
     pattern = rf"^{name}\s*=\s*predict\(\s*['\"]{name}['\"]\s*(,\s*(said\s*=\s*)?(None)?\s*)?\)"
     made = [cell for cell in code if re.search(rf"^{name}\s*=", cell, re.MULTILINE)]
     return bool(made) and bool(re.search(pattern, made[-1], re.MULTILINE))
 
 
-def _cells_of(cells: list[dict[str, Any]], question: str, name: str) -> tuple[list[str], list[str]]:
+def _review(cells: list[dict[str, Any]], question: str, name: str) -> tuple[list[str], list[str]]:
     """What must be corrected in the cells of a question, and what is worth knowing of them."""
     problems, notes = [], []
     ids = Counter(map(grade_id, cells))
     if not any(defines(cell, question) for cell in cells):
         homes = [cell for cell in cells if grade_id(cell) == question]
-        magic = next((x for x in (look(cell["source"])["magic"] for cell in homes) if x), "")
+        magic = next((x for x in (analyse(cell["source"])["magic"] for cell in homes) if x), "")
         problems.append(
             f"the cell of {question} begins with %%{magic}, which keeps what it defines to itself; "
             "take that line away"
             if magic
-            else bring_back(question, name, any(cell["cell_type"] != "code" for cell in homes))
+            else how_to_restore(question, name, any(cell["cell_type"] != "code" for cell in homes))
         )
     for each in (question, check_id(question)):
         if not ids[each]:
@@ -229,7 +229,7 @@ def _cells_of(cells: list[dict[str, Any]], question: str, name: str) -> tuple[li
 def _verdict(cells: list[dict[str, Any]], question: Mapping[str, Any]) -> Verdict | None:
     """What the question's check said last, or what the answer's text says by now."""
     name = question["name"]
-    found = [look(cell["source"]) for cell in cells if cell["cell_type"] == "code"]
+    found = [analyse(cell["source"]) for cell in cells if cell["cell_type"] == "code"]
     tools = withheld_tools(found, name, decode(question["withheld"]))
     if tools:
         points = float(question["points"])

@@ -71,7 +71,7 @@ class Bug:
         """The run, up to the moment when the arm runs away, if it does."""
         return _run(there_and_back(MOVES[self.move]), self.cause, self.onset, self.seed)
 
-    def shows(self) -> float:
+    def first_visible(self) -> float:
         """When a joint first is `SHOWS` away from where the right law would have it, in [s]."""
         wrong, right = self.log(), Bug("", self.move, self.onset, self.seed).log()
         n = min(len(wrong), len(right))
@@ -198,7 +198,7 @@ class Found(RightOrWrong):
     def expected(self, arm: Any) -> tuple[str, float]:
         """What is right for the runs of somebody's `OwnArm`."""
         bug: Bug = arm.bugs[self.number]
-        return bug.cause, bug.shows()
+        return bug.cause, bug.first_visible()
 
 
 @dataclass(frozen=True)

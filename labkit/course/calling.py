@@ -21,13 +21,13 @@ from ..quiet import diverted
 from ..shapes import locked
 
 
-class Heard:
+class Captured:
     """What came out of the streams, and the warnings, once the call is over."""
 
     text: str = ""
 
 
-class Capped(StringIO):
+class CappedText(StringIO):
     """Text that stops growing.
 
     Args:
@@ -46,14 +46,14 @@ class Capped(StringIO):
         return len(text)
 
 
-MOST_HEARD = 100_000
-"""Characters, and bytes of C's streams, that `heard` keeps."""
+MOST_CAPTURED = 100_000
+"""Characters, and bytes of C's streams, that `captured` keeps."""
 
 
 @contextmanager
-def heard() -> Iterator[Heard]:
+def captured() -> Iterator[Captured]:
     """Catch stdout, stderr and warnings, of Python and of C, while the block runs."""
-    out, result = Capped(MOST_HEARD), Heard()
+    out, result = CappedText(MOST_CAPTURED), Captured()
     with (
         tempfile.TemporaryFile() as file,
         diverted(file.fileno()),
@@ -66,7 +66,7 @@ def heard() -> Iterator[Heard]:
             finally:
                 words = [out.getvalue(), *(f"{w.category.__name__}: {w.message}\n" for w in said)]
                 file.seek(0)
-                below = file.read(MOST_HEARD).decode(errors="replace")
+                below = file.read(MOST_CAPTURED).decode(errors="replace")
                 result.text = "".join([*words, below])
 
 

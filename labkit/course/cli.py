@@ -93,7 +93,7 @@ def merge(mine: Path, new: Path, to: Path) -> int:
 
     MINE is the notebook that you worked in; NEW is the corrected one from your instructor.
     """
-    from .merge import BESIDE, merge
+    from .merge import KEPT_TEXT, merge
     from .notebook import read_cells
 
     cells, released = read_cells(mine), read_cells(new)
@@ -103,7 +103,7 @@ def merge(mine: Path, new: Path, to: Path) -> int:
     if not _is_valid(release):
         raise LabkitError(f"{new.name} is not a release; fetch the assignment's folder again")
     notebook = release | {"cells": merge(cells, released)}
-    both = sum(BESIDE in cell["source"] for cell in notebook["cells"])
+    both = sum(KEPT_TEXT in cell["source"] for cell in notebook["cells"])
     text = json.dumps(notebook, indent=1, ensure_ascii=False) + "\n"
     to.write_text(text, encoding="utf-8", errors="replace")  # a lone surrogate is not text
     print(
@@ -111,7 +111,7 @@ def merge(mine: Path, new: Path, to: Path) -> int:
         "notebook, and run all its cells"
     )
     if both:
-        print(f"where the new release changed what you may have changed too, it says: {BESIDE}")
+        print(f"where the new release changed what you may have changed too, it says: {KEPT_TEXT}")
     return 0
 
 

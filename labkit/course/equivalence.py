@@ -158,7 +158,7 @@ def as_expected(known: Any, expected: Any) -> Any:
 Judge = Close | Within | Response | Gains | AtTip | Form | Measured | Found | Telling
 
 
-def right_by(judge: Judge, answer: Any, expected: Any) -> bool:
+def accepts(judge: Judge, answer: Any, expected: Any) -> bool:
     """Whether a judge takes an answer; there is no end to what an answer can be."""
     try:
         return judge(answer, expected) is None
@@ -166,6 +166,6 @@ def right_by(judge: Judge, answer: Any, expected: Any) -> bool:
         return False
 
 
-def no_better(judge: Judge, answer: Any, mistake: Any, expected: Any) -> bool:
+def shares_error(judge: Judge, answer: Any, mistake: Any, expected: Any) -> bool:
     """Whether an answer is wrong where a mistake is."""
-    return right_by(judge, mistake, expected) or not right_by(judge, answer, expected)
+    return accepts(judge, mistake, expected) or not accepts(judge, answer, expected)

@@ -8,7 +8,7 @@ from collections.abc import Collection, Iterable, Iterator
 from typing import Any
 
 from .notebook import checks, defines
-from .source import look
+from .source import analyse
 from .unfinished import defined_in
 
 _KNOWN = {*vars(builtins), "get_ipython", "display", "In", "Out", "_", "__", "___", "__file__"}
@@ -17,7 +17,7 @@ _OWN_ARM = {"my_arm", "my_bug"}
 """What the grader cannot run."""
 
 
-def undefined(cells: list[dict[str, Any]], asked: Collection[str]) -> Iterator[str]:
+def undefined_names(cells: list[dict[str, Any]], asked: Collection[str]) -> Iterator[str]:
     """A sentence for each cell that uses names which no cell defines.
 
     Args:
@@ -29,7 +29,7 @@ def undefined(cells: list[dict[str, Any]], asked: Collection[str]) -> Iterator[s
     if "*" in defined:  # of an import: nobody knows what it brings
         return
     for source in code:
-        names = [name for name in look(source)["uses"] if name not in defined]
+        names = [name for name in analyse(source)["uses"] if name not in defined]
         defined.update(names)
         if names:
             yield (
@@ -39,14 +39,14 @@ def undefined(cells: list[dict[str, Any]], asked: Collection[str]) -> Iterator[s
             )
 
 
-def calculated(sources: Iterable[str], question: str) -> str:
+def calculated_from_runs(sources: Iterable[str], question: str) -> str:
     """A sentence if an answer comes from runs of one's own arm and is not typed, "" if it is typed.
 
     Args:
         sources: Of the cells, in the order in which they ran.
         question: What the answer is called.
     """
-    parts = [part for source in sources for part in look(source)["definitions"]]
+    parts = [part for source in sources for part in analyse(source)["definitions"]]
     waiting = [part for part in parts if question in part["binds"]][-1:]
     seen: set[str] = set()
     while waiting:
@@ -87,7 +87,7 @@ def _shown(text: str, most: int) -> str:
     return textwrap.shorten(text, most, placeholder=" ...")
 
 
-def bring_back(question: str, name: str, is_text: bool) -> str:
+def how_to_restore(question: str, name: str, is_text: bool) -> str:
     """How to get back the cell of a question."""
     if is_text:
         return f"the cell of {question} is not code any more; click on it, press Esc and then Y"

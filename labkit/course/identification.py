@@ -85,7 +85,7 @@ class Identification:
         return f"{self.name} = {self.truth!r}"
 
 
-def personal(question: Question, arm: OwnArm) -> Question:
+def personalised(question: Question, arm: OwnArm) -> Question:
     """The question with what is true of somebody's arm; any other question as it is."""
     if not isinstance(question.judge, Measured | Found | Telling):
         return question

@@ -16,15 +16,17 @@ from ..errors import Diverged, LabkitError
 from ..log import Log
 from ..shapes import Array
 from .advice import full_description
-from .equivalence import Judge, as_expected, no_better
+from .equivalence import Judge, as_expected, shares_error
 from .judges import AtMost, Close, numbers
 from .question import Call, Case, Choice, Loop, Mistake, Question, Raised, Test, Tuned
 from .reply import NoAnswer
 from .verdict import Difference, Kind, Misconception, Outcome, TestResult, Verdict
 from .withheld import Withheld
 
+Function = Callable[..., Any]
 
-class Ran(NamedTuple):
+
+class PublicRun(NamedTuple):
     """A run of the arm on a case that the student can see.
 
     Attributes:
@@ -55,7 +57,7 @@ class Mismatch(NamedTuple):
 
 
 @dataclass(frozen=True, eq=False)
-class Tried:
+class PublicResult:
     """What came of the public cases alone.
 
     Attributes:
@@ -73,16 +75,16 @@ class Tried:
         """What they come to together."""
         return _outcome(self.results)
 
-    def runs(self, question: Question) -> Iterator[Ran]:
+    def runs(self, question: Question) -> Iterator[PublicRun]:
         """The public runs of the arm, for replays."""
         for test in question.tests:
             for case in test.cases:
                 answer = self.answers.get(case)
                 log = answer.log if isinstance(answer, _Failure) else answer
                 if isinstance(case, Loop | Tuned) and isinstance(log, Log):
-                    yield Ran(test.name, case, log, complete=log is answer)
+                    yield PublicRun(test.name, case, log, complete=log is answer)
 
-    def evidence(self, question: Question) -> Mismatch | None:
+    def first_mismatch(self, question: Question) -> Mismatch | None:
         """The first public call whose answer differs, where both are numbers of one form."""
         for call in question.calls:
             answer: Any = self.answers.get(call)
@@ -96,7 +98,7 @@ class Tried:
         return None
 
 
-def mark(question: Question, function: Callable[..., Any], tried: Tried | None = None) -> Verdict:
+def mark(question: Question, function: Function, tried: PublicResult | None = None) -> Verdict:
     """Try every test of a question, its public cases before any hidden one.
 
     Args:
@@ -143,7 +145,7 @@ def not_counted(question: Question, tools: tuple[str, ...]) -> Verdict:
     return replace(all_alike(question, Outcome.NOT_COUNTED), withheld=tools)
 
 
-def try_public(question: Question, function: Callable[..., Any]) -> Tried:
+def try_public(question: Question, function: Function) -> PublicResult:
     """Try the public cases of every test.
 
     Where one fails, all public calls are made, by which a known mistake can be told.
@@ -159,7 +161,7 @@ def try_public(question: Question, function: Callable[..., Any]) -> Tried:
         for call in question.calls:
             if call not in answers:
                 answers[call] = _answer(call, function)
-    return Tried(tuple(results), answers, failing)
+    return PublicResult(tuple(results), answers, failing)
 
 
 def _outcome(results: Sequence[TestResult]) -> Outcome:
@@ -189,12 +191,12 @@ def recognise(question: Question, answers: list[Any]) -> Mistake | None:
         if answers and len(answers) == len(mistake.answers):
             known = map(as_expected, mistake.answers, expected)
             alike = all(map(_same, judge, answers, known))
-            if alike and all(map(no_better, judge, answers, mistake.answers, expected)):
+            if alike and all(map(shares_error, judge, answers, mistake.answers, expected)):
                 return mistake
     return None
 
 
-def fingerprint(question: Question, function: Callable[..., Any]) -> tuple[Any, ...]:
+def fingerprint(question: Question, function: Function) -> tuple[Any, ...]:
     """What a function gives on each public call; `Raised` where it raises."""
     given = (_answer(call, function) for call in question.calls)
     return tuple(Raised(a.kind) if isinstance(a, _Failure) else a for a in given)
@@ -209,7 +211,7 @@ class _Failure(Raised):
     tool: str = ""
 
 
-def _answer(case: Case, function: Callable[..., Any]) -> Any:
+def _answer(case: Case, function: Function) -> Any:
     try:
         return case.ask(function)
     except (Exception, SystemExit) as error:  # exit() in a function must not end the notebook
@@ -234,7 +236,7 @@ def _try(
     test: Test,
     cases: Iterable[Case],
     question: Question,
-    function: Callable[..., Any],
+    function: Function,
     answers: dict[Case, Any],
     before: TestResult | None = None,
 ) -> TestResult:

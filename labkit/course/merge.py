@@ -9,12 +9,12 @@ from collections.abc import Callable
 from typing import Any
 
 from ..errors import LabkitError
-from .notebook import about, defines, grade_id, is_edited, released
+from .notebook import defines, grade_id, is_edited, nbgrader_info, released
 from .source import is_stub, plain
 
 Cells = list[dict[str, Any]]
 
-BESIDE = "Here your notebook said what follows; copy what you still need of it."
+KEPT_TEXT = "Here your notebook said what follows; copy what you still need of it."
 """Above a student's text of a cell that the new release changed too, or does not have."""
 
 
@@ -29,7 +29,7 @@ def merge(mine: Cells, new: Cells) -> Cells:
         The new release, in its order.  An answer is found by the function that it defines, else by
         the question that its cell was made for; a cell of the student's own follows the cell that
         it followed.  Any other cell that they changed stays as they wrote it where the new release
-        did not change it; else their text follows the new one as a comment, below `BESIDE`.
+        did not change it; else their text follows the new one as a comment, below `KEPT_TEXT`.
 
     Raises:
         LabkitError: The new notebook is not a release, or none of the student's cells answers any
@@ -39,7 +39,7 @@ def merge(mine: Cells, new: Cells) -> Cells:
         raise LabkitError("the new notebook is not a release; fetch the assignment's folder again")
     merged = copy.deepcopy(new)
     home = _homes(mine, new)
-    asked = [cell for cell in merged if _is_asked(cell)]
+    asked = [cell for cell in merged if _is_answer(cell)]
     answers = [_answer(mine, grade_id(cell)) for cell in asked]
     if asked and not any(_cells_for(mine, grade_id(cell)) for cell in asked):
         raise LabkitError(
@@ -58,11 +58,11 @@ def merge(mine: Cells, new: Cells) -> Cells:
         own = _is_own(cell, new)
         if cell["source"].strip() in given or not (own or is_edited(cell)):
             continue
-        if place is not None and _takes(merged[place], cell):
+        if place is not None and _may_replace(merged[place], cell):
             merged[place]["source"] = cell["source"]
             continue
         number = sum(map(len, after.values()))
-        kept = copy.deepcopy(cell) if own else _beside(cell)
+        kept = copy.deepcopy(cell) if own else _as_comment(cell)
         after.setdefault(anchor, []).append(kept | {"id": f"own-{number:04d}"})
     result = after.get(-1, [])
     for k, cell in enumerate(merged):
@@ -92,8 +92,8 @@ def _homes(mine: Cells, new: Cells) -> Callable[[dict[str, Any]], int | None]:
     return home
 
 
-def _is_asked(cell: dict[str, Any]) -> bool:
-    return bool(about(cell).get("solution"))
+def _is_answer(cell: dict[str, Any]) -> bool:
+    return bool(nbgrader_info(cell).get("solution"))
 
 
 def _is_own(cell: dict[str, Any], new: Cells) -> bool:
@@ -103,16 +103,16 @@ def _is_own(cell: dict[str, Any], new: Cells) -> bool:
     return not grade_id(cell) and not of_release and bool(cell["source"].strip())
 
 
-def _takes(there: dict[str, Any], cell: dict[str, Any]) -> bool:
+def _may_replace(there: dict[str, Any], cell: dict[str, Any]) -> bool:
     """Whether a cell of the new release has the text that the student was given, and still has."""
     same = released(there) == released(cell) and there["cell_type"] == cell["cell_type"]
     return bool(released(cell)) and same and not is_edited(there)
 
 
-def _beside(cell: dict[str, Any]) -> dict[str, Any]:
+def _as_comment(cell: dict[str, Any]) -> dict[str, Any]:
     """What a student wrote into a released cell, as a cell that is read and not run."""
     code = cell["cell_type"] == "code"
-    lines = [BESIDE, *cell["source"].splitlines()]
+    lines = [KEPT_TEXT, *cell["source"].splitlines()]
     text = "\n".join(f"{'#' if code else '>'} {line}".rstrip() for line in lines)
     made: dict[str, Any] = {"metadata": {}, "source": text}
     if code:

@@ -12,7 +12,7 @@ from .differences import likely_cause, sentence, words
 from .forms import COMMITTED, OWN_ARM
 from .question import Loop, Question, Test, Tuned, in_points
 from .verdict import Difference, Kind, Misconception, Outcome, TestResult, Verdict
-from .withheld import spoken
+from .withheld import name_in_notebook
 
 WIDTH = 79
 """Longest line, in characters."""
@@ -35,10 +35,10 @@ _SHORT = {Outcome.RIGHT: "passed", Outcome.NOT_TRIED: "not tried here"}
 def head(verdict: Verdict) -> str:
     """The verdict in one line."""
     points = in_points(verdict.points)
-    says = word(verdict)
+    says = outcome_word(verdict)
     if verdict.withheld:
-        says += f": {uses(verdict.withheld)}"
-    elif waits(verdict):
+        says += f": {why_not_counted(verdict.withheld)}"
+    elif awaits_marking(verdict):
         return f"{verdict.name}: a possible answer. When it is marked, it earns {points} if it is \
 true of your own arm."
     elif verdict.outcome is Outcome.RIGHT and not verdict.complete:
@@ -48,25 +48,25 @@ true of your own arm."
     return f"{verdict.name}: {says}. {verdict.earned:g} of {points}."
 
 
-def word(verdict: Verdict) -> str:
+def outcome_word(verdict: Verdict) -> str:
     """The word for an outcome; a prediction is committed, right or wrong."""
-    return "committed" if verdict.right and foretells(verdict) else HEADS[verdict.outcome]
+    return "committed" if verdict.right and is_prediction(verdict) else HEADS[verdict.outcome]
 
 
-def foretells(verdict: Verdict) -> bool:
+def is_prediction(verdict: Verdict) -> bool:
     """Whether it is of a prediction, which earns its point for being made."""
     return [test.name for test in verdict.tests] == [COMMITTED]
 
 
-def waits(verdict: Verdict) -> bool:
+def awaits_marking(verdict: Verdict) -> bool:
     """Whether nothing can be said before it is marked: only there is the student's arm known."""
     right = verdict.outcome is Outcome.RIGHT and not verdict.complete
     return right and any(test.name == OWN_ARM for test in verdict.tests)
 
 
-def uses(withheld: Iterable[str]) -> str:
+def why_not_counted(withheld: Iterable[str]) -> str:
     """Why an answer that uses withheld tools is not counted."""
-    names = [spoken(tool) for tool in withheld]
+    names = [name_in_notebook(tool) for tool in withheld]
     # a whole package is never what the student should write
     own = all("." in name for name in names)
     why = "this question asks you to write" if own else "may not be used in this answer"
@@ -109,7 +109,7 @@ def message(
     question: Question,
     verdict: Verdict,
     printed: str = "",
-    leans_on: Sequence[str] = (),
+    depends_on: Sequence[str] = (),
     lost: str = "",
 ) -> Message:
     """Everything that a student reads after a check.
@@ -118,7 +118,7 @@ def message(
         question: The question.
         verdict: The verdict on the answer.
         printed: What the student's code printed while it was tried.
-        leans_on: Names of other answers that this one uses and that are not right.
+        depends_on: Names of other answers that this one uses and that are not right.
         lost: Why the answer will not be there when it is marked.
     """
     helps, hint = [f"But {lost}."] if lost else [], ""
@@ -126,8 +126,8 @@ def message(
         if question.hints:
             call = f'hint("{question.name}", 1)'
             hint = f"Stuck? Run `{call}` in a new cell (press Esc, then B). It is free."
-        if leans_on:
-            names = " and ".join(leans_on)
+        if depends_on:
+            names = " and ".join(depends_on)
             helps.append(f"It uses your {names}, not right yet: correct {names} first.")
     tests: list[str] = []
     numbers: list[str] = []
@@ -135,12 +135,12 @@ def message(
         case Outcome.NOT_ATTEMPTED:
             helps.append(f"To do: {question.asks}")
         case Outcome.RIGHT:
-            helps += [] if verdict.complete or waits(verdict) else _unseen(question)
+            helps += [] if verdict.complete or awaits_marking(verdict) else _unseen(question)
         case Outcome.NOT_COUNTED:
             helps.append("You may use it elsewhere in the notebook; here, write it yourself.")
         case _:
             helps += _helps(verdict)
-            tests = [named(test) for test in verdict.tests]
+            tests = [test_name(test) for test in verdict.tests]
             numbers = _numbers(question, verdict)
     return Message(head(verdict), helps, tests, numbers, _printed(printed), hint)
 
@@ -150,16 +150,16 @@ def summary(verdict: Verdict) -> list[str]:
     lines = [head(verdict)]
     if verdict.outcome in (Outcome.WRONG, Outcome.ERROR):
         lines += [f"  {mistake(verdict.mistake)}"] if verdict.mistake else []
-        lines += [f"  {line(test)}" for test in verdict.tests]
+        lines += [f"  {test_line(test)}" for test in verdict.tests]
     return lines
 
 
 def mistake(known: Misconception) -> str:
     """A known mistake: its name, and what to tell who made it."""
-    return f"{well_known(known)} {known.says}".lstrip()
+    return f"{mistake_name(known)} {known.says}".lstrip()
 
 
-def well_known(known: Misconception) -> str:
+def mistake_name(known: Misconception) -> str:
     """The name of a known mistake, in a sentence; empty if it has none."""
     return f"A well-known mistake: {known.name}." if known.name else ""
 
@@ -201,23 +201,23 @@ def wrapped(line: str) -> str:
     return textwrap.fill(line, WIDTH, subsequent_indent=f"{margin}  ", break_long_words=False)
 
 
-def line(test: TestResult) -> str:
+def test_line(test: TestResult) -> str:
     """A test in one line: whether it passed, and if it failed, on which case and why."""
     says = "" if test.outcome in _SHORT else why(test)
-    return f"{named(test)}{says and f': {says}'}"
+    return f"{test_name(test)}{says and f': {says}'}"
 
 
-def named(test: TestResult) -> str:
+def test_name(test: TestResult) -> str:
     """A test by its name, and whether it passed."""
-    return f"[{passed(test)}] {test.name}{gate(test)}"
+    return f"[{test_status(test)}] {test.name}{gate_note(test)}"
 
 
-def passed(test: TestResult) -> str:
+def test_status(test: TestResult) -> str:
     """Whether a test passed, in a word."""
     return _SHORT.get(test.outcome, "failed")
 
 
-def gate(test: TestResult) -> str:
+def gate_note(test: TestResult) -> str:
     """That nothing counts before a test passes, if it is so."""
     return "" if test.weight else " (needed before anything counts)"
 

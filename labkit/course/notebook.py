@@ -93,11 +93,11 @@ def is_edited(cell: Cell) -> bool:
 
 def grade_id(cell: Cell) -> str:
     """What a cell was made for: a question's name, that with "-check", or ""."""
-    found = about(cell).get("grade_id")
+    found = nbgrader_info(cell).get("grade_id")
     return found if isinstance(found, str) else ""
 
 
-def about(cell: Cell) -> Mapping[str, Any]:
+def nbgrader_info(cell: Cell) -> Mapping[str, Any]:
     """What nbgrader knows of a cell: grade_id, grade, solution, points; empty for most cells."""
     found = _metadata(cell).get("nbgrader")
     return found if isinstance(found, dict) else {}
@@ -115,7 +115,7 @@ def question_of(grade_id: str) -> str:
 
 def by_hand(cell: Cell) -> bool:
     """Whether a person marks a released cell: nbgrader's manual answer, or its manual task."""
-    found = about(cell)
+    found = nbgrader_info(cell)
     return bool(found.get("task") or (found.get("grade") and found.get("solution")))
 
 
@@ -164,7 +164,7 @@ def manifest(source: Notebook) -> list[dict[str, Any]]:
             "kind": kind(cell),
             "grade_id": grade_id(cell) or None,
             "source": cell.source,
-            **({"points": float(about(cell)["points"])} if by_hand(cell) else {}),
+            **({"points": float(nbgrader_info(cell)["points"])} if by_hand(cell) else {}),
         }
         for cell in source.cells
     ]
@@ -196,7 +196,7 @@ def source_notebook(
     import nbformat
 
     text = jupytext.read(path, fmt="py:percent")
-    foretold = {prediction.name: prediction for prediction in predictions}
+    by_name = {prediction.name: prediction for prediction in predictions}
     cells: list[dict[str, Any]] = []
     asked: list[str] = []
     for cell in text.cells:
@@ -204,19 +204,19 @@ def source_notebook(
         if name is not None:
             asked.append(name)
         if "why" in cell.metadata or "task" in cell.metadata:
-            cells += _why(path, str(name), cell)
-        elif name in foretold and "question" not in cell.metadata:
-            cells += _written_down(foretold[name])
+            cells += _text_cells(path, str(name), cell)
+        elif name in by_name and "question" not in cell.metadata:
+            cells += _value_cells(by_name[name])
         elif name in questions and "question" in cell.metadata:
             _check_stub(path, str(name), cell)
-            cells += _asked(questions[str(name)], cell)
+            cells += _question_cells(questions[str(name)], cell)
         elif name is not None:
             raise LabkitError(f"{path.name} asks {name!r}, which has no Problem or Prediction")
         else:
             setup = cell.metadata.get("setup", False)
             meta = _nbgrader(f"setup-{len(cells)}", locked=True) if setup else {}
             cells.append(_cell(cell.cell_type, cell.source, "setup" if setup else "walk", meta))
-    for name in (*questions, *foretold):
+    for name in (*questions, *by_name):
         if asked.count(name) != 1:
             raise LabkitError(f"{path.name} has {asked.count(name)} stubs of {name}, and needs one")
     for number, cell in enumerate(cells):
@@ -230,7 +230,7 @@ def source_notebook(
 _ASKS = ("question", "predict", "find_out", "why", "task")
 
 
-def _asked(question: Question, stub: Cell) -> Iterator[dict[str, Any]]:
+def _question_cells(question: Question, stub: Cell) -> Iterator[dict[str, Any]]:
     """The three cells of a question."""
     name = question.name
     yield _cell("markdown", brief(question), "brief", {})
@@ -238,7 +238,7 @@ def _asked(question: Question, stub: Cell) -> Iterator[dict[str, Any]]:
     yield _check(name, question.points)
 
 
-def _written_down(asked: Prediction | Identification) -> Iterator[dict[str, Any]]:
+def _value_cells(asked: Prediction | Identification) -> Iterator[dict[str, Any]]:
     """The three cells of a value; the students' copy has `BLANK` in place of the solved cell."""
     yield _cell("markdown", asked.brief(), "brief", {})
     cell = _cell("code", asked.solved(), "answer", _nbgrader(asked.name, solution=True))
@@ -256,7 +256,7 @@ def _check(name: str, points: float) -> dict[str, Any]:
     return _cell("code", f'check("{name}", {name})', "check", meta)
 
 
-def _why(path: Path, name: str, cell: Cell) -> Iterator[dict[str, Any]]:
+def _text_cells(path: Path, name: str, cell: Cell) -> Iterator[dict[str, Any]]:
     """What is asked, and the cell for the text, which nbgrader leaves to a person to mark."""
     asks, begins, model = cell["source"].partition("### BEGIN SOLUTION")
     if not begins or not model.rstrip().endswith("### END SOLUTION"):

@@ -6,27 +6,28 @@ the other sign, the answer stays the same without an argument, what one argument
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from time import monotonic
 from typing import Any
 
 import numpy as np
 
-from .equivalence import right_by
+from .equivalence import accepts
 from .judges import factor
-from .marking import Tried
-from .probes import arrays, ask, exchanges, variations
+from .marking import Function, PublicResult
+from .probes import exchanges, numeric_parts, try_call, variations
 from .question import Call, Case, Question
 from .relations import Parts, all_near, related, same_form
 from .verdict import Kind, Misconception, Outcome, Verdict
 
-Function = Callable[..., Any]
 LONGEST = 3.0
 """Seconds that are spent on asking a function again."""
 
 
-def diagnosed(question: Question, verdict: Verdict, tried: Tried, function: Function) -> Verdict:
+def diagnosed(
+    question: Question, verdict: Verdict, tried: PublicResult, function: Function
+) -> Verdict:
     """The verdict on a wrong answer with what is seen of it, unless it is a known mistake.
 
     Args:
@@ -48,8 +49,8 @@ def cause(question: Question, answers: Mapping[Case, Any], function: Function) -
     calls = [call for call in question.calls if isinstance(call, Call) and call in answers]
     if not calls or len(calls) < len(question.calls) or not question.arguments:
         return ""
-    given = [arrays(answers[call]) for call in calls]
-    expected = [arrays(call.expected) for call in calls]
+    given = [numeric_parts(answers[call]) for call in calls]
+    expected = [numeric_parts(call.expected) for call in calls]
     if not any(expected):
         return ""
     alike = all(map(same_form, given, expected))
@@ -63,7 +64,7 @@ def _exchanged(question: Question, calls: Sequence[Call], function: Function) ->
     changed = [dict(exchanges(call, question.arguments)) for call in calls]
     for label in changed[0]:
         if all(
-            label in one and right_by(question.judge, ask(one[label], function), call.expected)
+            label in one and accepts(question.judge, try_call(one[label], function), call.expected)
             for one, call in zip(changed, calls, strict=True)
         ):
             return f"Your function is right in every call if {label} before it is called."
@@ -75,14 +76,14 @@ def _probed(
 ) -> str:
     """What the answer does where one argument is changed, and the right one does not do."""
     changed = [dict(variations(call, question.arguments)) for call in calls]
-    expected = [arrays(call.expected) for call in calls]
+    expected = [numeric_parts(call.expected) for call in calls]
     stays, moves, shares = [], [], []
     until = monotonic() + LONGEST
     for probe in question.probes:
         if monotonic() > until:
             break
-        asked = [ask(one[probe.label], function) for one in changed]
-        found, right = [arrays(x) for x in asked], [arrays(x) for x in probe.answers]
+        asked = [try_call(one[probe.label], function) for one in changed]
+        found, right = [numeric_parts(x) for x in asked], [numeric_parts(x) for x in probe.answers]
         if not all(map(same_form, found, right)):
             continue
         same, should = all(map(all_near, found, given)), all(map(all_near, right, expected))
@@ -90,7 +91,7 @@ def _probed(
             stays.append(probe.label)
         if should and not same:
             moves.append(probe.label)
-        repaired = all(map(lambda x, y: right_by(question.judge, x, y), asked, probe.answers))
+        repaired = all(map(lambda x, y: accepts(question.judge, x, y), asked, probe.answers))
         if not should and repaired and (says := _share(given, expected, right)):
             shares.append(says.format(probe.label.split("`")[1], probe.label))
     if shares:

@@ -88,7 +88,7 @@ class OwnArm:
 
 def draw(secret: int, handle: str) -> OwnArm:
     """The arm of a handle, in any spelling of it, by HMAC-SHA256 under the term's secret."""
-    handle = spelt(handle)
+    handle = normalised(handle)
     digest = hmac.new(str(secret).encode(), handle.encode(), hashlib.sha256).digest()
     shares = (int.from_bytes(digest[8 * k : 8 * k + 8], "big") / 2.0**64 for k in range(4))
     public = None if handle == DEMO else draw(PUBLIC_SEED, DEMO)
@@ -120,7 +120,7 @@ def _number(name: str, share: float, public: OwnArm | None) -> float:
     return number if number < cut[0] else number + (cut[1] - cut[0])
 
 
-def spelt(handle: str) -> str:
+def normalised(handle: str) -> str:
     """A handle in the one spelling by which it is known: composed, in small letters.
 
     A Mac may take "ö" apart into "o" and two dots, and a keyboard may type letters of full width.
@@ -164,8 +164,8 @@ class Arms:
 
     def arm(self, student: str) -> OwnArm | None:
         """A student's arm, or None."""
-        known = {spelt(who): handle for who, handle in self.handles.items()}
-        handle = known.get(spelt(student))
+        known = {normalised(who): handle for who, handle in self.handles.items()}
+        handle = known.get(normalised(student))
         return None if handle is None else draw(self.secret, handle)
 
     def sealed(self) -> dict[str, str]:
@@ -216,7 +216,7 @@ def my_bug(number: int, handle: str = DEMO) -> Log:
 
 
 def _own(handle: str) -> OwnArm:
-    return draw(PUBLIC_SEED, DEMO) if spelt(handle) == DEMO else _unsealed(handle)
+    return draw(PUBLIC_SEED, DEMO) if normalised(handle) == DEMO else _unsealed(handle)
 
 
 def arms_for(folder: Path) -> Path | None:
@@ -228,7 +228,7 @@ def arms_for(folder: Path) -> Path | None:
 def opens_the_public_arm(cells: Iterable[str]) -> bool:
     """Whether the HANDLE that a notebook's cells set last is that of the public arm."""
     said = re.findall(r"^HANDLE\s*=\s*(['\"])(.*?)\1", "\n".join(cells), re.MULTILINE)
-    return bool(said) and spelt(said[-1][1]) == DEMO
+    return bool(said) and normalised(said[-1][1]) == DEMO
 
 
 def _unsealed(handle: str) -> OwnArm:
@@ -241,7 +241,7 @@ def _unsealed(handle: str) -> OwnArm:
     try:
         text = json.loads(file.read_text(encoding="utf-8")).get(_hashed(handle))
         if text is not None:
-            sealed = json.loads(_mixed(base64.b64decode(text), handle))
+            sealed = json.loads(_masked(base64.b64decode(text), handle))
             return OwnArm(**sealed | {"bugs": tuple(Bug(**bug) for bug in sealed["bugs"])})
     except (AttributeError, KeyError, TypeError, ValueError):
         raise LabkitError(
@@ -253,14 +253,14 @@ def _unsealed(handle: str) -> OwnArm:
 
 
 def _hashed(handle: str) -> str:
-    return hashlib.sha256(spelt(handle).encode()).hexdigest()[:16]
+    return hashlib.sha256(normalised(handle).encode()).hexdigest()[:16]
 
 
 def _seal(arm: OwnArm, handle: str) -> str:
-    return base64.b64encode(_mixed(json.dumps(asdict(arm)).encode(), handle)).decode()
+    return base64.b64encode(_masked(json.dumps(asdict(arm)).encode(), handle)).decode()
 
 
-def _mixed(data: bytes, handle: str) -> bytes:
+def _masked(data: bytes, handle: str) -> bytes:
     """The data with a stream of bytes laid over it, which the handle starts; twice is once."""
-    stream = np.random.default_rng(list(spelt(handle).encode())).bytes(len(data))
+    stream = np.random.default_rng(list(normalised(handle).encode())).bytes(len(data))
     return bytes(a ^ b for a, b in zip(data, stream, strict=True))

@@ -22,7 +22,7 @@ from ..trajectory import PoseSample, Sample
 from .question import Call, Probe, Question
 
 
-def probed(
+def make_probes(
     question: Question, answer: Callable[..., Any], expected: Callable[..., Any]
 ) -> tuple[Probe, ...]:
     """What is right on each probe.
@@ -42,14 +42,14 @@ def probed(
     found = []
     for label in changed[0]:
         if all(label in one for one in changed):
-            answers = tuple(ask(one[label], expected) for one in changed)
-            parts = [arrays(one) for one in answers]
+            answers = tuple(try_call(one[label], expected) for one in changed)
+            parts = [numeric_parts(one) for one in answers]
             if all(parts) and all(np.isfinite(x).all() for one in parts for x in one):
                 found.append(Probe(label, answers))
     return tuple(found)
 
 
-def ask(call: Call, function: Callable[..., Any]) -> Any:
+def try_call(call: Call, function: Callable[..., Any]) -> Any:
     """What a function answers; None where it does not, for nobody needs to know of such cases."""
     try:
         with np.errstate(all="ignore"):
@@ -58,7 +58,7 @@ def ask(call: Call, function: Callable[..., Any]) -> Any:
         return None
 
 
-def arrays(answer: Any) -> list[Array]:
+def numeric_parts(answer: Any) -> list[Array]:
     """The numbers of an answer, part by part; none if it is not made of numbers."""
     answer = getattr(answer, "value", answer)
     items = answer if isinstance(answer, tuple) else (answer,)
@@ -75,7 +75,7 @@ def variations(call: Call, names: Sequence[str]) -> Iterator[tuple[str, Call]]:
     model = next((x for x in given.values() if isinstance(x, Model)), None)
     for name, x in given.items():
         if name != "t":  # where a motion is asked does not belong to it
-            for where, value, other in _others(x, state, model):
+            for where, value, other in _changes(x, state, model):
                 yield f"`{name}{where}` is {value}", _with(call, names, {name: other})
 
 
@@ -105,7 +105,7 @@ def _numeric(x: Any) -> bool:
     return isinstance(x, float | int | np.ndarray) and not isinstance(x, bool)
 
 
-def _others(x: Any, state: State | None, model: Model | None) -> Iterator[tuple[str, str, Any]]:
+def _changes(x: Any, state: State | None, model: Model | None) -> Iterator[tuple[str, str, Any]]:
     """What to put in the place of an argument: where in it, in words, and the new argument."""
     if isinstance(x, State):
         yield ".dq", "0", x._replace(dq=0.0 * x.dq)

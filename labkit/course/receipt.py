@@ -37,7 +37,7 @@ def hand_in(name: str) -> None:
     lines = [
         *_findings(found),
         f"receipt: {receipt(sources)} of {path.name}, saved {saved:%Y-%m-%d %H:%M %Z}",
-        _last_word(path.name, found, age, _unsaved(found, sources)),
+        _advice(path.name, found, age, _unsaved(found, sources)),
     ]
     print("\n".join(map(wrapped, lines)))
 
@@ -62,7 +62,7 @@ def _unsaved(found: HandIn, sources: Iterable[str]) -> list[str]:
     return sorted(name for name in tasks if last.get(name, "").strip() not in {"", *saved})
 
 
-def _last_word(file: str, found: HandIn, age: timedelta, unsaved: Collection[str]) -> str:
+def _advice(file: str, found: HandIn, age: timedelta, unsaved: Collection[str]) -> str:
     """Whether to hand in the file now, and if not, what to do first."""
     recent = age < JUST_NOW
     ago = f"{age.total_seconds():.0f} s" if recent else f"{age.total_seconds() / 60:.0f} min"

@@ -112,7 +112,7 @@ def sentence(error: BaseException) -> str:
         return "(its message cannot be shown)"
 
 
-class Here:
+class LocalFunction:
     """A student's function of this process, asked as one in a sandbox is.
 
     Args:
@@ -137,7 +137,7 @@ class Here:
         if self.stopped is not None:
             raise self.stopped
         try:
-            with stopped_after(self.seconds):
+            with time_limit(self.seconds):
                 data = reply(self.function, args, kwargs)
         except TimeUp:
             says = f"it did not come back within {self.seconds:g} s; does every loop in it end?"
@@ -147,7 +147,7 @@ class Here:
 
 
 @contextmanager
-def stopped_after(seconds: float) -> Iterator[None]:
+def time_limit(seconds: float) -> Iterator[None]:
     """Raise `TimeUp` in the block after some seconds, and again, should it be caught.
 
     Only where Python can: in the main thread, and not on Windows.

@@ -14,8 +14,8 @@ from collections.abc import Collection, Iterator, Mapping
 from functools import lru_cache
 from typing import Any
 
-Look = Mapping[str, Any]
-"""What `look` finds in a cell, as JSON data."""
+Analysis = Mapping[str, Any]
+"""What `analyse` finds in a cell, as JSON data."""
 
 RUNS_HERE = ("time", "capture", "prun")
 """Cell magics that run their cell with the notebook's names.
@@ -59,7 +59,7 @@ def parsed(source: str) -> tuple[str, ast.Module]:
 
 
 @lru_cache(maxsize=4096)
-def look(source: str) -> Look:
+def analyse(source: str) -> Analysis:
     """What a code cell does with names.
 
     Args:
@@ -154,8 +154,8 @@ def needed(source: str, name: str, given: Collection[str] = ()) -> list[str]:
     wanted, found, before = {name}, set[int](), -1
     while before < len(found):
         before = len(found)
-        found = {k for k, scope in enumerate(scopes) if not wanted.isdisjoint(_own(scope))}
-        wanted.update(*(_from_elsewhere(scopes[k]) for k in found))
+        found = {k for k, scope in enumerate(scopes) if not wanted.isdisjoint(_own_names(scope))}
+        wanted.update(*(_outside_names(scopes[k]) for k in found))
         wanted.difference_update(given)
     return [texts[k] for k in sorted(found)]
 
@@ -187,11 +187,11 @@ def _definition(part: list[ast.stmt], lines: list[str]) -> dict[str, Any]:
         it is a ``stub``.
     """
     scope = symtable.symtable(_text(part, lines), "", "exec")
-    binds, outside = _own(scope), set(_from_elsewhere(scope))
+    binds, outside = _own_names(scope), set(_outside_names(scope))
     mean: dict[str, str] = {}
     chains, fills, sets, asks = set[str](), set[str](), set[str](), set[str]()
     grown: set[ast.AST] = set()
-    for node in _used(part):
+    for node in _nodes(part):
         kind = type(node)
         if kind in _CHAINS:
             chains.add(dotted(node))
@@ -218,7 +218,7 @@ def _definition(part: list[ast.stmt], lines: list[str]) -> dict[str, Any]:
     }
 
 
-def _used(part: list[ast.stmt]) -> Iterator[ast.AST]:
+def _nodes(part: list[ast.stmt]) -> Iterator[ast.AST]:
     """All that statements are made of, but for the stand-ins that they give to ``use``."""
     waiting: list[ast.AST] = [*part]
     while waiting:
@@ -235,18 +235,18 @@ def _is_text(node: ast.stmt) -> bool:
     return isinstance(node, ast.Expr) and isinstance(node.value, ast.Constant)
 
 
-def _own(scope: symtable.SymbolTable) -> set[str]:
+def _own_names(scope: symtable.SymbolTable) -> set[str]:
     """Names that a piece of code binds at its own level."""
     return {x.get_name() for x in scope.get_symbols() if x.is_assigned() or x.is_imported()}
 
 
-def _from_elsewhere(scope: symtable.SymbolTable) -> Iterator[str]:
+def _outside_names(scope: symtable.SymbolTable) -> Iterator[str]:
     """Names that a piece of code takes from what ran before it."""
     top = scope.get_type() == "module"
-    own = _own(scope) if top else set()
+    own = _own_names(scope) if top else set()
     for symbol in scope.get_symbols():
         outside = symbol.is_referenced() and (top or symbol.is_global())
         if outside and symbol.get_name() not in own:
             yield symbol.get_name()
     for inner in scope.get_children():
-        yield from (name for name in _from_elsewhere(inner) if name not in own)
+        yield from (name for name in _outside_names(inner) if name not in own)

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Collection, Iterable
 from typing import Any
 
-from .source import look
+from .source import analyse
 
 STAND_IN, WRONG = "a stand-in for", "your wrong"
 
@@ -53,7 +53,7 @@ def drawn_with(
     """
     means: dict[str, list[Any]] = {}
     waiting: list[Any] = []
-    for cell in map(look, cells):
+    for cell in map(analyse, cells):
         for part in cell["definitions"]:
             means |= {name: [part] for name in part["binds"] if name not in part["fills"]}
             for name in part["fills"]:

@@ -17,20 +17,20 @@ from typing import Any
 
 from ..errors import LabkitError, UnknownName
 from .advice import line_of
-from .calling import heard
+from .calling import captured
 from .card import card, picture
 from .checks_file import read_checks
-from .gaps import calculated
+from .gaps import calculated_from_runs
 from .identification import on_the_public_arm
 from .marking import Mismatch, mark, not_counted, try_public
-from .messages import HEADS, Message, message, waits, wrapped
+from .messages import HEADS, Message, awaits_marking, message, wrapped
 from .notebook import verdict_metadata
 from .observed import diagnosed
-from .own_arm import DEMO, spelt
+from .own_arm import DEMO, normalised
 from .question import Call, Question
-from .reply import Here
+from .reply import LocalFunction
 from .serialize import read_question
-from .source import look
+from .source import analyse
 from .stand_ins import STAND_IN, WRONG, StandIns
 from .unfinished import watch
 from .verdict import Outcome, Verdict
@@ -81,16 +81,16 @@ class Desk:
         """
         question = self.question(name)
         self.failing[name] = None
-        cells = map(look, cells_run(function))
+        cells = map(analyse, executed_cells(function))
         used = withheld_tools(cells, name, question.withheld)
         student = shell().user_ns if shell() else getattr(function, "__globals__", {})
         try:
-            with heard() as out, withhold(question.withheld, student):
+            with captured() as out, withhold(question.withheld, student):
                 verdict, found = not_counted(question, used), None
                 if not used:
-                    here = Here(function, question.withheld)
+                    here = LocalFunction(function, question.withheld)
                     tried = try_public(question, here)
-                    verdict, found = mark(question, here, tried), tried.evidence(question)
+                    verdict, found = mark(question, here, tried), tried.first_mismatch(question)
                     verdict = diagnosed(question, verdict, tried, here)
                     self.failing[name] = tried.failing
         except KeyboardInterrupt as stop:
@@ -104,17 +104,13 @@ class Desk:
             self.attempted.add(name)
         return verdict, out.text, found
 
-    def leaning(self, name: str, function: Callable[..., Any]) -> tuple[str, ...]:
+    def wrong_dependencies(self, name: str, function: Callable[..., Any]) -> tuple[str, ...]:
         """Other answers that a function calls by name, and that were tried and are not right."""
         code = getattr(function, "__code__", None)
         steps = dis.get_instructions(code) if code else ()
         called = [step.argval for step in steps if step.opname == "LOAD_GLOBAL"]
-        verdicts = {other: verdict for other, (_, verdict) in self.checked.items() if other != name}
-        return tuple(
-            other
-            for other in dict.fromkeys(called)
-            if other in verdicts and not verdicts[other].right
-        )
+        wrong = {other for other, (_, verdict) in self.checked.items() if not verdict.right}
+        return tuple(other for other in dict.fromkeys(called) if other in wrong - {name})
 
 
 def shell() -> Any:
@@ -126,7 +122,7 @@ def shell() -> Any:
     return get_ipython()
 
 
-def cells_run(function: Callable[..., Any]) -> list[str]:
+def executed_cells(function: Callable[..., Any]) -> list[str]:
     """The text of all cells that ran in this notebook; elsewhere, of the function's own file."""
     notebook = shell()
     if notebook is not None:
@@ -189,10 +185,11 @@ def check(name: str, function: Callable[..., Any]) -> float:
         return Points(0.0)
     verdict, printed, found = desk().verdict(name, function)
     more: list[str] = []
-    if waits(verdict) and shell() and spelt(str(shell().user_ns.get("HANDLE"))) == DEMO:
+    handle = shell() and str(shell().user_ns.get("HANDLE"))
+    if awaits_marking(verdict) and handle and normalised(handle) == DEMO:
         verdict, *more = on_the_public_arm(question, verdict, function)
-    lost = calculated(cells_run(function), name) if waits(verdict) else ""
-    says = message(question, verdict, printed, desk().leaning(name, function), lost)
+    lost = calculated_from_runs(executed_cells(function), name) if awaits_marking(verdict) else ""
+    says = message(question, verdict, printed, desk().wrong_dependencies(name, function), lost)
     says = replace(says, helps=[*filter(None, more), *says.helps])
     _say(says, verdict, found if verdict.mistake else None)
     return Points(verdict.earned)
@@ -298,6 +295,6 @@ def _say(says: Message, verdict: Verdict, found: Mismatch | None) -> None:
         return
     from IPython.display import display
 
-    outcome = Outcome.NOT_TRIED if waits(verdict) else verdict.outcome
+    outcome = Outcome.NOT_TRIED if awaits_marking(verdict) else verdict.outcome
     shown = card(says, outcome, found and picture(found))
     display(shown, metadata=verdict_metadata(verdict), raw=True)

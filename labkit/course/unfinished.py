@@ -5,14 +5,14 @@ from __future__ import annotations
 import re
 from typing import Any
 
-from .source import look
+from .source import analyse
 
 _DEFINES = re.compile(r"^(?:def|class)\s+(\w+)|^(\w+)\s*=", re.MULTILINE)
 
 
 def defined_in(source: str) -> set[str]:
     """The names that a cell is to define, also where Python cannot read the cell."""
-    found = look(source)
+    found = analyse(source)
     if not found["broken"]:
         return set(found["binds"])
     return {function or value for function, value in _DEFINES.findall(source)}

@@ -19,7 +19,7 @@ from typing import Any
 
 from ..errors import LabkitError
 from .advice import in_labkit, in_library
-from .source import Look
+from .source import Analysis
 
 _numbers = count()
 
@@ -37,10 +37,10 @@ class Withheld(LabkitError):
         self.tool = tool
 
     def __str__(self) -> str:
-        return f"{spoken(self.tool)} may not be used in this answer"
+        return f"{name_in_notebook(self.tool)} may not be used in this answer"
 
 
-def spoken(tool: str) -> str:
+def name_in_notebook(tool: str) -> str:
     """A tool as a notebook calls it: "lk.Circle"."""
     return f"lk.{tool.removeprefix('labkit.')}" if tool.startswith("labkit.") else tool
 
@@ -188,27 +188,27 @@ def find(name: str) -> tuple[Any, Any]:
     return None, None
 
 
-def withheld_tools(cells: Iterable[Look], name: str, withheld: Sequence[str]) -> tuple[str, ...]:
+def withheld_tools(cells: Iterable[Analysis], name: str, tools: Sequence[str]) -> tuple[str, ...]:
     """The withheld tools that an answer uses.
 
     What is reached through an instance, such as ``model.gravity``, only a call can tell; see
     `withhold`.
 
     Args:
-        cells: What `source.look` found in each cell, in the order in which they run.
+        cells: What `source.analyse` found in each cell, in the order in which they run.
         name: The answer's name.
-        withheld: Dotted names, such as "labkit.Circle" or "pinocchio".
+        tools: Dotted names of the withheld tools, such as "labkit.Circle" or "pinocchio".
 
     Returns:
         Those that are used, in the order given.
     """
-    if not withheld:
+    if not tools:
         return ()
     used = set(_uses(_last_definitions(cells), name))
-    return tuple(tool for tool in withheld if any(_is_part(tool, other) for other in used))
+    return tuple(tool for tool in tools if any(_is_part(tool, other) for other in used))
 
 
-def _last_definitions(cells: Iterable[Look]) -> dict[str, Mapping[str, Any]]:
+def _last_definitions(cells: Iterable[Analysis]) -> dict[str, Mapping[str, Any]]:
     """What each name means at the end; an empty stub takes no answer's place."""
     means: dict[str, Mapping[str, Any]] = {}
     for cell in cells:

@@ -13,7 +13,7 @@ from labkit.course.before_handing_in import HandIn, examine
 from labkit.course.forms import COMMITTED, OWN_ARM
 from labkit.course.notebook import PLACEHOLDER, verdict_metadata
 from labkit.course.own_arm import FILE
-from labkit.course.receipt import _last_word, hand_in, receipt
+from labkit.course.receipt import _advice, hand_in, receipt
 from labkit.course.verdict import Outcome, TestResult, Verdict
 
 ASSIGNMENT = Path(__file__).resolve().parents[2] / "assignments" / "01_paths"
@@ -361,16 +361,16 @@ def test_the_last_word_says_whether_to_hand_in(folder):
     found = replace(blank, verdicts=dict.fromkeys(blank.verdicts, object()))
     clean = replace(found, notes=())
     says = [
-        _last_word("f", clean, timedelta(seconds=5), []),
-        _last_word("f", found, timedelta(seconds=5), []),
-        _last_word("f", clean, timedelta(minutes=5), []),
-        _last_word("f", clean, timedelta(seconds=5), ["circle"]),
+        _advice("f", clean, timedelta(seconds=5), []),
+        _advice("f", found, timedelta(seconds=5), []),
+        _advice("f", clean, timedelta(minutes=5), []),
+        _advice("f", clean, timedelta(seconds=5), ["circle"]),
     ]
     assert says[0] == "f was saved 5 s ago and is complete: hand it in now."
     assert "[note]" in says[1] and "if you have changed nothing" in says[2]
     assert "does not hold the circle that you ran last" in says[3]
     word = "f was saved 5 s ago, before any check had run: save it and run this cell again."
-    assert _last_word("f", blank, timedelta(seconds=5), []) == word
+    assert _advice("f", blank, timedelta(seconds=5), []) == word
 
 
 def test_a_file_without_any_result_is_not_told_task_by_task(folder, capsys, monkeypatch):

@@ -16,7 +16,7 @@ from labkit.course.marking import mark
 from labkit.course.messages import why
 from labkit.course.own_arm import Arms
 from labkit.course.question import Question, Test
-from labkit.course.source import look
+from labkit.course.source import analyse
 from labkit.course.verdict import Outcome
 from labkit.grader.grading.grade import grade
 from labkit.grader.grading.plan import imports, plan
@@ -310,12 +310,12 @@ def test_an_argument_that_is_changed_is_told(marks, solved):
 
 def test_names_that_a_cell_needs():
     """Needed are names from elsewhere: no parameters, no locals, nothing that the cell binds."""
-    found = look("k = 2\ndef f(a, b=c):\n    d = a + e\n    return [g for x in d] + k\n")
+    found = analyse("k = 2\ndef f(a, b=c):\n    d = a + e\n    return [g for x in d] + k\n")
     assert set(found["uses"]) == {"c", "e", "g"}
     assert found["functions"] == ["f"]
-    assert look("def f(x):\n    'Says.'\n    raise NotImplementedError")["stubs"] == ["f"]
-    assert look("%matplotlib inline\n!ls\nx = 1")["binds"] == ["x"]
-    assert "SyntaxError" in look("def f(:")["broken"]
+    assert analyse("def f(x):\n    'Says.'\n    raise NotImplementedError")["stubs"] == ["f"]
+    assert analyse("%matplotlib inline\n!ls\nx = 1")["binds"] == ["x"]
+    assert "SyntaxError" in analyse("def f(:")["broken"]
 
 
 def test_what_every_submission_imports_is_known(bundle):

@@ -12,7 +12,7 @@ from typing import Any
 
 from ...errors import LabkitError
 from ...formats import check_stamp, stamp
-from ..identification import personal
+from ..identification import personalised
 from ..own_arm import Arms
 from ..question import Question
 from ..seed import PUBLIC_SEED
@@ -67,7 +67,7 @@ class Bundle:
         arm = self.arms.arm(student)
         if arm is None:
             return self
-        questions = tuple(personal(q, arm) for q in self.questions)
+        questions = tuple(personalised(q, arm) for q in self.questions)
         if all(own is q for own, q in zip(questions, self.questions, strict=True)):
             return self
         own_hash = hashlib.sha256(f"{self.data['hash']} {arm}".encode()).hexdigest()

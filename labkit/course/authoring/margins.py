@@ -29,7 +29,7 @@ HUGE = 1e12
 """Distances above this count as this much."""
 
 
-def least(
+def least_margin(
     questions: Sequence[Question],
     problem: Problem,
     right: Mapping[str, Callable[..., Any]],
@@ -145,7 +145,7 @@ class Remembered:
         return answer
 
 
-def remembering(questions: Sequence[Question]) -> list[Question]:
+def share_runs(questions: Sequence[Question]) -> list[Question]:
     """The same questions, with one memory for the runs of all of them."""
     memory: Memory = {}
 

@@ -19,9 +19,9 @@ from ..judges import Within
 from ..marking import fingerprint, mark, recognise
 from ..notebook import Notebook
 from ..question import Call, Question, Raised
-from ..reply import Here
+from ..reply import LocalFunction
 from ..serialize import encode
-from ..source import look, needed
+from ..source import analyse, needed
 from ..verdict import Outcome
 from ..withheld import withheld_tools, withhold
 from .problem import Problem
@@ -58,7 +58,7 @@ def _reasons(problem: Problem, question: Question, text: str | None) -> Iterator
                 f"the test {test.name!r} carries {question.points * test.weight / whole:g} of "
                 f"{question.points:g} points and has no hidden case; give its Trial a maker of them"
             )
-    earned = _earned(question, by_heart(question))
+    earned = _earned(question, memorised(question))
     if earned > 0.0:
         yield (
             f"an answer that memorises its public cases earns {earned:g} of {question.points:g} "
@@ -98,7 +98,7 @@ def _alike(question: Question, problem: Problem) -> Iterator[str]:
         )
 
 
-def by_heart(question: Question) -> Callable[..., Any]:
+def memorised(question: Question) -> Callable[..., Any]:
     """An answer that knows the public calls with their answers, and nothing else."""
     known = {
         _key(case.args, case.kwargs): _right(question.judge, case.expected)
@@ -126,11 +126,11 @@ def _key(args: tuple[Any, ...], kwargs: Mapping[str, Any]) -> str:
 
 def _stand_in_earns(question: Question, text: str) -> float:
     """What the stand-in is worth as an answer; withheld tools count nothing."""
-    if withheld_tools([look(text)], STAND_IN, question.withheld):
+    if withheld_tools([analyse(text)], STAND_IN, question.withheld):
         return 0.0
     function = _run(text)
     with withhold(question.withheld, function.__globals__):
-        return _earned(question, Here(function, question.withheld))
+        return _earned(question, LocalFunction(function, question.withheld))
 
 
 def _earned(question: Question, function: Callable[..., Any]) -> float:

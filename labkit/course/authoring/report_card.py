@@ -3,7 +3,7 @@
 Every answer, known mistake and right variant is marked with many draws of the hidden cases; how
 near the nearest of them comes to the tolerance, `margins` says.  A question where nothing spreads
 has no margin and is listed apart.  It fails where a mistake earns too much, a right answer too
-little, where only hidden cases reject a mistake, or where an answer comes nearer than `NEAREST`.
+little, where only hidden cases reject a mistake, or where a margin is below `LEAST_MARGIN`.
 """
 
 from __future__ import annotations
@@ -16,22 +16,22 @@ from pathlib import Path
 from typing import Any
 
 from ...errors import LabkitError, UnknownName
-from ..calling import heard
+from ..calling import captured
 from ..marking import mark
 from ..question import Question
-from ..reply import Here
+from ..reply import LocalFunction
 from ..verdict import Outcome
 from .layout import Course
-from .margins import least, remembering
+from .margins import least_margin, share_runs
 from .problem import Problem
 
 Functions = Mapping[str, Sequence[Callable[..., Any]]]
 """Functions by their question, its name, or "assignment/name" where two assignments ask it."""
 
 DRAWS = 20
-HANGS = 600.0
+TIMEOUT = 600.0
 """Seconds after which one call of an answer is stopped, because it may be endless."""
-NEAREST = 3.0
+LEAST_MARGIN = 3.0
 """Sigmas that must lie between every answer and the tolerance."""
 LARGEST_PART = 0.6
 """Share of the points that one right part of an answer may earn."""
@@ -176,16 +176,16 @@ def _row(
     mistakes: Sequence[Callable[..., Any]],
     variants: Sequence[Callable[..., Any]],
 ) -> Row:
-    questions = remembering([problem.question(seed + k) for k in range(draws)])
+    questions = share_runs([problem.question(seed + k) for k in range(draws)])
     own = {w.name: w.function for w in problem.wrong}
     wrong = own | _labelled("from outside: ", mistakes)
     right = {"the answer": problem.answer} | _labelled("", [*problem.variants, *variants])
-    with heard():  # what answers print is not the card's
+    with captured():  # what answers print is not the card's
         verdicts = {
             label: [mark(question, function) for question in questions]
             for label, function in (wrong | right).items()
         }
-        margin, nearest = least(questions, problem, right, wrong)
+        margin, nearest = least_margin(questions, problem, right, wrong)
     marks = {label: [verdict.earned for verdict in found] for label, found in verdicts.items()}
     failures = []
     limit = rejected_below(questions[0])
@@ -207,8 +207,8 @@ def _row(
             accepted += 1
         else:
             failures.append(f"{label}: a right answer earned only {min(marks[label]):g}")
-    if margin is not None and margin < NEAREST:
-        failures.append(f"{nearest}: {margin:.2f} sigma from the tolerance, and {NEAREST:g} needed")
+    if margin is not None and margin < LEAST_MARGIN:
+        failures.append(f"{nearest}: {margin:.2f} sigma from the tolerance, needs {LEAST_MARGIN:g}")
     agree = sum(all(m[k] == m[0] for m in marks.values()) for k in range(draws))
     tried = len(wrong), rejected, named, len(right), accepted, agree
     return Row(name, problem.name, *tried, margin, nearest, tuple(failures))
@@ -222,7 +222,7 @@ def _labelled(whose: str, functions: Sequence[Callable[..., Any]]) -> dict[str, 
     names = [f"{whose}{getattr(f, '__name__', type(f).__name__)}" for f in functions]
     before = [names[:k].count(name) for k, name in enumerate(names)]
     labels = [f"{name} ({n + 1})" if n else name for name, n in zip(names, before, strict=True)]
-    return {label: Here(f, (), HANGS) for label, f in zip(labels, functions, strict=True)}
+    return {name: LocalFunction(f, (), TIMEOUT) for name, f in zip(labels, functions, strict=True)}
 
 
 def functions_from(file: Path, table: str) -> Functions:
