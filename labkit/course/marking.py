@@ -1,6 +1,6 @@
-"""Marking: put a question to a function and come to a verdict.
+"""Marking, which tries a function on the cases of a question and returns a verdict.
 
-The function may live here or in another process; marking does not care.
+The function may run in this process or in another one.
 """
 
 from __future__ import annotations
@@ -30,10 +30,10 @@ class PublicRun(NamedTuple):
     """A run of the arm on a case that the student can see.
 
     Attributes:
-        test: The name of the test that it belongs to.
-        case: What was asked.
-        log: What the arm did; up to the moment when it ran away, if it did.
-        complete: Whether it came to its end.
+        test: The name of the test to which the run belongs.
+        case: The case.
+        log: The motion of the arm, up to the moment when it diverged, if it did.
+        complete: Whether the run reached its end.
     """
 
     test: str
@@ -43,12 +43,12 @@ class PublicRun(NamedTuple):
 
 
 class Mismatch(NamedTuple):
-    """What was expected and what came, on one call.
+    """The expected and the returned numbers of one call.
 
     Attributes:
         call: The call as the student would type it.
         expected: All numbers of the expected answer, shape (n,).
-        given: The same of the student's answer, shape (n,).
+        given: All numbers of the student's answer, shape (n,).
     """
 
     call: str
@@ -58,12 +58,12 @@ class Mismatch(NamedTuple):
 
 @dataclass(frozen=True, eq=False)
 class PublicResult:
-    """What came of the public cases alone.
+    """The result of the public cases alone.
 
     Attributes:
-        results: One for each test, as far as its public cases tell.
-        answers: What came back from each case that was asked.
-        failing: The first call that is not right, if there is one.
+        results: One for each test, from its public cases only.
+        answers: The answer to each case that was tried.
+        failing: The first call with a wrong answer, if there is one.
     """
 
     results: tuple[TestResult, ...]
@@ -72,7 +72,7 @@ class PublicResult:
 
     @property
     def outcome(self) -> Outcome:
-        """What they come to together."""
+        """The outcome of all tests together."""
         return _outcome(self.results)
 
     def runs(self, question: Question) -> Iterator[PublicRun]:
@@ -85,7 +85,7 @@ class PublicResult:
                     yield PublicRun(test.name, case, log, complete=log is answer)
 
     def first_mismatch(self, question: Question) -> Mismatch | None:
-        """The first public call whose answer differs, where both are numbers of one form."""
+        """The numbers of the first public call whose answer is wrong but has the right form."""
         for call in question.calls:
             answer: Any = self.answers.get(call)
             try:
@@ -102,13 +102,13 @@ def mark(question: Question, function: Function, tried: PublicResult | None = No
     """Try every test of a question, its public cases before any hidden one.
 
     Args:
-        question: With its hidden cases, or without.
-        function: The student's, or one that asks the student's in another process; that one raises
-            `NoAnswer`.
-        tried: What came of the public cases, if they were tried already.
+        question: The question, with or without its hidden cases.
+        function: The student's function, or one that calls it in another process and raises
+            `NoAnswer` where that fails.
+        tried: The result of the public cases, if they have been tried already.
 
     Returns:
-        The verdict.  Gates come first; without them nothing is earned.
+        The verdict.  If a gate fails, no points are earned.
     """
     tried = tried or try_public(question, function)
     results = tuple(
@@ -134,21 +134,21 @@ def mark(question: Question, function: Function, tried: PublicResult | None = No
 
 
 def all_alike(question: Question, outcome: Outcome, kind: Kind | None = None) -> Verdict:
-    """The verdict where every test comes to the same outcome, and nothing is earned."""
+    """The verdict in which every test has the same outcome, and no points are earned."""
     why = None if kind is None else Difference(kind)
     tests = tuple(TestResult(t.name, t.weight, outcome, difference=why) for t in question.tests)
     return Verdict(question.name, outcome, 0.0, question.points, tests)
 
 
 def not_counted(question: Question, tools: tuple[str, ...]) -> Verdict:
-    """The verdict on an answer whose text uses withheld tools; it is not tried."""
+    """The verdict on an answer that is not tried, because its text uses withheld tools."""
     return replace(all_alike(question, Outcome.NOT_COUNTED), withheld=tools)
 
 
 def try_public(question: Question, function: Function) -> PublicResult:
     """Try the public cases of every test.
 
-    Where one fails, all public calls are made, by which a known mistake can be told.
+    If one fails, all public calls are made, so that a known mistake can be recognised.
     """
     answers: dict[Case, Any] = {}
     results, failing = [], None
@@ -165,9 +165,9 @@ def try_public(question: Question, function: Function) -> PublicResult:
 
 
 def _outcome(results: Sequence[TestResult]) -> Outcome:
-    """What the tests come to together; one that was not tried has nothing to say.
+    """The outcome of all tests together; a test that was not tried does not count.
 
-    A stub is a stub although its hidden cases, which do not say how they failed, are wrong.
+    A stub is not attempted, although its hidden cases, which do not say how they failed, are wrong.
     """
     outcomes = {result.outcome for result in results}
     shown = {result.outcome for result in results if not result.hidden}
@@ -182,9 +182,9 @@ def _outcome(results: Sequence[TestResult]) -> Outcome:
 
 
 def recognise(question: Question, answers: list[Any]) -> Mistake | None:
-    """The known mistake that gives just these answers on the public calls, if there is one.
+    """The known mistake that gives exactly these answers to the public calls, or None.
 
-    An answer that is right where a mistake is wrong is not this mistake, however near they are.
+    An answer that is right where a mistake is wrong is not that mistake, however close they are.
     """
     judge, expected = repeat(question.judge), [call.expected for call in question.calls]
     for mistake in question.mistakes:
@@ -197,14 +197,14 @@ def recognise(question: Question, answers: list[Any]) -> Mistake | None:
 
 
 def fingerprint(question: Question, function: Function) -> tuple[Any, ...]:
-    """What a function gives on each public call; `Raised` where it raises."""
+    """A function's answer to each public call, or `Raised` if it raises an exception."""
     given = (_answer(call, function) for call in question.calls)
     return tuple(Raised(a.kind) if isinstance(a, _Failure) else a for a in given)
 
 
 @dataclass(frozen=True)
 class _Failure(Raised):
-    """An exception as an answer."""
+    """An exception in place of an answer."""
 
     sentence: str
     log: Log | None = None
@@ -219,7 +219,7 @@ def _answer(case: Case, function: Function) -> Any:
 
 
 def _failure(error: BaseException) -> _Failure:
-    """What to say of an exception that came out of the student's code, or of the loop around it."""
+    """An exception from the student's code, or from the loop around it, in place of an answer."""
     cause = error.__cause__ if isinstance(error, LabkitError) and error.__cause__ else error
     kind = cause.kind if isinstance(cause, NoAnswer) else type(cause).__name__
     known = isinstance(error, NoAnswer) or (isinstance(error, LabkitError) and error.__cause__)
@@ -229,7 +229,7 @@ def _failure(error: BaseException) -> _Failure:
 
 
 _OUTCOMES = {"NotImplementedError": Outcome.NOT_ATTEMPTED, "ArgumentChanged": Outcome.WRONG}
-"""Outcomes of exceptions that do not count as errors of the answer."""
+"""Outcomes of the exceptions that do not count as errors."""
 
 
 def _try(
@@ -240,7 +240,7 @@ def _try(
     answers: dict[Case, Any],
     before: TestResult | None = None,
 ) -> TestResult:
-    """Put some cases of one test, until one fails; without any, what came of it before stays."""
+    """Try cases of one test until one fails; without any cases, return the earlier result."""
     result = TestResult(test.name, test.weight, Outcome.RIGHT, also=test.also)
     for case in cases:
         answer = _answer(case, function)
@@ -249,7 +249,7 @@ def _try(
         found = _difference(question, test, case, answer)
         if found is not None:
             tool = answer.tool if isinstance(answer, _Failure) else ""
-            if case.hidden:  # how it failed would tell an attacker what was asked
+            if case.hidden:  # how it failed would reveal the case to an attacker
                 outcome = Outcome.NOT_COUNTED if tool else Outcome.WRONG
                 return replace(result, outcome=outcome, hidden=True, tool=tool)
             return replace(
@@ -264,14 +264,14 @@ def _try(
 
 
 def _outcome_of(answer: Any) -> Outcome:
-    """The outcome of an answer that is not right."""
+    """The outcome of a test whose answer is not right."""
     if not isinstance(answer, _Failure):
         return Outcome.WRONG
     return Outcome.NOT_COUNTED if answer.tool else _OUTCOMES.get(answer.kind, Outcome.ERROR)
 
 
 def _difference(question: Question, test: Test, case: Case, answer: Any) -> Difference | None:
-    """How an answer differs from what is expected; None if it does not."""
+    """How an answer differs from the expected one, or None."""
     if isinstance(answer, _Failure):
         changed = answer.kind == "ArgumentChanged"
         kind = Kind.CHANGED if changed else Kind.RAISED
@@ -284,12 +284,12 @@ def _difference(question: Question, test: Test, case: Case, answer: Any) -> Diff
         return AtMost()(case.measured(answer), case.expected)
     except LabkitError as error:
         return Difference(Kind.REFUSED, found=str(error))
-    except Exception:  # there is no end to what an answer can be
+    except Exception:  # comparing an odd answer may raise anything
         return Difference(Kind.OTHER)
 
 
 def _judge(question: Question, test: Test) -> Judge:
-    """The question's judge, for the part of the answer that the test looks at."""
+    """The question's judge, limited to the part of the answer that the test looks at."""
     judge = question.judge
     return replace(judge, only=test.part) if test.part and isinstance(judge, Close) else judge
 

@@ -1,4 +1,4 @@
-"""Verdicts in words: all sentences about a verdict are written here."""
+"""Verdicts in words; this module writes all sentences about a verdict."""
 
 from __future__ import annotations
 
@@ -27,7 +27,6 @@ HEADS = {
 }
 """The words for each outcome."""
 
-
 _SHORT = {Outcome.RIGHT: "passed", Outcome.NOT_TRIED: "not tried here"}
 """The words for tests that need no explanation."""
 
@@ -39,8 +38,10 @@ def head(verdict: Verdict) -> str:
     if verdict.withheld:
         says += f": {why_not_counted(verdict.withheld)}"
     elif awaits_marking(verdict):
-        return f"{verdict.name}: a possible answer. When it is marked, it earns {points} if it is \
-true of your own arm."
+        return (
+            f"{verdict.name}: a possible answer. When it is marked, it earns {points} if it is "
+            "true of your own arm."
+        )
     elif verdict.outcome is Outcome.RIGHT and not verdict.complete:
         return (
             f"{verdict.name}: {says} on all cases here; {points} if the instructor's cases agree."
@@ -49,17 +50,17 @@ true of your own arm."
 
 
 def outcome_word(verdict: Verdict) -> str:
-    """The word for an outcome; a prediction is committed, right or wrong."""
+    """The words for a verdict's outcome; a valid prediction is committed, not right or wrong."""
     return "committed" if verdict.right and is_prediction(verdict) else HEADS[verdict.outcome]
 
 
 def is_prediction(verdict: Verdict) -> bool:
-    """Whether it is of a prediction, which earns its point for being made."""
+    """Whether the verdict is on a prediction, which earns its point for being made."""
     return [test.name for test in verdict.tests] == [COMMITTED]
 
 
 def awaits_marking(verdict: Verdict) -> bool:
-    """Whether nothing can be said before it is marked: only there is the student's arm known."""
+    """Whether only marking can tell if the answer is right, because it depends on one's own arm."""
     right = verdict.outcome is Outcome.RIGHT and not verdict.complete
     return right and any(test.name == OWN_ARM for test in verdict.tests)
 
@@ -75,15 +76,15 @@ def why_not_counted(withheld: Iterable[str]) -> str:
 
 @dataclass(frozen=True)
 class Message:
-    """What a student reads after a check, in this order; `str` folds it to lines of text.
+    """What a student reads after a check, in this order; `str` gives lines of text.
 
     Attributes:
         head: The verdict in one line.
-        helps: What helps most: sentences.
-        tests: Each test in a line.
-        numbers: The calls that failed, with what was expected of them, and how to try one.
-        printed: What the student's code printed meanwhile.
-        hint: Where to get a hint.
+        helps: The sentences that help most.
+        tests: A line for each test.
+        numbers: The calls that failed, what was expected, and how to repeat one of them.
+        printed: What the student's code printed during the check.
+        hint: How to get a hint.
     """
 
     head: str
@@ -102,7 +103,7 @@ class Message:
 
 
 PRINTED = "While it was tried, your code printed:"
-"""Above what the student's code printed."""
+"""The line above what the student's code printed."""
 
 
 def message(
@@ -118,8 +119,8 @@ def message(
         question: The question.
         verdict: The verdict on the answer.
         printed: What the student's code printed while it was tried.
-        depends_on: Names of other answers that this one uses and that are not right.
-        lost: Why the answer will not be there when it is marked.
+        depends_on: Names of the wrong answers that this one uses.
+        lost: Why the answer will be missing when it is marked.
     """
     helps, hint = [f"But {lost}."] if lost else [], ""
     if verdict.outcome is not Outcome.RIGHT:
@@ -146,7 +147,7 @@ def message(
 
 
 def summary(verdict: Verdict) -> list[str]:
-    """A verdict for an instructor: its head, and after a failure the mistake and each test."""
+    """A verdict for an instructor: its head, and after a failure also the mistake and each test."""
     lines = [head(verdict)]
     if verdict.outcome in (Outcome.WRONG, Outcome.ERROR):
         lines += [f"  {mistake(verdict.mistake)}"] if verdict.mistake else []
@@ -155,12 +156,12 @@ def summary(verdict: Verdict) -> list[str]:
 
 
 def mistake(known: Misconception) -> str:
-    """A known mistake: its name, and what to tell who made it."""
+    """The name of a known mistake, and the explanation for a student who made it."""
     return f"{mistake_name(known)} {known.says}".lstrip()
 
 
 def mistake_name(known: Misconception) -> str:
-    """The name of a known mistake, in a sentence; empty if it has none."""
+    """A sentence with the name of a known mistake; "" if the mistake has no name."""
     return f"A well-known mistake: {known.name}." if known.name else ""
 
 
@@ -170,7 +171,7 @@ def failures(failed: int, of: int) -> str:
 
 
 def _helps(verdict: Verdict) -> Iterator[str]:
-    """What helps most: the mistake, if it is known, else a likely cause, else the difference."""
+    """What helps most: a known mistake, else a difference and its likely cause, if any."""
     if verdict.mistake:
         yield mistake(verdict.mistake)
     elif lead := _lead(verdict):
@@ -180,13 +181,13 @@ def _helps(verdict: Verdict) -> Iterator[str]:
 
 
 def _lead(verdict: Verdict) -> Difference | None:
-    """The difference that says most, where no known mistake says more."""
+    """The most informative difference; None if there is a known mistake, which says more."""
     found = [test.difference for test in verdict.tests if test.difference and not verdict.mistake]
     return next(filter(likely_cause, found), found[0] if found else None)
 
 
 def _unseen(question: Question) -> Iterator[str]:
-    """What only the instructor's copy of a question tests."""
+    """Sentences about what only the instructor's copy of a question tests."""
     also = dict.fromkeys(test.also for test in question.tests if test.also)
     if also:
         yield f"The instructor also tries: {'; '.join(also)}."
@@ -196,34 +197,34 @@ def _unseen(question: Question) -> Iterator[str]:
 
 
 def wrapped(line: str) -> str:
-    """A line folded where a notebook would otherwise break it within a word."""
+    """A line, folded at spaces so that a notebook does not break it within a word."""
     margin = " " * (len(line) - len(line.lstrip()))
     return textwrap.fill(line, WIDTH, subsequent_indent=f"{margin}  ", break_long_words=False)
 
 
 def test_line(test: TestResult) -> str:
-    """A test in one line: whether it passed, and if it failed, on which case and why."""
+    """A test in one line, which says whether it passed, and if it failed, on which case and why."""
     says = "" if test.outcome in _SHORT else why(test)
     return f"{test_name(test)}{says and f': {says}'}"
 
 
 def test_name(test: TestResult) -> str:
-    """A test by its name, and whether it passed."""
+    """The name of a test, after its status in brackets."""
     return f"[{test_status(test)}] {test.name}{gate_note(test)}"
 
 
 def test_status(test: TestResult) -> str:
-    """Whether a test passed, in a word."""
+    """The status of a test in a word, such as "passed"."""
     return _SHORT.get(test.outcome, "failed")
 
 
 def gate_note(test: TestResult) -> str:
-    """That nothing counts before a test passes, if it is so."""
+    """A remark if the test is a gate, without which nothing counts; else ""."""
     return "" if test.weight else " (needed before anything counts)"
 
 
 def why(test: TestResult) -> str:
-    """On which case a test failed, and how; empty if there is nothing to say."""
+    """On which case a test failed, and how; "" if neither is known."""
     hidden = f"a hidden case ({test.also})" if test.also else "a hidden case"
     where = hidden if test.hidden else test.call
     if test.difference is None:
@@ -234,7 +235,7 @@ def why(test: TestResult) -> str:
 
 
 def _numbers(question: Question, verdict: Verdict) -> list[str]:
-    """The cases that failed, each difference once, and how to try such a call again."""
+    """The cases that failed, each difference once, and how to repeat such a call."""
     lines: list[str] = []
     before: list[Difference] = []
     for test, result in zip(question.tests, verdict.tests, strict=True):
@@ -250,7 +251,7 @@ def _numbers(question: Question, verdict: Verdict) -> list[str]:
 
 
 def _again(test: Test, difference: Difference, before: list[Difference]) -> bool:
-    """Whether the student has already read this: a run stops for the same reason as a call did."""
+    """Whether a difference repeats an earlier one, as when a run stops for a call's reason."""
     if difference.kind is Kind.RAISED and any(isinstance(x, Loop | Tuned) for x in test.cases):
         if difference.error == ControllerError.__name__:
             return bool(before)
@@ -259,9 +260,9 @@ def _again(test: Test, difference: Difference, before: list[Difference]) -> bool
 
 
 def _parts(test: TestResult, led: bool) -> list[str]:
-    """A call and what came of it; two answers too long for a line stand one below the other."""
+    """A call with its expected and its actual answer, on lines of their own if they are long."""
     start, expected, got, _ = words(test.difference) if test.difference else ("", "", "", "")
-    if not got:  # a sentence; a value that is written down was not called
+    if not got:  # a sentence; a call with "()" stands for a value that was written down
         return [why(test)] if not led else [] if test.call.endswith("()") else [test.call]
     short = f"{test.call}: {start}expected {expected}, got {got}"
     if len(short) < WIDTH - 4:

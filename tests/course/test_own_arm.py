@@ -102,7 +102,7 @@ def test_a_damaged_file_of_arms_is_a_sentence(tmp_path, monkeypatch, text):
     (who,) = Arms(7, {"kestrel": "kestrel"}).sealed()
     (tmp_path / FILE).write_text(text.replace("%s", who))
     monkeypatch.chdir(tmp_path)
-    with pytest.raises(LabkitError, match=r"arms\.json is damaged; put the arms\.json that your"):
+    with pytest.raises(LabkitError, match=r"arms\.json is damaged; replace it with the arms\.json"):
         my_arm("kestrel")
 
 
@@ -216,5 +216,5 @@ def test_a_measurement_of_the_public_arm_is_right_or_wrong_at_once(monkeypatch):
     wrong, right, waiting = said
     assert wrong.startswith("my_lag: not yet right.") and "not true of the public arm" in wrong
     assert "Where it fails" not in wrong and "0.03" not in wrong
-    assert "a possible answer" in right and "It is true of the public arm" in right
+    assert "a possible answer" in right and "Your answer is true of the public arm" in right
     assert "a possible answer" in waiting and "public arm" not in waiting

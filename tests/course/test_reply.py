@@ -46,7 +46,7 @@ class Eats:
         (clears, ({"a": 1},), "clears changes the dict `table` {}, dict(table)"),
         (writes_deep, ([[1.0]],), "writes_deep changes the list `rows` {}, copy.deepcopy(rows)"),
         (writes_deep, (([1.0],),), "writes_deep changes the tuple `rows` {}, copy.deepcopy(rows)"),
-        (Eats(), (0, [1]), "it changes the list {}"),
+        (Eats(), (0, [1]), "the function changes the list {}"),
     ],
 )  # fmt: skip
 def test_what_is_changed_is_told_and_whole_again(function, args, says):
@@ -237,7 +237,7 @@ def test_a_loop_without_end_is_stopped():
 
     verdict = mark(DOUBLE, LocalFunction(endless, (), seconds=0.2))
     assert verdict.outcome is Outcome.ERROR and len(calls) == 1
-    assert "TimeoutError: it did not come back within 0.2 s; does every" in why(verdict.tests[0])
+    assert "TimeoutError: it did not return within 0.2 s; does every" in why(verdict.tests[0])
 
 
 def test_an_interrupt_is_nobodys_answer():

@@ -163,7 +163,7 @@ def test_state_survives_between_calls_but_not_between_questions(marks, solved):
         ("import os; os._exit(1)", "SystemExit: its process ended before it answered"),
         ("import ctypes; ctypes.string_at(0)", "SystemExit: its process ended before it answered"),
         ("import sys; sys.exit()", "SystemExit"),
-        ("while True: pass", "TimeoutError: it did not come back within 1 s"),
+        ("while True: pass", "TimeoutError: it did not return within 1 s"),
         ("return bytearray(10**10)", "MemoryError"),
         ("return undefined", "NameError: name 'undefined' is not defined"),
     ],

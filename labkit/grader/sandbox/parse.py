@@ -31,7 +31,8 @@ def read(data: bytes) -> dict[str, Any]:
 
     Returns:
         ``{"cells": [...]}``, or ``{"rejected": sentence}``.  Each cell has ``id``, ``grade_id``,
-        ``type``, ``source``; code also has what `labkit.course.source.analyse` finds, and ``tricks``.
+        ``type`` and ``source``; a code cell also has ``tricks`` and what
+        `labkit.course.source.analyse` finds.
     """
     try:
         return {"cells": list(_cells(_notebook(data)))}

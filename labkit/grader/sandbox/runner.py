@@ -150,7 +150,7 @@ class Notebook:
             with self._alarm(seconds):
                 return reply(self.functions[name], args, kwargs)
         except TimeUp:
-            return {"raised": "TimeUp", "says": f"it did not come back within {seconds:g} s"}
+            return {"raised": "TimeUp", "says": f"it did not return within {seconds:g} s"}
 
     @contextmanager
     def _alarm(self, seconds: float) -> Iterator[None]:

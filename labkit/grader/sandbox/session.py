@@ -260,7 +260,7 @@ class RemoteFunction:
             return self._answer({"args": data, "kwargs": self._unless_sent(kwargs)})
         except Timeout:
             limit = self.session.limits.call
-            failed = "TimeoutError", f"TimeoutError: it did not come back within {limit:g} s"
+            failed = "TimeoutError", f"TimeoutError: it did not return within {limit:g} s"
         except MessageTooLarge as error:
             failed = "TypeMismatch", str(error)
         except Disconnected:
