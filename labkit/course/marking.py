@@ -273,8 +273,7 @@ def _outcome_of(answer: Any) -> Outcome:
 def _difference(question: Question, test: Test, case: Case, answer: Any) -> Difference | None:
     """How an answer differs from the expected one, or None."""
     if isinstance(answer, _Failure):
-        changed = answer.kind == "ArgumentChanged"
-        kind = Kind.CHANGED if changed else Kind.RAISED
+        kind = Kind.CHANGED if answer.kind == "ArgumentChanged" else Kind.RAISED
         return Difference(kind, found=answer.sentence, error=answer.kind)
     if answer is None and isinstance(case, Call | Choice):
         return Difference(Kind.NOTHING)

@@ -39,9 +39,7 @@ def least_margin(
     found: list[tuple[float, str]] = []
     for k, test in enumerate(questions[0].tests):
         for label, function in right.items():
-            apart: dict[
-                type, list[float]
-            ] = {}  # tolerances of runs and of calls are not comparable
+            apart: dict[type, list[float]] = {}  # runs and calls have different tolerances
             for q, case in _cases(questions, k):
                 spread = apart.setdefault(_kind(case), [])
                 spread.append(_distance(q, case, function))
