@@ -33,10 +33,10 @@ def writes():
             lambda: np.zeros(6) + np.zeros(7),
             "the tip's velocity has 6 numbers, the joints' 7",
         ),
-        (lambda: np.zeros(3) - np.zeros(7), "so sizes must be equal"),
-        (lambda: np.linalg.inv(np.zeros((6, 7))), "only square matrices"),
+        (lambda: np.zeros(3) - np.zeros(7), "so the sizes must be equal"),
+        (lambda: np.linalg.inv(np.zeros((6, 7))), "only a square matrix"),
         (lambda: FIXED(2.0), "is a * missing"),
-        (lambda: writes(1), "leave the names in the function's first line"),
+        (lambda: writes(1), "leave the parameter names in the function's first line"),
     ],
 )
 def test_a_usual_slip_has_a_way_out(does, remedy):
