@@ -1,6 +1,6 @@
-"""The program ``labkit``, or ``python -m labkit``: what students and instructors type.
+"""The program ``labkit``, or ``python -m labkit``, with the commands of students and instructors.
 
-A student's labkit does not have the folder ``grader``, so it has no instructor's commands.
+A student's labkit does not include the folder ``grader``, so it lacks the instructor's commands.
 """
 
 from __future__ import annotations
@@ -54,14 +54,14 @@ def main(words: Sequence[str] | None = None) -> int:
     """Run a command.
 
     Args:
-        words: What was typed after ``labkit``; by default that of this process.
+        words: The arguments after ``labkit``; by default those of this process.
 
     Returns:
         The exit code.
     """
     for stream in (sys.stdout, sys.stderr):
         if isinstance(stream, TextIOWrapper):
-            stream.reconfigure(errors="backslashreplace")  # a file's name may hold anything
+            stream.reconfigure(errors="backslashreplace")  # a file's name may contain any character
     try:
         return int(program().main(words, "labkit", standalone_mode=False))
     except click.ClickException as error:

@@ -1,6 +1,6 @@
-"""Checks: a question, a function, a verdict in words.
+"""Checks, which try a student's function on a question and give a verdict in words.
 
-A notebook uses `check`, `hint` and `use`; graders use `mark` on the same questions.
+A notebook uses `check`, `hint` and `use`; the graders apply `mark` to the same questions.
 """
 
 from __future__ import annotations

@@ -33,30 +33,33 @@ BENCHMARKS = {
     "joint torque": (25.19, 20.17, 25.62),
     "joint velocity": (31.77, 34.97, 32.91),
 }
-"""What the course's own laws score on each public seed, in [mm], by `solutions.study.cup`."""
+"""Scores of the course's own controllers on each public seed, in [mm].
+
+`solutions.study.cup` measures them.
+"""
 
 CORNERS = 3
 BOX = ((-0.02, 0.12), (-0.15, 0.05), (-0.05, 0.10))
-"""Where corners of the tour are drawn, along x, y and z from the ready tip, in [m]."""
+"""The ranges of a tour's corners along x, y and z, relative to the ready tip, in [m]."""
 SPEED, ACCELERATION = 0.3, 1.0
-"""Of the tip on the tour, at most, in [m/s] and [m/s^2]."""
+"""Limits of the tip on the tour, in [m/s] and [m/s^2]."""
 LAP = 6.0
-"""The time in which the tag goes round once, in [s]."""
+"""Duration of one lap of the tag, in [s]."""
 PICTURES, AGE = 15.0, 0.08
-"""Pictures of the tag, in [Hz], and the age of a picture when its tag is known, in [s]."""
+"""Rate of the tag's pictures, in [Hz], and age of a picture once its tag is found, in [s]."""
 LOAD, FORCE, PUSHED = (0.2, 0.8), 25.0, 0.3
-"""The load's range in [kg]; the push in [N], and how long it lasts, in [s]."""
+"""Range of the load, in [kg]; force of the push, in [N], and its duration, in [s]."""
 
 
 @dataclass(frozen=True)
 class CupRun:
-    """One run.
+    """One run in the Baxter Cup.
 
     Attributes:
-        seed: Of what was drawn.
+        seed: The seed from which the run was drawn.
         score: RMS distance of the tip from where it should have been, in [mm]; infinite if the
-            arm ran away.
-        log: The run; its target is what the controller was given.
+            arm diverged.
+        log: The run; its target is the one that the controller was given.
     """
 
     seed: int
@@ -65,7 +68,7 @@ class CupRun:
 
 
 def benchmarks() -> dict[str, float]:
-    """The published benchmarks, in [mm], the lowest first."""
+    """The published benchmarks, in [mm], in ascending order."""
     means = {name: float(np.mean(scores)) for name, scores in BENCHMARKS.items()}
     return dict(sorted(means.items(), key=lambda pair: pair[1]))
 
@@ -74,9 +77,9 @@ def cup(make: Callable[[Model], Controller], workspace: bool = False) -> tuple[C
     """Run a controller on the public seeds and print its scores beside the benchmarks.
 
     Args:
-        make: A function of the model that returns a fresh controller, a function of state and
-            target; the model does not know the load.
-        workspace: Whether the controller follows poses of the tip, not joint angles.
+        make: A function that takes the model, which does not include the load, and returns a new
+            controller, which is a function of state and target.
+        workspace: Whether the controller follows tip poses instead of joint angles.
 
     Returns:
         A run for each public seed.
@@ -97,7 +100,7 @@ def cup_run(make: Callable[[Model], Controller], seed: int, workspace: bool = Fa
 
     Args:
         make: As for `cup`.
-        seed: Of what is drawn.
+        seed: The seed from which the run is drawn.
         workspace: As for `cup`.
     """
     random = np.random.default_rng([seed, 2007])
@@ -124,7 +127,7 @@ def cup_run(make: Callable[[Model], Controller], seed: int, workspace: bool = Fa
 
 
 def _tour(T_wt: Array, random: np.random.Generator) -> tuple[Chain, Trajectory]:
-    """From corner to corner and back, then the tag's circle, all from the pose where it begins."""
+    """The tour from corner to corner and back to the start, and the circle of the tag after it."""
     p, R = T_wt[:3, 3], T_wt[:3, :3]
     low, high = np.transpose(BOX)
     corners = [p, *(p + random.uniform(low, high, (CORNERS, 3))), p]
@@ -139,7 +142,7 @@ def _tour(T_wt: Array, random: np.random.Generator) -> tuple[Chain, Trajectory]:
 
 
 def _sampled_and_delayed(wanted: Target, since: float) -> Target:
-    """A target that is known in full at first, and from then on by pictures, which have an age."""
+    """A target that is known exactly until `since`, and after that only from delayed pictures."""
 
     def given(t: float) -> AnySample:
         if t < since:
@@ -152,7 +155,7 @@ def _sampled_and_delayed(wanted: Target, since: float) -> Target:
 
 
 def _place(model: Model, sample: AnySample) -> Array:
-    """Where a sample wants the tip, shape (3,) in [m]."""
+    """The tip position that a sample demands, shape (3,) in [m]."""
     where = sample[0]
     T_wt = where if where.ndim == 2 else model.pose(where)
     place: Array = T_wt[:3, 3]

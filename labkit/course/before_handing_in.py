@@ -1,6 +1,6 @@
-"""Before handing in: is the notebook whole, is it run, and what do its checks say?
+"""The inspection before handing in: is the notebook complete, and what did its checks say?
 
-It reads the file and runs nothing.
+It reads the file and runs no code.
 """
 
 from __future__ import annotations
@@ -19,29 +19,29 @@ from ..sim import chosen
 from .brief import WORDS
 from .checks_file import read_checks
 from .forms import COMMITTED, OWN_ARM
-from .gaps import bring_back, calculated, changed_since, first_error, undefined
+from .gaps import calculated_from_runs, changed_since, first_error, how_to_restore, undefined_names
 from .messages import head
 from .notebook import PLACEHOLDER, check_id, defines, grade_id, kind, last_verdict, read_cells
 from .own_arm import FILE, arms_for, opens_the_public_arm
 from .serialize import decode
-from .source import look
+from .source import analyse
 from .verdict import Outcome, Verdict
 from .withheld import withheld_tools
 
 LARGEST = 10.0
-"""Above this many megabytes a notebook may not pass a learning platform's upload."""
+"""Size in megabytes above which a learning platform may reject a notebook."""
 
 
 @dataclass(frozen=True)
 class HandIn:
-    """What a look at a notebook found.
+    """What was found in a notebook that is about to be handed in.
 
     Attributes:
-        assignment: Which.
-        problems: What to correct before handing in, sentences.
-        notes: What is worth knowing.
-        verdicts: The last verdict in the file for each question, None where it was not run.
-        predictions: Those of the questions that ask for a prediction.
+        assignment: Its assignment.
+        problems: Sentences about what to correct before handing in.
+        notes: Sentences about what is worth knowing.
+        verdicts: The last verdict in the file on each question; None if its check was not run.
+        predictions: Names of the questions that ask for a prediction.
         texts: The number of words in each text that a person marks.
     """
 
@@ -54,7 +54,7 @@ class HandIn:
 
     @property
     def lines(self) -> list[str]:
-        """Each question's verdict in words."""
+        """The verdict on each question in words."""
         return [head(v) if v else f"{name}: not run" for name, v in self.verdicts.items()]
 
     def __str__(self) -> str:
@@ -62,7 +62,7 @@ class HandIn:
         lines += [f"[note] {text}" for text in self.notes]
         lines += [f"  {line}" for line in self.lines]
         lines += [
-            f"  {name}: {words} words; your instructor reads it"
+            f"  {name}: {words} words; your instructor will read it"
             for name, words in self.texts.items()
         ]
         right = {name for name, v in self.verdicts.items() if v is not None and v.right}
@@ -70,20 +70,20 @@ class HandIn:
         counts = []
         if tasks:
             of = f"{len(right & tasks)} of {len(tasks)}"
-            counts.append(f"{of} tasks were right, as far as can be tried here")
+            counts.append(f"{of} tasks were right, as far as can be tested here")
         if self.predictions:
             committed = len(right & set(self.predictions))
             counts.append(f"{committed} of {len(self.predictions)} predictions were committed")
-        ran = f"; when it was last run, {', and '.join(counts)}" if counts else ""
+        ran = f"; in its last run, {', and '.join(counts)}" if counts else ""
         end = (
             "correct what is marked with [fix] first."
             if self.problems
-            else f"it can be handed in as it is{ran}."
+            else f"the notebook can be handed in as it is{ran}."
         )
         return "\n".join([*lines, f"{self.assignment}: {end}"])
 
     def for_the_forum(self) -> str:
-        """A block to copy into a question to others: verdicts and versions, and no answer."""
+        """A block to copy into a forum: verdicts and versions, but no answers."""
         tools = ", ".join(
             f"{name} {version(name)}" for name in ("labkit", "numpy", chosen(), "pin")
         )
@@ -92,13 +92,13 @@ class HandIn:
 
 
 def examine(path: Path) -> HandIn:
-    """Look through a notebook that is about to be handed in.
+    """Inspect a notebook that is about to be handed in.
 
     Args:
-        path: The notebook; the assignment's ``checks.json`` must lie beside it.
+        path: The notebook; ``checks.json`` must be in the same folder.
 
     Raises:
-        LabkitError: The file is missing or not a notebook, or its questions are not there.
+        LabkitError: The file is missing or is not a notebook, or its questions are missing.
     """
     cells = read_cells(path)
     data = read_checks(path.resolve().parent)
@@ -107,20 +107,19 @@ def examine(path: Path) -> HandIn:
     if path.name != f"{name}.ipynb":
         called = "".join(x if x.isprintable() else "\ufffd" for x in path.name)
         problems.append(f"the file is called {called}; rename it to {name}.ipynb")
-    size = path.stat().st_size / 1e6
-    if size > LARGEST:
+    if (size := path.stat().st_size / 1e6) > LARGEST:
         problems.append(
-            f"it has {size:.0f} MB, more than {LARGEST:g}; clear the outputs of large cells"
+            f"the file has {size:.0f} MB, more than {LARGEST:g}; clear the outputs of large cells"
         )
     for question in questions:
-        more, worth_knowing = _cells_of(cells, question["name"], name)
+        more, worth_knowing = _review(cells, question["name"], name)
         problems += more
         notes += worth_knowing
-    problems += undefined(cells, [question["name"] for question in questions])
+    problems += undefined_names(cells, [question["name"] for question in questions])
     code = [cell["source"] for cell in cells if cell["cell_type"] == "code"]
     for question in questions:
         if any(test["name"] == OWN_ARM for test in question["tests"]["items"]):
-            problems += filter(None, [calculated(code, question["name"])])
+            problems += filter(None, [calculated_from_runs(code, question["name"])])
     problems += filter(None, [first_error(cells)])
     verdicts = {question["name"]: _verdict(cells, question) for question in questions}
     predictions = [
@@ -140,19 +139,17 @@ def examine(path: Path) -> HandIn:
         f"the cell of {name} says None, although you had committed to a prediction; the cell is "
         "what is marked, so write your prediction into it again and run it"
         for name in predictions
-        if (said := verdicts[name]) and said.right and _holds_nothing(code, name)
+        if (said := verdicts[name]) and said.right and _lacks_prediction(code, name)
     ]
-    stale = [name for name in verdicts if changed_since(cells, name)]
-    if stale:
+    if stale := [name for name in verdicts if changed_since(cells, name)]:
         notes.append(
-            f"changed since it was checked: {', '.join(stale)}; the verdicts below are old, run "
+            f"changed since the last check: {', '.join(stale)}; the verdicts below are old, so run "
             "the notebook from the top and save it"
         )
-    unrun = sum(verdict is None for verdict in verdicts.values())
-    if unrun:
+    if unrun := sum(verdict is None for verdict in verdicts.values()):
         notes.append(
             f"{unrun} of {len(verdicts)} checks have left no result in the saved file; if you have "
-            "run them, save the file and run this again (they run in any case when it is marked)"
+            "run them, save the file and try again (all checks are run when it is marked)"
         )
     texts = {}
     for above, cell in pairwise(cells):
@@ -164,11 +161,11 @@ def examine(path: Path) -> HandIn:
             if most and words > int(most[1]):
                 notes.append(f"{grade_id(cell)} has {words} words; it may have at most {most[1]}")
     wrong = [name for name, v in verdicts.items() if v and not v.right]
-    for says, foretold in (
-        ("not yet right: {}; what is right counts all the same", False),
-        ("not predicted yet: {}; right or wrong, a prediction counts", True),
+    for says, predicted in (
+        ("not yet right: {}; the parts that are right count all the same", False),
+        ("not predicted yet: {}; a prediction counts, whether it is right or wrong", True),
     ):
-        if which := [name for name in wrong if (name in predictions) == foretold]:
+        if which := [name for name in wrong if (name in predictions) == predicted]:
             notes.append(says.format(", ".join(which)))
     return HandIn(name, tuple(problems), tuple(notes), verdicts, predictions, texts)
 
@@ -176,7 +173,7 @@ def examine(path: Path) -> HandIn:
 def _on_the_public_arm(
     path: Path, code: list[str], verdicts: Mapping[str, Verdict | None]
 ) -> tuple[list[str], list[str]]:
-    """What to correct, and to know, where one's own arm was measured on the public one."""
+    """Problems and notes if students measured the public arm in place of their own."""
     measured = [
         name
         for name, verdict in verdicts.items()
@@ -187,7 +184,7 @@ def _on_the_public_arm(
     begins, names = 'HANDLE is "demo", the public arm', ", ".join(measured)
     if arms_for(path.resolve().parent):
         return [
-            f"{begins}, and {names} will be judged by an arm of your own; set HANDLE to the name "
+            f"{begins}, but {names} will be judged by an arm of your own; set HANDLE to the name "
             "that your instructor gave you, and measure again"
         ], []
     return [], [
@@ -196,40 +193,40 @@ def _on_the_public_arm(
     ]
 
 
-def _holds_nothing(code: list[str], name: str) -> bool:
-    """Whether the last cell with a prediction says None."""
+def _lacks_prediction(code: list[str], name: str) -> bool:
+    """Whether the last cell that makes a prediction holds None in its place."""
     pattern = rf"^{name}\s*=\s*predict\(\s*['\"]{name}['\"]\s*(,\s*(said\s*=\s*)?(None)?\s*)?\)"
     made = [cell for cell in code if re.search(rf"^{name}\s*=", cell, re.MULTILINE)]
     return bool(made) and bool(re.search(pattern, made[-1], re.MULTILINE))
 
 
-def _cells_of(cells: list[dict[str, Any]], question: str, name: str) -> tuple[list[str], list[str]]:
-    """What must be corrected in the cells of a question, and what is worth knowing of them."""
+def _review(cells: list[dict[str, Any]], question: str, name: str) -> tuple[list[str], list[str]]:
+    """Problems and notes about the cells of a question."""
     problems, notes = [], []
     ids = Counter(map(grade_id, cells))
     if not any(defines(cell, question) for cell in cells):
         homes = [cell for cell in cells if grade_id(cell) == question]
-        magic = next((x for x in (look(cell["source"])["magic"] for cell in homes) if x), "")
+        magic = next((x for x in (analyse(cell["source"])["magic"] for cell in homes) if x), "")
         problems.append(
-            f"the cell of {question} begins with %%{magic}, which keeps what it defines to itself; "
-            "take that line away"
+            f"the cell of {question} begins with %%{magic}, so the notebook does not see what it "
+            "defines; delete that line"
             if magic
-            else bring_back(question, name, any(cell["cell_type"] != "code" for cell in homes))
+            else how_to_restore(question, name, any(cell["cell_type"] != "code" for cell in homes))
         )
     for each in (question, check_id(question)):
         if not ids[each]:
             notes.append(f"the cell of {each} is gone or damaged; it is marked all the same")
         elif ids[each] > 1:
             problems.append(
-                f"the cell of {each} is there {ids[each]} times; keep one, for the last one counts"
+                f"there are {ids[each]} cells of {each}; keep one, because only the last one counts"
             )
     return problems, notes
 
 
 def _verdict(cells: list[dict[str, Any]], question: Mapping[str, Any]) -> Verdict | None:
-    """What the question's check said last, or what the answer's text says by now."""
+    """The last verdict of the question's check, unless the answer now uses a withheld tool."""
     name = question["name"]
-    found = [look(cell["source"]) for cell in cells if cell["cell_type"] == "code"]
+    found = [analyse(cell["source"]) for cell in cells if cell["cell_type"] == "code"]
     tools = withheld_tools(found, name, decode(question["withheld"]))
     if tools:
         points = float(question["points"])

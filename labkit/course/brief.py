@@ -1,37 +1,37 @@
-"""Briefs: the text above a place in which students write, a function or a why."""
+"""Briefs, which are the texts above the places where students write a function or a why."""
 
 from __future__ import annotations
 
 from .question import Question, in_points
 
 WORDS, WHY_POINTS = (25, 80), 2.0
-"""The fewest and the most words of a why, and its points."""
+"""The smallest and the largest number of words in a why, and its points."""
 RUBRIC = (
     "- 2 points: the right cause, and how it leads to what you saw. 1 point: the right cause, but "
     "a step is missing or wrong. 0 points: another cause, or only a repetition of what you saw."
 )
-"""How a person marks a why."""
+"""The rubric by which a person marks a why."""
 
 
 def brief_of_why(name: str, points: float, asks: str) -> str:
-    """The text above a why, with what a person marks it by."""
+    """The text above a why, with its rubric."""
     least, most = WORDS
     head = f"**Why? `{name}`** · {in_points(points)} · {least} to {most} words of your own"
     return f"{head}\n\n{asks}\n\n{RUBRIC}"
 
 
 def heading(does: str, name: str, points: float, core: bool) -> str:
-    """The first line of a brief: what to do, its points, and whether it belongs to the core."""
+    """The first line of a brief: what to do, for how many points, and whether it is core."""
     return f"**{does}: `{name}`** · {in_points(points)} · {'core' if core else 'extension'}"
 
 
 def where_hints_are(name: str) -> str:
-    """The line of a brief that says how to get a hint."""
+    """The line of a brief that tells students how to get a hint."""
     return f'- Stuck? `hint("{name}", 1)` in a new cell (Esc, B): it is free.'
 
 
 def brief(question: Question) -> str:
-    """The text above a stub: the task, the points, how it is tried, what is withheld."""
+    """The text above a stub: the task, the points, how answers are tested, what is withheld."""
     head = heading("Your turn", question.name, question.points, question.core)
     lines = [head, "", question.asks]
     also = list(dict.fromkeys(test.also for test in question.tests if test.also))

@@ -1,4 +1,4 @@
-"""Find the bug: a torque law that is right at first, and then runs a version with one mistake."""
+"""Runs in which a torque law is right at first and then has one mistake, for students to find."""
 
 from __future__ import annotations
 
@@ -22,10 +22,10 @@ from .forms import Choose, RightOrWrong
 from .verdict import Difference, Kind
 
 PLANT = Plant(name="textbook", armature=0.05, viscous=0.7, velocity_noise=0.01)
-"""The arm of all these runs; the law carries its weight."""
+"""The arm in all these runs; the law compensates its gravity."""
 RATE = 200.0
 STALE = 12
-"""So many ticks is a stale state old."""
+"""Age of a delayed state, in ticks."""
 KP, KD = 60.0, 16.0
 
 CAUSES = {
@@ -38,17 +38,20 @@ CAUSES = {
     "g": "the errors of the joints w0 and w2 are exchanged",
     "h": "the joints' own speed is damped, not the error of the speed",
 }
-"""What may be wrong, by its letter."""
+"""The possible mistakes, by letter."""
 
 MOVES = (
     (0.5, 0.3, 0.0, -0.4, 0.3, 0.2, 0.9),
     (-0.4, -0.2, 0.4, 0.5, -0.8, 0.3, -0.5),
     (0.3, -0.3, -0.4, 0.3, 0.5, -0.4, 0.8),
 )
-"""From the ready pose, in [rad]; there, a rest of a quarter of a second, and back."""
+"""Displacements from the ready pose, in [rad].
+
+The arm goes there, rests for a quarter of a second and comes back.
+"""
 LASTS = 1.2
 SHOWS = 0.003
-"""A joint this far from where it would be shows that something is wrong, in [rad]."""
+"""Deviation of a joint from the right run at which the mistake is visible, in [rad]."""
 
 
 @dataclass(frozen=True)
@@ -57,9 +60,9 @@ class Bug:
 
     Attributes:
         cause: A letter of `CAUSES`.
-        move: Which of `MOVES`.
-        onset: From when on the mistake is in the law, in [s].
-        seed: Of the noise.
+        move: Index into `MOVES`.
+        onset: When the mistake enters the law, in [s].
+        seed: Seed of the noise.
     """
 
     cause: str
@@ -68,11 +71,11 @@ class Bug:
     seed: int
 
     def log(self) -> Log:
-        """The run, up to the moment when the arm runs away, if it does."""
+        """The run, up to the moment when the arm diverges, if it does."""
         return _run(there_and_back(MOVES[self.move]), self.cause, self.onset, self.seed)
 
-    def shows(self) -> float:
-        """When a joint first is `SHOWS` away from where the right law would have it, in [s]."""
+    def first_visible(self) -> float:
+        """When a joint first deviates by `SHOWS` from the run of the right law, in [s]."""
         wrong, right = self.log(), Bug("", self.move, self.onset, self.seed).log()
         n = min(len(wrong), len(right))
         off = np.abs(wrong.q[:n] - right.q[:n]).max(axis=1) > SHOWS
@@ -80,7 +83,7 @@ class Bug:
 
 
 def there_and_back(move: Any) -> Chain:
-    """A target that goes a way in the joints, rests there, and comes back."""
+    """A target that moves the joints by `move`, rests there and comes back."""
     ready = Model("left", PLANT).robot.ready
     goal = ready + np.asarray(move, dtype=float)
     go, back = Line(ready, goal), Line(goal, ready)
@@ -94,13 +97,13 @@ def tells_apart(one: str, other: str, start: Any, move: Any) -> float:
 
     Args:
         one: A letter of `CAUSES`; the mistake is in the law from the beginning.
-        other: Another one.
-        start: By how much the arm starts beside its target, shape (7,) in [rad].
-        move: Where it goes and comes back from, shape (7,) in [rad].
+        other: Another letter.
+        start: Offset of the arm's start from its target, shape (7,) in [rad].
+        move: Displacement to which the arm goes and from which it returns, shape (7,) in [rad].
 
     Returns:
-        The RMS difference of the joints in the two runs, over that of two right runs whose noise
-        differs.
+        The RMS difference between the joints of the two runs, divided by that between two right
+        runs with different noise.
     """
     target = there_and_back(move)
     runs = [_run(target, cause, 0.0, 1, start) for cause in (one, other)]
@@ -128,7 +131,7 @@ def _run(target: Chain, cause: str, onset: float, seed: int, start: Any = 0.0) -
 def _law(
     model: Model, target: Chain, cause: str, onset: float
 ) -> Callable[[State, Sample], JointTorque]:
-    """Computed torque, with one mistake from some time on."""
+    """Computed torque, which has one mistake from `onset` on."""
     if cause and cause not in CAUSES:
         raise LabkitError(f"{cause!r} is not a cause; choose one of {', '.join(CAUSES)}")
     before: list[State] = []
@@ -166,23 +169,23 @@ def _exchanged(e: Array) -> Array:
 
 CHOICE = Choose(CAUSES)
 NEAR = 0.15
-"""How near the time must be at which it first shows, in [s]."""
+"""Tolerance of the time at which a mistake is first visible, in [s]."""
 CLEAR = 5.0
-"""So many times the noise two suspects must differ by, in an experiment that tells them apart."""
+"""Smallest ratio to the noise by which an experiment must tell two suspects apart."""
 
 
 @dataclass(frozen=True)
 class Found(RightOrWrong):
-    """What is said of a misbehaving run: its cause, and when it first shows.
+    """The judge of a diagnosis of a misbehaving run: the cause and when it is first visible.
 
     Attributes:
-        number: Which run, from 0.
+        number: Index of the run, from 0.
     """
 
     number: int
 
     def __call__(self, answer: Any, expected: Any) -> Difference | None:
-        """None if it is right, or plausible where nothing is expected."""
+        """None if the diagnosis is right, or if it is plausible and nothing is expected."""
         try:
             cause, seconds = answer
             seconds = float(seconds)
@@ -196,23 +199,25 @@ class Found(RightOrWrong):
         return Difference(Kind.VALUE, expected=str(expected), found=str(answer))
 
     def expected(self, arm: Any) -> tuple[str, float]:
-        """What is right for the runs of somebody's `OwnArm`."""
+        """The right diagnosis for a student's `OwnArm`."""
         bug: Bug = arm.bugs[self.number]
-        return bug.cause, bug.shows()
+        return bug.cause, bug.first_visible()
 
 
 @dataclass(frozen=True)
 class Telling(RightOrWrong):
-    """An experiment that tells the cause of a run from the next suspect; both runs are made.
+    """The judge of an experiment that tells the cause of a run from another suspect.
+
+    Both suspects are simulated.
 
     Attributes:
-        number: Which misbehaving run, from 0.
+        number: Index of the misbehaving run, from 0.
     """
 
     number: int
 
     def __call__(self, answer: Any, expected: Any) -> Difference | None:
-        """None if the first suspect is right and the two differ by `CLEAR` times the noise."""
+        """None if the first suspect is right and the two runs differ by `CLEAR` times the noise."""
         try:
             suspects, start, move = answer
             one, other = suspects
@@ -225,15 +230,15 @@ class Telling(RightOrWrong):
             what = 'it should be (suspects, start, move), such as ("ad", [0, ...], [0.3, ...])'
             return Difference(Kind.REFUSED, found=what)
         if one == other:
-            return Difference(Kind.REFUSED, found="two different suspects are needed")
+            return Difference(Kind.REFUSED, found="both suspects are the same; name two different")
         if not ratio >= CLEAR:
-            says = f"the two differ by {ratio:.1f} times the noise; {CLEAR:g} are needed"
+            says = f"the two runs differ by {ratio:.1f} times the noise; {CLEAR:g} are needed"
             return Difference(Kind.REFUSED, found=says)
         if expected is not None and one != expected:
             return Difference(Kind.VALUE, expected=str(expected), found=str(one))
         return None
 
     def expected(self, arm: Any) -> str:
-        """The right first suspect for the runs of somebody's `OwnArm`."""
+        """The right first suspect for a student's `OwnArm`."""
         bug: Bug = arm.bugs[self.number]
         return bug.cause

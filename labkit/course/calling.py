@@ -1,7 +1,7 @@
-"""Call somebody else's code without letting its prints and warnings through, nor its writes.
+"""Call a student's function, capture what it prints, and protect the arguments that it is given.
 
-nbgrader takes anything on stderr for a failure, and PyBullet writes to the C streams, so both kinds
-of stream are caught.
+nbgrader takes any text on stderr for a failure, and PyBullet writes to the C streams, so the
+streams of Python and of C are both captured.
 """
 
 from __future__ import annotations
@@ -21,17 +21,17 @@ from ..quiet import diverted
 from ..shapes import locked
 
 
-class Heard:
-    """What came out of the streams, and the warnings, once the call is over."""
+class Captured:
+    """The text of the streams and the warnings, which is complete once the block is over."""
 
     text: str = ""
 
 
-class Capped(StringIO):
-    """Text that stops growing.
+class CappedText(StringIO):
+    """A text stream that keeps only its beginning.
 
     Args:
-        most: Characters to keep.
+        most: Number of characters to keep.
     """
 
     def __init__(self, most: int) -> None:
@@ -39,21 +39,21 @@ class Capped(StringIO):
         self.most, self.size = most, 0
 
     def write(self, text: str) -> int:
-        """Keep what there is room for; it all counts as written."""
+        """Keep as much as there is room for, and report all of it as written."""
         left = self.most - self.size
         if left > 0:
             self.size += super().write(text[:left])
         return len(text)
 
 
-MOST_HEARD = 100_000
-"""Characters, and bytes of C's streams, that `heard` keeps."""
+MOST_CAPTURED = 100_000
+"""Number of characters, and of bytes of the C streams, that `captured` keeps."""
 
 
 @contextmanager
-def heard() -> Iterator[Heard]:
-    """Catch stdout, stderr and warnings, of Python and of C, while the block runs."""
-    out, result = Capped(MOST_HEARD), Heard()
+def captured() -> Iterator[Captured]:
+    """Capture stdout and stderr of Python and of C, and warnings, while the block runs."""
+    out, result = CappedText(MOST_CAPTURED), Captured()
     with (
         tempfile.TemporaryFile() as file,
         diverted(file.fileno()),
@@ -66,21 +66,21 @@ def heard() -> Iterator[Heard]:
             finally:
                 words = [out.getvalue(), *(f"{w.category.__name__}: {w.message}\n" for w in said)]
                 file.seek(0)
-                below = file.read(MOST_HEARD).decode(errors="replace")
+                below = file.read(MOST_CAPTURED).decode(errors="replace")
                 result.text = "".join([*words, below])
 
 
 class ArgumentChanged(LabkitError):
-    """A function wrote to a list or a dict that it was given."""
+    """A function changed a list or a dict that it was given."""
 
 
 def call(function: Callable[..., Any], args: Sequence[Any], kwargs: Mapping[str, Any]) -> Any:
-    """A function's answer to arguments that it cannot spoil for the next call.
+    """The function's answer to arguments that it cannot spoil for the next call.
 
-    It is given copies of lists and dicts, and read-only arrays.
+    The function is given copies of lists and dicts, and read-only arrays.
 
     Raises:
-        ArgumentChanged: It changed a list or a dict all the same.
+        ArgumentChanged: The function changed the copy of a list or of a dict.
     """
     given, named = [_copied(x) for x in args], {key: _copied(x) for key, x in kwargs.items()}
     answer = function(*given, **named)
@@ -93,7 +93,7 @@ def call(function: Callable[..., Any], args: Sequence[Any], kwargs: Mapping[str,
 
 
 def _copied(x: Any) -> Any:
-    """The same value in containers of its own, its arrays read-only; itself if it has none."""
+    """A copy with new containers and read-only arrays; the value itself if it has neither."""
     if isinstance(x, np.ndarray):
         return locked(x.copy()) if x.flags.writeable else x
     if type(x) is list:
@@ -109,7 +109,7 @@ def _copied(x: Any) -> Any:
 
 
 def _same(before: Any, after: Any) -> bool:
-    """Whether a copy still holds what it was made of; nobody's ``==`` is asked."""
+    """Whether a copy still holds the original's objects; no ``==`` of an object is called."""
     if isinstance(before, np.ndarray):
         return True  # it cannot be written to
     if isinstance(before, list | tuple):
@@ -126,12 +126,12 @@ def _sentence(function: Callable[..., Any], place: int | str, before: Any) -> st
     flat = kind != "tuple" and not any(isinstance(x, list | dict | tuple) for x in inner)
     which = f" `{name}`" if name else ""
     copy = name and f", {kind if flat else 'copy.deepcopy'}({name})"
-    who = getattr(function, "__name__", "it")
+    who = getattr(function, "__name__", "the function")
     return f"{who} changes the {kind}{which} that it is given; work on a copy{copy}"
 
 
 def _parameter(function: Callable[..., Any], place: int) -> str:
-    """What a function calls one of its arguments; "" if that cannot be told."""
+    """The name of a function's parameter; "" if it cannot be determined."""
     with suppress(TypeError, ValueError, IndexError):
         parameter = list(inspect.signature(function).parameters.values())[place]
         if parameter.kind is not inspect.Parameter.VAR_POSITIONAL:

@@ -1,4 +1,4 @@
-"""A message as a card in a notebook, with the plain text behind it."""
+"""A message as a card in a notebook, with plain text as the alternative."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ _BADGES = {
     Outcome.WRONG: ("\N{MULTIPLICATION SIGN}", "#9a5b00"),
     Outcome.ERROR: ("!", "#b3261e"),
 }
-"""A sign for an outcome, and its colour, on which white letters can be read."""
+"""The sign of an outcome, and a colour on which white letters are legible."""
 _OTHER = ("\N{HORIZONTAL ELLIPSIS}", "#57606a")
 
 _STYLE = """<style>
@@ -40,12 +40,12 @@ _STYLE = """<style>
 def card(
     message: Message, outcome: Outcome, picture: tuple[bytes, str] | None = None
 ) -> dict[str, str]:
-    """What a notebook shows of a message: a card, and plain text for whatever shows no HTML.
+    """The representations of a message in a notebook: an HTML card, and plain text.
 
     Args:
-        message: What to say; nothing in it becomes markup.
-        outcome: Of the question.
-        picture: A PNG file's bytes and its words, of the numbers.
+        message: The message; its text is escaped.
+        outcome: The outcome of the question.
+        picture: A figure of the numbers, as the bytes of a PNG file, and its description.
     """
     sign, colour = _BADGES.get(outcome, _OTHER)
     failed = sum(test.startswith("[failed]") for test in message.tests)
@@ -62,13 +62,13 @@ def card(
     if message.printed:
         parts.append(f"<p>{PRINTED}</p>{_block(message.printed)}")
     parts += [f"<p>{_inline(message.hint)}</p>"] if message.hint else []
-    names = "lk-card mathjax_ignore tex2jax_ignore"  # a dollar is a dollar
+    names = "lk-card mathjax_ignore tex2jax_ignore"  # a dollar sign does not begin a formula
     page = f'<div class="{names}" style="--lk-badge: {colour}">{"".join(parts)}</div>{_STYLE}'
     return {"text/plain": str(message), "text/html": page}
 
 
 def _inline(text: str) -> str:
-    """Text as HTML, code between backticks as code."""
+    """Text as HTML, with code elements for what is between backticks."""
     return re.sub(r"`([^`]+)`", r"<code>\1</code>", escape(text))
 
 
@@ -77,10 +77,10 @@ def _block(lines: Iterable[str]) -> str:
 
 
 def picture(found: tuple[str, Any, Any]) -> tuple[bytes, str]:
-    """A small figure of the answers that gave a known mistake away, and its words."""
+    """A small figure of the answers that revealed a known mistake, and its description."""
     from .. import plotting
 
-    drawn = BytesIO()  # a notebook draws figures only once pyplot has made one
+    drawn = BytesIO()  # a figure that pyplot did not make is not shown by the notebook itself
     plotting.answers(*found).savefig(drawn, format="png")
     call, expected, given = found
     words = f"{call}, number by number: expected {_list(expected)}; yours {_list(given)}."

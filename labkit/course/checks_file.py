@@ -1,4 +1,4 @@
-"""The file beside a notebook that holds its questions, with their public cases."""
+"""The file beside a notebook that holds its questions with their public cases."""
 
 from __future__ import annotations
 
@@ -13,10 +13,10 @@ FILE = "checks.json"
 
 
 def read_checks(folder: Path) -> dict[str, Any]:
-    """What lies beside a notebook: the name of its ``assignment``, and its ``questions`` as data.
+    """The data in a notebook's folder: the name of its ``assignment``, and its ``questions``.
 
     Raises:
-        LabkitError: It is not there, or damaged.
+        LabkitError: The file is missing or damaged.
     """
     file = folder / FILE
     remedy = "fetch the assignment's whole folder again"

@@ -1,4 +1,4 @@
-"""The student's commands, ``labkit submit-check`` and ``labkit merge``, and errors of commands."""
+"""The student's commands, ``labkit submit-check`` and ``labkit merge``, and command errors."""
 
 from __future__ import annotations
 
@@ -19,13 +19,13 @@ FOR_INSTRUCTORS = ("nbgrader", "jupytext", "sqlalchemy")
 
 
 class Verb(click.Command):
-    """A command that returns its exit code: 0 if all succeeded, 1 if the output names failures.
+    """A command that returns its exit code: 0 for success, 1 if the output names failures.
 
-    Wrong use ends with one sentence and exit code 2, Ctrl-C with exit code 130.
+    Wrong use ends with one sentence and exit code 2, and Ctrl-C with exit code 130.
     """
 
     def invoke(self, ctx: click.Context) -> int:
-        """Run it."""
+        """Run the command."""
         try:
             return int(super().invoke(ctx))
         except LabkitError as error:
@@ -55,7 +55,7 @@ def verb(example: str) -> Callable[[Callable[..., int]], Verb]:
     """Make a function a command with the same name and docstring.
 
     Args:
-        example: Arguments of an example, which the help ends with.
+        example: Arguments of the example at the end of the help.
     """
 
     def make(function: Callable[..., int]) -> Verb:
@@ -93,30 +93,29 @@ def merge(mine: Path, new: Path, to: Path) -> int:
 
     MINE is the notebook that you worked in; NEW is the corrected one from your instructor.
     """
-    from .merge import BESIDE, merge
+    from .merge import KEPT_TEXT, merge
     from .notebook import read_cells
 
     cells, released = read_cells(mine), read_cells(new)
     if to.exists():
-        raise LabkitError(f"{to} is there already; give another name with --to")
+        raise LabkitError(f"{to} already exists; give another name with --to")
     release = json.loads(new.read_text(encoding="utf-8"))
     if not _is_valid(release):
         raise LabkitError(f"{new.name} is not a release; fetch the assignment's folder again")
     notebook = release | {"cells": merge(cells, released)}
-    both = sum(BESIDE in cell["source"] for cell in notebook["cells"])
     text = json.dumps(notebook, indent=1, ensure_ascii=False) + "\n"
     to.write_text(text, encoding="utf-8", errors="replace")  # a lone surrogate is not text
     print(
-        f"{to}: the new release with your work; look through it, put it in the place of your "
-        "notebook, and run all its cells"
+        f"{to}: the new release with your work; look through it, replace your notebook with it, "
+        "and run all its cells"
     )
-    if both:
-        print(f"where the new release changed what you may have changed too, it says: {BESIDE}")
+    if any(KEPT_TEXT in cell["source"] for cell in notebook["cells"]):
+        print(f"text of yours that the new release may have changed follows this line: {KEPT_TEXT}")
     return 0
 
 
 def _is_valid(notebook: dict[str, Any]) -> bool:
-    """Whether the data are a notebook as Jupyter writes it."""
+    """Whether the data are a valid notebook."""
     from nbformat.validator import isvalid
 
     try:

@@ -1,4 +1,4 @@
-"""Differences in words: how an answer differs from what is expected."""
+"""Differences in words, which say how an answer differs from the expected one."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from .verdict import Difference, Kind, Value
 
 _COMMANDS = [kind.__name__ for kind in COMMANDS]
 _NAME = re.compile(r"(?!it |there )\w+(:| is| has| seems) ")
-"""How a sentence begins that begins with a part's name, whose letters stay as they are."""
+"""The beginning of a sentence that starts with the name of a part, which is not capitalised."""
 
 _MEASURES = {
     "max_mm": ("the largest error of the tip", " mm"),
@@ -24,7 +24,7 @@ _MEASURES = {
     "rms_velocity_mm_s": ("the RMS error of the tip's speed", " mm/s"),
     "worst_mm": ("the worst error", " mm"),
 }
-"""Measures of a run in words, with their units."""
+"""The measures of a run in words, and their units."""
 
 _CAUSES = {
     -1.0: "has the other sign",
@@ -34,11 +34,11 @@ _CAUSES = {
     2.0: "is twice what is expected",
     0.5: "is half of what is expected",
 }
-"""The likely cause if all numbers are wrong by the same factor."""
+"""The likely cause of each factor by which all numbers are wrong."""
 
 
 def sentence(d: Difference) -> str:
-    """A difference as a sentence, by which somebody could begin to correct it."""
+    """A difference as a sentence that tells a student where to begin."""
     text, expected, got, guess = words(d)
     if got and d.several:
         text = f"{text}it gives {got}. Expected: {expected}"
@@ -70,7 +70,7 @@ def _index(at: Sequence[float]) -> str:
 
 
 def words(d: Difference) -> tuple[str, str, str, str]:
-    """A difference in words: where it is, what was expected, what was returned, a likely cause."""
+    """The place of a difference, what was expected, what was returned, and a likely cause."""
     of = f"{d.part}: " if d.part else ""
     text = ""
     match d.kind:
@@ -78,15 +78,15 @@ def words(d: Difference) -> tuple[str, str, str, str]:
             text = f"got {_brief(d.found)}, which is not one of the right values"
         case Kind.NUMBERS:
             at = f"at {_index(d.at)} " if d.at else ""
-            also = ", or any that moves the tip alike" if d.several else ""
+            also = ", or any that moves the tip in the same way" if d.several else ""
             return f"{of}{at}", _brief(d.expected) + also, _brief(d.found), likely_cause(d)
         case Kind.RESPONSE:
             return f"at {d.at[0]:g} rad/s ", _polar(d.expected), _polar(d.found), ""
         case Kind.MEASURE:
             what, unit = _MEASURES.get(d.part, (d.part.replace("_", " "), ""))
-            text = f"{what} is {_much(d.found)}{unit}, allowed {_much(d.expected)}{unit}"
+            text = f"{what} is {_much(d.found)}{unit}; the limit is {_much(d.expected)}{unit}"
         case Kind.TYPE if not d.expected:
-            text = f"{of}plain numbers are asked for, not a {d.found}"
+            text = f"{of}the answer should be plain numbers, not a {d.found}"
         case Kind.TYPE:
             text = f"{of}it should be a {d.expected}, not {_instead(d)}"
         case Kind.VALUE:
@@ -97,7 +97,7 @@ def words(d: Difference) -> tuple[str, str, str, str]:
             parts = f"{len(d.parts)} values ({', '.join(d.parts)})"
             text = f"{of}it should be {parts}, not {_brief(d.found)}"
         case Kind.NOTHING:
-            text = "it returned nothing (None); does every branch of it end in a return?"
+            text = "it returned nothing (None); does each of its branches end with a return?"
         case Kind.RAISED:
             text = f" raised {d.found or d.error}"
         case Kind.REFUSED | Kind.CHANGED:
@@ -108,7 +108,7 @@ def words(d: Difference) -> tuple[str, str, str, str]:
 
 
 def likely_cause(d: Difference) -> str:
-    """The likely cause of a factor; a single number may be twice or half of another by chance."""
+    """The likely cause of a factor; one number may be twice or half of another by chance."""
     if d.times is None:
         return ""
     single = isinstance(d.expected, float) and not d.at
@@ -119,7 +119,7 @@ def likely_cause(d: Difference) -> str:
 
 
 def _instead(d: Difference) -> str:
-    """What was returned instead of the type that was asked for, and how to make that type."""
+    """What was returned instead of the expected type, and how to make that type."""
     if d.found in _COMMANDS:
         return f"a {d.found}"
     what = _brief(d.found) or "plain numbers"

@@ -1,4 +1,4 @@
-"""Judges of what several answers do alike: a frequency response, the tip's acceleration."""
+"""Judges that compare what answers do: their frequency response, or the tip's acceleration."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from .judges import Close, Gains, Within, value
 from .verdict import Difference, Kind, Value
 
 MOST_COEFFICIENTS = 50
-"""Of a polynomial that is judged."""
+"""Limit for a polynomial in an answer."""
 
 
 @dataclass(frozen=True)
@@ -36,28 +36,28 @@ class Ratio:
         if most > MOST_COEFFICIENTS:
             raise OutOfRange(
                 f"a polynomial has {most} coefficients, the limit is {MOST_COEFFICIENTS}; "
-                "cancel what numerator and denominator have in common"
+                "cancel the common factors of the numerator and the denominator"
             )
 
     def __call__(self, s: complex) -> complex:
-        """Its value at ``s``."""
+        """The value of the transfer function at ``s``."""
         return complex(np.polyval(self.num, s) / np.polyval(self.den, s))
 
 
 @dataclass(frozen=True)
 class Response:
-    """A transfer function judged by its frequency response, whatever its form.
+    """The judge of a transfer function by its frequency response, whatever its form.
 
     Attributes:
-        omega: Where to compare, in [rad/s].
-        rtol: Largest difference, as a share of the expected value.
+        omega: Frequencies at which to compare, in [rad/s].
+        rtol: Largest difference, relative to the expected value.
     """
 
     omega: tuple[float, ...]
     rtol: float = 0.02
 
     def __call__(self, answer: Any, expected: Any) -> Difference | None:
-        """None if they agree, else where they do not."""
+        """None if the responses agree, else the first frequency at which they differ, and how."""
         other = Difference(Kind.TYPE, expected="transfer function", found=value(answer))
         if not hasattr(answer, "num"):
             return other
@@ -71,11 +71,11 @@ class Response:
         return None
 
     def same(self, answer: Any, other: Any) -> bool:
-        """Whether two answers, right or wrong, respond alike."""
+        """Whether two answers, right or wrong, have the same response."""
         return self(answer, other) is None
 
     def distance(self, answer: Any, expected: Any) -> float:
-        """How far the answer is off, in tolerances."""
+        """The largest error of the answer, in tolerances."""
         try:
             return max(
                 abs(complex(answer(1j * w)) / complex(expected(1j * w)) - 1.0) / self.rtol
@@ -92,12 +92,12 @@ def _polar(z: complex) -> Value:
 
 @dataclass(frozen=True, eq=False)
 class TipTorque:
-    """A torque as far as the tip feels it: the expected answer that `AtTip` compares with.
+    """An expected torque of which only the effect on the tip counts; `AtTip` compares with it.
 
     Attributes:
-        value: One such torque, shape (n,) in [N m].
-        accelerates: J M^-1, what a torque adds to the tip's acceleration, shape (6, n).
-        elbow: The joints' motion of which the tip sees nothing, a unit vector, shape (n,).
+        value: One of the right torques, shape (n,) in [N m].
+        accelerates: J M^-1, which maps a torque to the tip acceleration it adds, shape (6, n).
+        elbow: The joint motion that does not move the tip, a unit vector, shape (n,).
     """
 
     value: Array
@@ -107,9 +107,9 @@ class TipTorque:
 
 @dataclass(frozen=True)
 class AtTip:
-    """A `JointTorque` judged by what it does: it must accelerate the tip as the expected one does.
+    """The judge of a `JointTorque` by the acceleration that it gives to the tip.
 
-    Seven joints can move in one way that the tip does not feel, so that many torques are right.
+    Seven joints have one motion that does not move the tip, so more than one torque is right.
 
     Attributes:
         rtol: Tolerance relative to the expected torque.
@@ -120,17 +120,17 @@ class AtTip:
     atol: float = 1e-6
 
     def __call__(self, answer: Any, expected: TipTorque) -> Difference | None:
-        """None if the tip moves alike, else how the torques differ."""
+        """None if the tip accelerates in the same way, else how the torques differ."""
         if self.distance(answer, expected) <= 1.0:
             return None
         found = Close(self.rtol, self.atol)(answer, JointTorque(expected.value))
         return replace(found, several=True) if found else Difference(Kind.OTHER)
 
     def same(self, answer: Any, other: Any) -> bool:
-        """Whether two torques, right or wrong, move the tip alike.
+        """Whether two torques, right or wrong, move the tip in the same way.
 
-        They may differ by a torque along the elbow's motion: a damper behind ``I - pinv(J) J`` is
-        one, the tip feels it, and any mistake may come with it.
+        They may also differ by a torque along the elbow's motion.  A damper multiplied by
+        ``I - pinv(J) J`` gives one, which does act on the tip, and any mistake may come with it.
         """
         if isinstance(other, TipTorque) and type(answer) is JointTorque:
             loose = replace(self, rtol=max(self.rtol, 1e-4))
@@ -140,7 +140,7 @@ class AtTip:
         return Close(self.rtol, self.atol).same(answer, other)
 
     def distance(self, answer: Any, expected: TipTorque) -> float:
-        """How far the tip's acceleration is off, in tolerances; infinite for any other command."""
+        """The error of the tip's acceleration, in tolerances; infinite for another command type."""
         if type(answer) is not JointTorque:
             return float("inf")
         off = np.abs(expected.accelerates @ (answer.value - expected.value))
@@ -149,7 +149,7 @@ class AtTip:
 
 
 def as_expected(known: Any, expected: Any) -> Any:
-    """What a mistake gives on a call, in the form of what is expected there."""
+    """The answer of a known mistake to a call, in the form of the expected answer."""
     if isinstance(expected, TipTorque) and type(known) is JointTorque:
         return replace(expected, value=known.value)
     return known
@@ -158,14 +158,14 @@ def as_expected(known: Any, expected: Any) -> Any:
 Judge = Close | Within | Response | Gains | AtTip | Form | Measured | Found | Telling
 
 
-def right_by(judge: Judge, answer: Any, expected: Any) -> bool:
-    """Whether a judge takes an answer; there is no end to what an answer can be."""
+def accepts(judge: Judge, answer: Any, expected: Any) -> bool:
+    """Whether a judge finds an answer right; an answer that makes it raise is not."""
     try:
         return judge(answer, expected) is None
     except Exception:
         return False
 
 
-def no_better(judge: Judge, answer: Any, mistake: Any, expected: Any) -> bool:
-    """Whether an answer is wrong where a mistake is."""
-    return right_by(judge, mistake, expected) or not right_by(judge, answer, expected)
+def shares_error(judge: Judge, answer: Any, mistake: Any, expected: Any) -> bool:
+    """Whether an answer is wrong on a call, or the known mistake is right on it."""
+    return accepts(judge, mistake, expected) or not accepts(judge, answer, expected)

@@ -1,7 +1,7 @@
-"""Forms of an answer that is written down: a letter, an order, a number, a curve.
+"""Forms of an answer that students write down: a letter, an order, a number, or a curve.
 
-A form is the judge of a prediction: it takes whatever a person could mean, right or wrong, for the
-point is given for committing.  `Measured` judges a number that was found out about an arm.
+A form is the judge of a prediction.  It accepts every plausible value, right or wrong, because the
+point is given for committing.  `Measured` judges a number that was measured on an arm.
 """
 
 from __future__ import annotations
@@ -18,44 +18,44 @@ COMMITTED = "committed before the arm answers"
 """The one test of a prediction."""
 
 OWN_ARM = "it is true of your own arm"
-"""The test of a number that a student found out; only who marks it knows the arm."""
+"""The test of a number that a student measured; only the grader knows the arm."""
 
 
 def letters(said: Any) -> str:
-    """What was written, in small letters and without spaces around it; "" if it is not a text."""
+    """A text in lower case and without spaces around it; "" for any other value."""
     return said.strip().lower() if isinstance(said, str) else ""
 
 
 class RightOrWrong:
-    """What judges share that measure no distance: an answer is right or wrong, equal or not."""
+    """The base of judges without a tolerance: an answer is right or wrong, equal or not."""
 
     def __call__(self, answer: Any, expected: Any) -> Difference | None:
-        """None if it is right, else how it differs."""
+        """None if the answer is right, else how it differs."""
         raise NotImplementedError
 
     def same(self, answer: Any, other: Any) -> bool:
-        """Whether two answers, right or wrong, are the same one."""
+        """Whether two answers, right or wrong, are the same."""
         return np.array_equal(answer, other)
 
     def distance(self, answer: Any, expected: Any) -> float:
-        """Zero if it is right, else infinite."""
+        """Zero if the answer is right, else infinite."""
         return 0.0 if self(answer, expected) is None else float("inf")
 
 
 class _Form(RightOrWrong):
-    """What the four forms share: a prediction of the right form is accepted, whatever it says."""
+    """The base of the four forms: a prediction of the right form is accepted, whatever it says."""
 
     def problem(self, said: Any) -> str:
-        """What is wrong with the form of a prediction; "" if nothing is."""
+        """What is wrong with the form of a prediction, or ""."""
         raise NotImplementedError
 
     def __call__(self, answer: Any, expected: Any) -> Difference | None:
-        """None if it is of this form."""
+        """None if the answer has this form, else what is wrong with it."""
         found = self.problem(answer)
         return Difference(Kind.REFUSED, found=found) if found else None
 
     def same(self, answer: Any, other: Any) -> bool:
-        """Whether two predictions are the same one."""
+        """Whether two predictions are the same."""
         if isinstance(answer, str):
             return letters(answer) == letters(other)
         return super().same(answer, other)
@@ -73,17 +73,17 @@ class Choose(_Form):
 
     @property
     def how(self) -> str:
-        """How to write it down."""
+        """How to write the prediction down."""
         return f"a letter, such as {next(iter(self.options))!r}"
 
     def problem(self, said: Any) -> str:
-        """What is wrong with the form of a prediction; "" if nothing is."""
+        """What is wrong with the form of a prediction, or ""."""
         if letters(said) in self.options:
             return ""
         return f"it is {said!r}; choose one of {', '.join(map(repr, self.options))}"
 
     def words(self, said: Any) -> str:
-        """A prediction as a sentence's object."""
+        """The prediction in words, as the object of a sentence."""
         return f"({letters(said)}) {self.options[letters(said)]}"
 
 
@@ -93,7 +93,7 @@ class Rank(_Form):
 
     Attributes:
         options: What each letter stands for.
-        first: What the first one has most of.
+        first: What distinguishes the first one, such as "the largest".
     """
 
     options: Mapping[str, str] = field(hash=False)
@@ -101,17 +101,17 @@ class Rank(_Form):
 
     @property
     def how(self) -> str:
-        """How to write it down."""
+        """How to write the prediction down."""
         return f"their letters in order, {self.first} first, such as {''.join(self.options)!r}"
 
     def problem(self, said: Any) -> str:
-        """What is wrong with the form of a prediction; "" if nothing is."""
+        """What is wrong with the form of a prediction, or ""."""
         if sorted(letters(said)) == sorted(self.options):
             return ""
         return f"it is {said!r}; write each of the letters {''.join(self.options)} once"
 
     def words(self, said: Any) -> str:
-        """A prediction as a sentence's object."""
+        """The prediction in words, as the object of a sentence."""
         return ", ".join(self.options[letter] for letter in letters(said))
 
 
@@ -120,9 +120,9 @@ class Number(_Form):
     """A number with a unit.
 
     Attributes:
-        unit: Of the number.
-        least: Less than this nobody could mean.
-        most: More than this nobody could mean.
+        unit: Its unit.
+        least: The smallest plausible value.
+        most: The largest plausible value.
     """
 
     unit: str
@@ -131,11 +131,11 @@ class Number(_Form):
 
     @property
     def how(self) -> str:
-        """How to write it down."""
+        """How to write the prediction down."""
         return f"a number from {self.least:g} to {self.most:g} ({self.unit})"
 
     def problem(self, said: Any) -> str:
-        """What is wrong with the form of a prediction; "" if nothing is."""
+        """What is wrong with the form of a prediction, or ""."""
         if isinstance(said, bool) or not isinstance(said, int | float | np.integer | np.floating):
             example = "with a point, such as 8.5" if "," in str(said) else f"({self.unit})"
             return f"it is {said!r}; write one number {example}"
@@ -144,7 +144,7 @@ class Number(_Form):
         return ""
 
     def words(self, said: Any) -> str:
-        """A prediction as a sentence's object."""
+        """The prediction in words, as the object of a sentence."""
         return f"{said:.3g} {self.unit}"
 
 
@@ -154,10 +154,10 @@ class Curve(_Form):
 
     Attributes:
         at: The places.
-        along: What they are, with their unit.
-        height: What is drawn, with its unit.
-        least: The lower edge of the paper.
-        most: The upper edge.
+        along: The quantity on the horizontal axis, with its unit.
+        height: The quantity on the vertical axis, with its unit.
+        least: The lower end of the vertical axis.
+        most: The upper end of the vertical axis.
     """
 
     at: tuple[float, ...]
@@ -168,20 +168,20 @@ class Curve(_Form):
 
     @property
     def how(self) -> str:
-        """How to write it down."""
+        """How to write the prediction down."""
         places = ", ".join(f"{x:g}" for x in self.at)
         what = f"the {self.height} where the {self.along} is {places}"
         return f"a list of {len(self.at)} numbers: {what}"
 
     def problem(self, said: Any) -> str:
-        """What is wrong with the form of a prediction; "" if nothing is."""
+        """What is wrong with the form of a prediction, or ""."""
         if not isinstance(said, list | tuple) or len(said) != len(self.at):
             return f"it is {said!r}; write {self.how}"
         one = Number(self.height, self.least, self.most)
         return next(filter(None, map(one.problem, said)), "")
 
     def words(self, said: Any) -> str:
-        """A prediction as a sentence's object."""
+        """The prediction in words, as the object of a sentence."""
         return ", ".join(f"{y:.3g} at {x:g}" for x, y in zip(self.at, said, strict=True))
 
 
@@ -190,13 +190,15 @@ Form = Choose | Rank | Number | Curve
 
 @dataclass(frozen=True)
 class Measured(RightOrWrong):
-    """A measured number, within a tolerance of the arm's; without an expected one, any plausible.
+    """The judge of a measured number, which must be within a tolerance of the arm's.
+
+    Where no number is expected, every plausible number is accepted.
 
     Attributes:
-        of: Which number of an `OwnArm`.
-        unit: Of it.
-        least: Less than this nobody could measure.
-        most: More than this nobody could measure.
+        of: The name of the number, a field of `OwnArm`.
+        unit: Its unit.
+        least: The smallest plausible value.
+        most: The largest plausible value.
         tolerance: Largest difference, in the same unit.
     """
 
@@ -207,7 +209,7 @@ class Measured(RightOrWrong):
     tolerance: float
 
     def __call__(self, answer: Any, expected: Any) -> Difference | None:
-        """None if it is near enough, else how it differs."""
+        """None if the number is near enough, else how it differs."""
         found = Number(self.unit, self.least, self.most).problem(answer)
         if found:
             return Difference(Kind.REFUSED, found=found)
@@ -216,5 +218,5 @@ class Measured(RightOrWrong):
         return Difference(Kind.NUMBERS, expected=float(expected), found=float(answer))
 
     def expected(self, arm: object) -> float:
-        """What is right for somebody's `OwnArm`."""
+        """The right number for a student's `OwnArm`."""
         return float(getattr(arm, self.of))

@@ -1,4 +1,4 @@
-"""What is wrong with a notebook's cells, seen from the file: names nowhere defined, and errors."""
+"""Defects in a notebook's cells that the file shows: undefined names, errors, missing answers."""
 
 from __future__ import annotations
 
@@ -8,28 +8,28 @@ from collections.abc import Collection, Iterable, Iterator
 from typing import Any
 
 from .notebook import checks, defines
-from .source import look
+from .source import analyse
 from .unfinished import defined_in
 
 _KNOWN = {*vars(builtins), "get_ipython", "display", "In", "Out", "_", "__", "___", "__file__"}
-"""Names that every notebook has."""
+"""Names that every notebook defines."""
 _OWN_ARM = {"my_arm", "my_bug"}
-"""What the grader cannot run."""
+"""Functions that the grader does not run."""
 
 
-def undefined(cells: list[dict[str, Any]], asked: Collection[str]) -> Iterator[str]:
+def undefined_names(cells: list[dict[str, Any]], asked: Collection[str]) -> Iterator[str]:
     """A sentence for each cell that uses names which no cell defines.
 
     Args:
-        cells: Of the notebook.
-        asked: Names of the questions; of these others tell.
+        cells: The cells of the notebook.
+        asked: Names of the questions, which are reported elsewhere.
     """
     code = [cell["source"] for cell in cells if cell["cell_type"] == "code"]
     defined = _KNOWN.union(asked, *map(defined_in, code))
-    if "*" in defined:  # of an import: nobody knows what it brings
+    if "*" in defined:  # an import of everything may define any name
         return
     for source in code:
-        names = [name for name in look(source)["uses"] if name not in defined]
+        names = [name for name in analyse(source)["uses"] if name not in defined]
         defined.update(names)
         if names:
             yield (
@@ -39,22 +39,22 @@ def undefined(cells: list[dict[str, Any]], asked: Collection[str]) -> Iterator[s
             )
 
 
-def calculated(sources: Iterable[str], question: str) -> str:
-    """A sentence if an answer comes from runs of one's own arm and is not typed, "" if it is typed.
+def calculated_from_runs(sources: Iterable[str], question: str) -> str:
+    """A sentence if an answer is calculated from runs of the student's own arm, else "".
 
     Args:
-        sources: Of the cells, in the order in which they ran.
-        question: What the answer is called.
+        sources: The text of the cells, in the order in which they ran.
+        question: The name of the answer.
     """
-    parts = [part for source in sources for part in look(source)["definitions"]]
+    parts = [part for source in sources for part in analyse(source)["definitions"]]
     waiting = [part for part in parts if question in part["binds"]][-1:]
     seen: set[str] = set()
     while waiting:
         part = waiting.pop()
         if any(name.rpartition(".")[2] in _OWN_ARM for name in part["uses"]):
             return (
-                f"{question} is calculated from runs of your arm, which are not made again when "
-                "it is marked; type the value itself"
+                f"{question} is calculated from runs of your arm, which are not repeated when it "
+                "is marked; type the value itself"
             )
         leans = {*part["outside"]} - seen
         seen |= leans
@@ -63,7 +63,7 @@ def calculated(sources: Iterable[str], question: str) -> str:
 
 
 def first_error(cells: list[dict[str, Any]]) -> str:
-    """A sentence about the first cell that ended with an error, "" if none did."""
+    """A sentence about the first cell that ended with an error, or ""."""
     for cell in cells:
         outputs = cell.get("outputs")
         for output in outputs if isinstance(outputs, list) else ():
@@ -82,17 +82,17 @@ def _first_line(source: str) -> str:
 
 
 def _shown(text: str, most: int) -> str:
-    """The text in one line of at most `most` printable characters."""
+    """The text as one line of at most `most` printable characters."""
     text = "".join(x if x.isprintable() else " " for x in text)
     return textwrap.shorten(text, most, placeholder=" ...")
 
 
-def bring_back(question: str, name: str, is_text: bool) -> str:
-    """How to get back the cell of a question."""
+def how_to_restore(question: str, name: str, is_text: bool) -> str:
+    """How to restore the cell of a question."""
     if is_text:
         return f"the cell of {question} is not code any more; click on it, press Esc and then Y"
     return (
-        f"no cell defines {question}. To bring its cell back, lay a fresh copy of the notebook in "
+        f"no cell defines {question}. To restore its cell, put a fresh copy of the notebook into "
         "a folder `fresh` beside this file, and run in a new cell: "
         f"!labkit merge {name}.ipynb fresh/{name}.ipynb --to again.ipynb (again.ipynb then holds "
         f"all your work; call it {name}.ipynb)"
@@ -100,7 +100,7 @@ def bring_back(question: str, name: str, is_text: bool) -> str:
 
 
 def changed_since(cells: list[dict[str, Any]], question: str) -> bool:
-    """Whether the cell that defines an answer was run after its check, or not at all."""
+    """Whether the cell that defines an answer was run after the check, or was not run."""
     defined = [cell.get("execution_count") for cell in cells if defines(cell, question)]
     checked = [cell.get("execution_count") for cell in cells if checks(cell, question)]
     ran = [count for count in checked if isinstance(count, int)]

@@ -1,4 +1,4 @@
-"""Identification: a number that a student measures on an arm of their own, judged against it."""
+"""Identifications, in which students measure a number on an arm of their own."""
 
 from __future__ import annotations
 
@@ -16,18 +16,18 @@ from .verdict import Difference, Kind, Outcome, Verdict
 
 @dataclass(frozen=True)
 class Identification:
-    """Something to find out about an arm of one's own, as its author writes it.
+    """Something that students find out about their own arm, as its author writes it.
 
     Attributes:
-        name: Of the value that the student writes down.
+        name: Name of the value that the student writes down.
         asks: What to find out.
-        judge: What is right, and how near.
-        truth: What is right for the demonstration's arm.
+        judge: Knows the right answer and its tolerance.
+        truth: The right answer for the demonstration's arm.
         form: What to write down, such as "one number, in kg".
-        points: For a number within the tolerance.
-        hints: From the idea to nearly there.
+        points: Points for an answer within the tolerance.
+        hints: Hints, from the idea to almost the answer.
         core: Whether it belongs to the core path.
-        outcomes: What it is evidence of.
+        outcomes: The learning outcomes of which it is evidence.
     """
 
     name: str
@@ -41,7 +41,7 @@ class Identification:
     outcomes: tuple[str, ...] = ("experiment",)
 
     def question(self) -> Question:
-        """The question: a public gate, and a hidden case with the number of somebody's arm."""
+        """The question, with a public gate and a hidden case with the right answer for an arm."""
         tests = (
             Test(self.form, (Call(()),), 0.0),
             Test(
@@ -81,12 +81,12 @@ class Identification:
         return f"{self.name} = None"
 
     def solved(self) -> str:
-        """The cell as the demonstration's arm wants it."""
+        """The cell with the right answer for the demonstration's arm."""
         return f"{self.name} = {self.truth!r}"
 
 
-def personal(question: Question, arm: OwnArm) -> Question:
-    """The question with what is true of somebody's arm; any other question as it is."""
+def personalised(question: Question, arm: OwnArm) -> Question:
+    """The question with the right answer for a student's arm; other questions are unchanged."""
     if not isinstance(question.judge, Measured | Found | Telling):
         return question
     expected = question.judge.expected(arm)
@@ -94,10 +94,10 @@ def personal(question: Question, arm: OwnArm) -> Question:
 
 
 def on_the_public_arm(question: Question, verdict: Verdict, answer: Any) -> tuple[Verdict, str]:
-    """The verdict on an answer that may be right, where the arm is the public one, and a remark."""
+    """The verdict on a plausible answer about the public arm, and a remark if it is right."""
     judge: Any = question.judge
     if judge(answer, judge.expected(draw(PUBLIC_SEED, DEMO))) is None:
-        return verdict, f"It is true of the public arm, {DEMO!r}."
+        return verdict, f"Your answer is true of the public arm, {DEMO!r}."
     why = Difference(Kind.REFUSED, found=f"it is not true of the public arm, {DEMO!r}")
     call = f"{question.name}()"
     wrong = replace(verdict.tests[-1], outcome=Outcome.WRONG, call=call, difference=why)

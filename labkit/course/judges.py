@@ -1,6 +1,6 @@
-"""Judges: does an answer mean the same as the expected one?  If not, how does it differ?
+"""Judges, which say whether an answer agrees with the expected one, and if not, how it differs.
 
-A judge is a frozen value, so that it travels with its question as data.
+A judge is a frozen value, so it can be stored with its question as data.
 """
 
 from __future__ import annotations
@@ -20,19 +20,19 @@ from .forms import RightOrWrong
 from .verdict import Difference, Kind, Value
 
 FEW = 9
-"""Up to this many numbers are shown together; of a longer answer only the worst is shown."""
+"""The most numbers that are shown together; of a longer answer only the worst is shown."""
 
 
 @dataclass(frozen=True)
 class Close:
-    """Every number within ``atol + rtol |expected|``; shapes and command types must be the same.
+    """Every number must be within ``atol + rtol |expected|``, with the same shape and command type.
 
-    Lists pass for arrays, and any three things in order for a `Sample`.
+    A list is accepted as an array, and any sequence of three values as a `Sample`.
 
     Attributes:
         rtol: Relative tolerance.
         atol: Absolute tolerance, in the answer's unit.
-        parts: What to call the parts of an answer that is a tuple.
+        parts: Names for the parts of an answer that is a tuple.
         only: The one part that counts; empty for all of them.
     """
 
@@ -46,9 +46,9 @@ class Close:
         return self._differ(answer, expected, "")
 
     def same(self, answer: Any, other: Any) -> bool:
-        """Whether two answers, right or wrong, are the same one; 1.96 is 1.959964 here.
+        """Whether two answers, right or wrong, are the same; 1.96 equals 1.959964 here.
 
-        NaN is NaN here, for some mistakes give it.
+        NaN equals NaN here, because some mistakes return it.
         """
         alike = replace(self, rtol=max(self.rtol, 1e-4))
         try:
@@ -65,7 +65,7 @@ class Close:
             return False
 
     def distance(self, answer: Any, expected: Any) -> float:
-        """How far the answer is off, in tolerances; infinite where it has another form."""
+        """The largest error of the answer, in tolerances; infinite if it has another form."""
         try:
             a, b = numbers(answer), numbers(expected)
         except (LabkitError, TypeError, ValueError):
@@ -143,10 +143,10 @@ class Close:
 
 @dataclass(frozen=True)
 class Within:
-    """A number of which several are right: it must lie in one of the expected intervals."""
+    """The judge of a number that must be in one of the expected intervals."""
 
     def __call__(self, answer: Any, expected: Any) -> Difference | None:
-        """None if it does, else where it lies instead."""
+        """None if the number is in an interval, else the number."""
         try:
             x = float(as_array(answer, (), "the answer"))
         except LabkitError as error:
@@ -167,10 +167,10 @@ class Within:
 
 @dataclass(frozen=True)
 class AtMost:
-    """The measures of a run, each at most its expected limit."""
+    """The judge of a run, each measure of which has an upper limit."""
 
     def __call__(self, answer: dict[str, float], expected: dict[str, float]) -> Difference | None:
-        """None if all are, else the first that is not."""
+        """None if every measure is within its limit, else the first that is not."""
         for name, limit in expected.items():
             if not answer[name] <= limit:
                 return Difference(Kind.MEASURE, name, (), float(limit), value(answer[name]))
@@ -183,13 +183,13 @@ class AtMost:
 
 @dataclass(frozen=True)
 class Gains(RightOrWrong):
-    """A pair (kp, kd) of which many are right; a run tells how good they are.
+    """The judge of the form of a pair (kp, kd); a run then tells how good the gains are.
 
-    Each is one number or one for each joint, none below 0.
+    Each gain is one number or one for each joint, and no number is negative.
     """
 
     def __call__(self, answer: Any, expected: Any) -> Difference | None:
-        """None if it is such a pair, else what it is instead."""
+        """None if the answer is such a pair, else how it differs."""
         try:
             self._read(answer)
         except LabkitError as error:
@@ -199,7 +199,7 @@ class Gains(RightOrWrong):
         return None
 
     def same(self, answer: Any, other: Any) -> bool:
-        """Whether two pairs are alike: every gain within a factor of 1.5."""
+        """Whether two pairs are similar, with every gain within a factor of 1.5."""
         try:
             a, b = self._read(answer), self._read(other)
         except (LabkitError, TypeError, ValueError):
@@ -217,13 +217,13 @@ def numbers(value: Any) -> Array:
     """All numbers of an answer, part by part, shape (n,).
 
     Raises:
-        TypeError, ValueError: It is not made of numbers.
+        TypeError, ValueError: The answer does not consist of numbers.
     """
     return np.concatenate([x.ravel() for x in _flat(value)])
 
 
 def _flat(value: Any) -> list[Array]:
-    if hasattr(value, "value"):  # a command, or a torque as the tip feels it
+    if hasattr(value, "value"):  # a command or a `TipTorque`
         value = value.value
     if isinstance(value, dict):
         value = list(value.values())
@@ -233,7 +233,7 @@ def _flat(value: Any) -> list[Array]:
 
 
 def value(x: Any) -> Value:
-    """A few finite numbers as numbers, anything else as Python writes it, shortened."""
+    """A few finite numbers as numbers; anything else as its shortened `repr`."""
     if isinstance(x, np.ndarray | int | float | np.number) and not isinstance(x, bool):
         a = np.asarray(x)
         if a.dtype.kind in "fiu" and a.ndim <= 2 and a.size <= FEW and np.isfinite(a).all():
@@ -246,7 +246,7 @@ def value(x: Any) -> Value:
 
 
 def _instead(answer: Any, expected: Any) -> Value:
-    """What came instead of a command: another one's name, "" for plain numbers of its size."""
+    """What was returned instead of a command; "" for plain numbers of the same shape."""
     if isinstance(answer, COMMANDS):
         return type(answer).__name__
     return "" if np.shape(answer) == np.shape(getattr(expected, "value", 0)) else value(answer)
@@ -257,7 +257,7 @@ def _refused(error: LabkitError) -> Difference:
 
 
 def factor(a: Array, b: Array) -> float | None:
-    """What all numbers of b are multiplied by to give a; None where there is no such factor."""
+    """The factor by which all numbers of b are multiplied to give a, or None."""
     size = float(np.vdot(b, b))
     if not size:
         return None

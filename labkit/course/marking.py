@@ -1,6 +1,6 @@
-"""Marking: put a question to a function and come to a verdict.
+"""Marking, which tries a function on the cases of a question and returns a verdict.
 
-The function may live here or in another process; marking does not care.
+The function may run in this process or in another one.
 """
 
 from __future__ import annotations
@@ -16,22 +16,24 @@ from ..errors import Diverged, LabkitError
 from ..log import Log
 from ..shapes import Array
 from .advice import full_description
-from .equivalence import Judge, as_expected, no_better
+from .equivalence import Judge, as_expected, shares_error
 from .judges import AtMost, Close, numbers
 from .question import Call, Case, Choice, Loop, Mistake, Question, Raised, Test, Tuned
 from .reply import NoAnswer
 from .verdict import Difference, Kind, Misconception, Outcome, TestResult, Verdict
 from .withheld import Withheld
 
+Function = Callable[..., Any]
 
-class Ran(NamedTuple):
+
+class PublicRun(NamedTuple):
     """A run of the arm on a case that the student can see.
 
     Attributes:
-        test: The name of the test that it belongs to.
-        case: What was asked.
-        log: What the arm did; up to the moment when it ran away, if it did.
-        complete: Whether it came to its end.
+        test: The name of the test to which the run belongs.
+        case: The case.
+        log: The motion of the arm, up to the moment when it diverged, if it did.
+        complete: Whether the run reached its end.
     """
 
     test: str
@@ -41,12 +43,12 @@ class Ran(NamedTuple):
 
 
 class Mismatch(NamedTuple):
-    """What was expected and what came, on one call.
+    """The expected and the returned numbers of one call.
 
     Attributes:
         call: The call as the student would type it.
         expected: All numbers of the expected answer, shape (n,).
-        given: The same of the student's answer, shape (n,).
+        given: All numbers of the student's answer, shape (n,).
     """
 
     call: str
@@ -55,13 +57,13 @@ class Mismatch(NamedTuple):
 
 
 @dataclass(frozen=True, eq=False)
-class Tried:
-    """What came of the public cases alone.
+class PublicResult:
+    """The result of the public cases alone.
 
     Attributes:
-        results: One for each test, as far as its public cases tell.
-        answers: What came back from each case that was asked.
-        failing: The first call that is not right, if there is one.
+        results: One for each test, from its public cases only.
+        answers: The answer to each case that was tried.
+        failing: The first call with a wrong answer, if there is one.
     """
 
     results: tuple[TestResult, ...]
@@ -70,20 +72,20 @@ class Tried:
 
     @property
     def outcome(self) -> Outcome:
-        """What they come to together."""
+        """The outcome of all tests together."""
         return _outcome(self.results)
 
-    def runs(self, question: Question) -> Iterator[Ran]:
+    def runs(self, question: Question) -> Iterator[PublicRun]:
         """The public runs of the arm, for replays."""
         for test in question.tests:
             for case in test.cases:
                 answer = self.answers.get(case)
                 log = answer.log if isinstance(answer, _Failure) else answer
                 if isinstance(case, Loop | Tuned) and isinstance(log, Log):
-                    yield Ran(test.name, case, log, complete=log is answer)
+                    yield PublicRun(test.name, case, log, complete=log is answer)
 
-    def evidence(self, question: Question) -> Mismatch | None:
-        """The first public call whose answer differs, where both are numbers of one form."""
+    def first_mismatch(self, question: Question) -> Mismatch | None:
+        """The numbers of the first public call whose answer is wrong but has the right form."""
         for call in question.calls:
             answer: Any = self.answers.get(call)
             try:
@@ -96,17 +98,17 @@ class Tried:
         return None
 
 
-def mark(question: Question, function: Callable[..., Any], tried: Tried | None = None) -> Verdict:
+def mark(question: Question, function: Function, tried: PublicResult | None = None) -> Verdict:
     """Try every test of a question, its public cases before any hidden one.
 
     Args:
-        question: With its hidden cases, or without.
-        function: The student's, or one that asks the student's in another process; that one raises
-            `NoAnswer`.
-        tried: What came of the public cases, if they were tried already.
+        question: The question, with or without its hidden cases.
+        function: The student's function, or one that calls it in another process and raises
+            `NoAnswer` where that fails.
+        tried: The result of the public cases, if they have been tried already.
 
     Returns:
-        The verdict.  Gates come first; without them nothing is earned.
+        The verdict.  If a gate fails, no points are earned.
     """
     tried = tried or try_public(question, function)
     results = tuple(
@@ -132,21 +134,21 @@ def mark(question: Question, function: Callable[..., Any], tried: Tried | None =
 
 
 def all_alike(question: Question, outcome: Outcome, kind: Kind | None = None) -> Verdict:
-    """The verdict where every test comes to the same outcome, and nothing is earned."""
+    """The verdict in which every test has the same outcome, and no points are earned."""
     why = None if kind is None else Difference(kind)
     tests = tuple(TestResult(t.name, t.weight, outcome, difference=why) for t in question.tests)
     return Verdict(question.name, outcome, 0.0, question.points, tests)
 
 
 def not_counted(question: Question, tools: tuple[str, ...]) -> Verdict:
-    """The verdict on an answer whose text uses withheld tools; it is not tried."""
+    """The verdict on an answer that is not tried, because its text uses withheld tools."""
     return replace(all_alike(question, Outcome.NOT_COUNTED), withheld=tools)
 
 
-def try_public(question: Question, function: Callable[..., Any]) -> Tried:
+def try_public(question: Question, function: Function) -> PublicResult:
     """Try the public cases of every test.
 
-    Where one fails, all public calls are made, by which a known mistake can be told.
+    If one fails, all public calls are made, so that a known mistake can be recognised.
     """
     answers: dict[Case, Any] = {}
     results, failing = [], None
@@ -159,13 +161,13 @@ def try_public(question: Question, function: Callable[..., Any]) -> Tried:
         for call in question.calls:
             if call not in answers:
                 answers[call] = _answer(call, function)
-    return Tried(tuple(results), answers, failing)
+    return PublicResult(tuple(results), answers, failing)
 
 
 def _outcome(results: Sequence[TestResult]) -> Outcome:
-    """What the tests come to together; one that was not tried has nothing to say.
+    """The outcome of all tests together; a test that was not tried does not count.
 
-    A stub is a stub although its hidden cases, which do not say how they failed, are wrong.
+    A stub is not attempted, although its hidden cases, which do not say how they failed, are wrong.
     """
     outcomes = {result.outcome for result in results}
     shown = {result.outcome for result in results if not result.hidden}
@@ -180,36 +182,36 @@ def _outcome(results: Sequence[TestResult]) -> Outcome:
 
 
 def recognise(question: Question, answers: list[Any]) -> Mistake | None:
-    """The known mistake that gives just these answers on the public calls, if there is one.
+    """The known mistake that gives exactly these answers to the public calls, or None.
 
-    An answer that is right where a mistake is wrong is not this mistake, however near they are.
+    An answer that is right where a mistake is wrong is not that mistake, however close they are.
     """
     judge, expected = repeat(question.judge), [call.expected for call in question.calls]
     for mistake in question.mistakes:
         if answers and len(answers) == len(mistake.answers):
             known = map(as_expected, mistake.answers, expected)
             alike = all(map(_same, judge, answers, known))
-            if alike and all(map(no_better, judge, answers, mistake.answers, expected)):
+            if alike and all(map(shares_error, judge, answers, mistake.answers, expected)):
                 return mistake
     return None
 
 
-def fingerprint(question: Question, function: Callable[..., Any]) -> tuple[Any, ...]:
-    """What a function gives on each public call; `Raised` where it raises."""
+def fingerprint(question: Question, function: Function) -> tuple[Any, ...]:
+    """A function's answer to each public call, or `Raised` if it raises an exception."""
     given = (_answer(call, function) for call in question.calls)
     return tuple(Raised(a.kind) if isinstance(a, _Failure) else a for a in given)
 
 
 @dataclass(frozen=True)
 class _Failure(Raised):
-    """An exception as an answer."""
+    """An exception in place of an answer."""
 
     sentence: str
     log: Log | None = None
     tool: str = ""
 
 
-def _answer(case: Case, function: Callable[..., Any]) -> Any:
+def _answer(case: Case, function: Function) -> Any:
     try:
         return case.ask(function)
     except (Exception, SystemExit) as error:  # exit() in a function must not end the notebook
@@ -217,7 +219,7 @@ def _answer(case: Case, function: Callable[..., Any]) -> Any:
 
 
 def _failure(error: BaseException) -> _Failure:
-    """What to say of an exception that came out of the student's code, or of the loop around it."""
+    """An exception from the student's code, or from the loop around it, in place of an answer."""
     cause = error.__cause__ if isinstance(error, LabkitError) and error.__cause__ else error
     kind = cause.kind if isinstance(cause, NoAnswer) else type(cause).__name__
     known = isinstance(error, NoAnswer) or (isinstance(error, LabkitError) and error.__cause__)
@@ -227,18 +229,18 @@ def _failure(error: BaseException) -> _Failure:
 
 
 _OUTCOMES = {"NotImplementedError": Outcome.NOT_ATTEMPTED, "ArgumentChanged": Outcome.WRONG}
-"""Outcomes of exceptions that do not count as errors of the answer."""
+"""Outcomes of the exceptions that do not count as errors."""
 
 
 def _try(
     test: Test,
     cases: Iterable[Case],
     question: Question,
-    function: Callable[..., Any],
+    function: Function,
     answers: dict[Case, Any],
     before: TestResult | None = None,
 ) -> TestResult:
-    """Put some cases of one test, until one fails; without any, what came of it before stays."""
+    """Try cases of one test until one fails; without any cases, return the earlier result."""
     result = TestResult(test.name, test.weight, Outcome.RIGHT, also=test.also)
     for case in cases:
         answer = _answer(case, function)
@@ -247,7 +249,7 @@ def _try(
         found = _difference(question, test, case, answer)
         if found is not None:
             tool = answer.tool if isinstance(answer, _Failure) else ""
-            if case.hidden:  # how it failed would tell an attacker what was asked
+            if case.hidden:  # how it failed would reveal the case to an attacker
                 outcome = Outcome.NOT_COUNTED if tool else Outcome.WRONG
                 return replace(result, outcome=outcome, hidden=True, tool=tool)
             return replace(
@@ -262,17 +264,16 @@ def _try(
 
 
 def _outcome_of(answer: Any) -> Outcome:
-    """The outcome of an answer that is not right."""
+    """The outcome of a test whose answer is not right."""
     if not isinstance(answer, _Failure):
         return Outcome.WRONG
     return Outcome.NOT_COUNTED if answer.tool else _OUTCOMES.get(answer.kind, Outcome.ERROR)
 
 
 def _difference(question: Question, test: Test, case: Case, answer: Any) -> Difference | None:
-    """How an answer differs from what is expected; None if it does not."""
+    """How an answer differs from the expected one, or None."""
     if isinstance(answer, _Failure):
-        changed = answer.kind == "ArgumentChanged"
-        kind = Kind.CHANGED if changed else Kind.RAISED
+        kind = Kind.CHANGED if answer.kind == "ArgumentChanged" else Kind.RAISED
         return Difference(kind, found=answer.sentence, error=answer.kind)
     if answer is None and isinstance(case, Call | Choice):
         return Difference(Kind.NOTHING)
@@ -282,12 +283,12 @@ def _difference(question: Question, test: Test, case: Case, answer: Any) -> Diff
         return AtMost()(case.measured(answer), case.expected)
     except LabkitError as error:
         return Difference(Kind.REFUSED, found=str(error))
-    except Exception:  # there is no end to what an answer can be
+    except Exception:  # comparing an odd answer may raise anything
         return Difference(Kind.OTHER)
 
 
 def _judge(question: Question, test: Test) -> Judge:
-    """The question's judge, for the part of the answer that the test looks at."""
+    """The question's judge, limited to the part of the answer that the test looks at."""
     judge = question.judge
     return replace(judge, only=test.part) if test.part and isinstance(judge, Close) else judge
 

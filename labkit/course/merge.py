@@ -1,4 +1,4 @@
-"""Merge: a student's work, brought into a corrected release of the notebook."""
+"""Merging a student's work into a corrected release of the notebook."""
 
 from __future__ import annotations
 
@@ -9,13 +9,13 @@ from collections.abc import Callable
 from typing import Any
 
 from ..errors import LabkitError
-from .notebook import about, defines, grade_id, is_edited, released
+from .notebook import defines, grade_id, is_edited, nbgrader_info, released
 from .source import is_stub, plain
 
 Cells = list[dict[str, Any]]
 
-BESIDE = "Here your notebook said what follows; copy what you still need of it."
-"""Above a student's text of a cell that the new release changed too, or does not have."""
+KEPT_TEXT = "Your notebook had the following text here; copy from it what you still need."
+"""The line above a student's text for a cell that the new release changed or does not have."""
 
 
 def merge(mine: Cells, new: Cells) -> Cells:
@@ -26,10 +26,11 @@ def merge(mine: Cells, new: Cells) -> Cells:
         new: The cells of the new release.
 
     Returns:
-        The new release, in its order.  An answer is found by the function that it defines, else by
-        the question that its cell was made for; a cell of the student's own follows the cell that
-        it followed.  Any other cell that they changed stays as they wrote it where the new release
-        did not change it; else their text follows the new one as a comment, below `BESIDE`.
+        The cells in the order of the new release.  An answer is found by the function that it
+        defines, else by the question for which its cell was made.  A cell that the student added
+        follows the same cell as before.  Any other cell that the student changed keeps their text
+        if the new release did not change it; else their text follows the new one as a comment,
+        below `KEPT_TEXT`.
 
     Raises:
         LabkitError: The new notebook is not a release, or none of the student's cells answers any
@@ -39,11 +40,11 @@ def merge(mine: Cells, new: Cells) -> Cells:
         raise LabkitError("the new notebook is not a release; fetch the assignment's folder again")
     merged = copy.deepcopy(new)
     home = _homes(mine, new)
-    asked = [cell for cell in merged if _is_asked(cell)]
+    asked = [cell for cell in merged if _is_answer(cell)]
     answers = [_answer(mine, grade_id(cell)) for cell in asked]
     if asked and not any(_cells_for(mine, grade_id(cell)) for cell in asked):
         raise LabkitError(
-            f"your notebook answers nothing that the new one asks ({grade_id(asked[0])}, ...); "
+            f"your notebook answers no question of the new one ({grade_id(asked[0])}, ...); "
             "are they two releases of the same assignment?"
         )
     for cell, answer in zip(asked, answers, strict=True):
@@ -58,11 +59,11 @@ def merge(mine: Cells, new: Cells) -> Cells:
         own = _is_own(cell, new)
         if cell["source"].strip() in given or not (own or is_edited(cell)):
             continue
-        if place is not None and _takes(merged[place], cell):
+        if place is not None and _may_replace(merged[place], cell):
             merged[place]["source"] = cell["source"]
             continue
         number = sum(map(len, after.values()))
-        kept = copy.deepcopy(cell) if own else _beside(cell)
+        kept = copy.deepcopy(cell) if own else _as_comment(cell)
         after.setdefault(anchor, []).append(kept | {"id": f"own-{number:04d}"})
     result = after.get(-1, [])
     for k, cell in enumerate(merged):
@@ -71,10 +72,10 @@ def merge(mine: Cells, new: Cells) -> Cells:
 
 
 def _homes(mine: Cells, new: Cells) -> Callable[[dict[str, Any]], int | None]:
-    """A function that tells where in the new release a released cell belongs.
+    """A function that returns the index in the new release to which a released cell belongs.
 
-    Ids count the cells of a release, so where a question was added they mean other cells from there
-    on; what a cell is for, the text that was given and what it says are better signs.
+    Ids count the cells of a release, so they shift behind a question that was added.  The purpose
+    of a cell, its released text and its present text are more reliable, and are tried first.
     """
     purposes = {grade_id(cell): k for k, cell in enumerate(new) if grade_id(cell)}
     texts = {released(cell): k for k, cell in enumerate(new) if released(cell)}
@@ -92,27 +93,27 @@ def _homes(mine: Cells, new: Cells) -> Callable[[dict[str, Any]], int | None]:
     return home
 
 
-def _is_asked(cell: dict[str, Any]) -> bool:
-    return bool(about(cell).get("solution"))
+def _is_answer(cell: dict[str, Any]) -> bool:
+    return bool(nbgrader_info(cell).get("solution"))
 
 
 def _is_own(cell: dict[str, Any], new: Cells) -> bool:
-    """Whether the student added a cell; one of an older release has an id of the release's form."""
+    """Whether the student added a cell; a cell of any release has an id of the release's form."""
     stem = new[0]["id"].rpartition("-")[0]
     of_release = re.fullmatch(rf"{re.escape(stem)}-\d+", str(cell.get("id", "")))
     return not grade_id(cell) and not of_release and bool(cell["source"].strip())
 
 
-def _takes(there: dict[str, Any], cell: dict[str, Any]) -> bool:
-    """Whether a cell of the new release has the text that the student was given, and still has."""
+def _may_replace(there: dict[str, Any], cell: dict[str, Any]) -> bool:
+    """Whether a cell of the new release still has the text that the student was given."""
     same = released(there) == released(cell) and there["cell_type"] == cell["cell_type"]
     return bool(released(cell)) and same and not is_edited(there)
 
 
-def _beside(cell: dict[str, Any]) -> dict[str, Any]:
-    """What a student wrote into a released cell, as a cell that is read and not run."""
+def _as_comment(cell: dict[str, Any]) -> dict[str, Any]:
+    """A student's text for a released cell, as a comment or a quotation in a new cell."""
     code = cell["cell_type"] == "code"
-    lines = [BESIDE, *cell["source"].splitlines()]
+    lines = [KEPT_TEXT, *cell["source"].splitlines()]
     text = "\n".join(f"{'#' if code else '>'} {line}".rstrip() for line in lines)
     made: dict[str, Any] = {"metadata": {}, "source": text}
     if code:
@@ -121,19 +122,19 @@ def _beside(cell: dict[str, Any]) -> dict[str, Any]:
 
 
 def _answer(mine: Cells, name: str) -> str | None:
-    """The last cell in which something was written, which is the one that counts in marking."""
+    """The last cell with a written answer, which is the one that counts in marking."""
     sources = [str(cell["source"]) for cell in _cells_for(mine, name)]
     return next((source for source in reversed(sources) if not _is_unwritten(source)), None)
 
 
 def _cells_for(mine: Cells, name: str) -> Cells:
-    """The cells that define an answer, else those that were made for it."""
+    """The cells that define an answer, or if there are none, those that were made for it."""
     defining = [cell for cell in mine if defines(cell, name)]
     return defining or [cell for cell in mine if grade_id(cell) == name]
 
 
 def _is_unwritten(source: str) -> bool:
-    """Whether a cell holds nothing but functions that say that they are still to be written."""
+    """Whether a cell holds only stubs and imports."""
     try:
         written = ast.parse(plain(source)).body
     except (SyntaxError, ValueError, RecursionError, MemoryError):

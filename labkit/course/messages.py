@@ -1,4 +1,4 @@
-"""Verdicts in words: all sentences about a verdict are written here."""
+"""Verdicts in words; this module writes all sentences about a verdict."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from .differences import likely_cause, sentence, words
 from .forms import COMMITTED, OWN_ARM
 from .question import Loop, Question, Test, Tuned, in_points
 from .verdict import Difference, Kind, Misconception, Outcome, TestResult, Verdict
-from .withheld import spoken
+from .withheld import name_in_notebook
 
 WIDTH = 79
 """Longest line, in characters."""
@@ -27,7 +27,6 @@ HEADS = {
 }
 """The words for each outcome."""
 
-
 _SHORT = {Outcome.RIGHT: "passed", Outcome.NOT_TRIED: "not tried here"}
 """The words for tests that need no explanation."""
 
@@ -35,12 +34,14 @@ _SHORT = {Outcome.RIGHT: "passed", Outcome.NOT_TRIED: "not tried here"}
 def head(verdict: Verdict) -> str:
     """The verdict in one line."""
     points = in_points(verdict.points)
-    says = word(verdict)
+    says = outcome_word(verdict)
     if verdict.withheld:
-        says += f": {uses(verdict.withheld)}"
-    elif waits(verdict):
-        return f"{verdict.name}: a possible answer. When it is marked, it earns {points} if it is \
-true of your own arm."
+        says += f": {why_not_counted(verdict.withheld)}"
+    elif awaits_marking(verdict):
+        return (
+            f"{verdict.name}: a possible answer. When it is marked, it earns {points} if it is "
+            "true of your own arm."
+        )
     elif verdict.outcome is Outcome.RIGHT and not verdict.complete:
         return (
             f"{verdict.name}: {says} on all cases here; {points} if the instructor's cases agree."
@@ -48,25 +49,25 @@ true of your own arm."
     return f"{verdict.name}: {says}. {verdict.earned:g} of {points}."
 
 
-def word(verdict: Verdict) -> str:
-    """The word for an outcome; a prediction is committed, right or wrong."""
-    return "committed" if verdict.right and foretells(verdict) else HEADS[verdict.outcome]
+def outcome_word(verdict: Verdict) -> str:
+    """The words for a verdict's outcome; a valid prediction is committed, not right or wrong."""
+    return "committed" if verdict.right and is_prediction(verdict) else HEADS[verdict.outcome]
 
 
-def foretells(verdict: Verdict) -> bool:
-    """Whether it is of a prediction, which earns its point for being made."""
+def is_prediction(verdict: Verdict) -> bool:
+    """Whether the verdict is on a prediction, which earns its point for being made."""
     return [test.name for test in verdict.tests] == [COMMITTED]
 
 
-def waits(verdict: Verdict) -> bool:
-    """Whether nothing can be said before it is marked: only there is the student's arm known."""
+def awaits_marking(verdict: Verdict) -> bool:
+    """Whether only marking can tell if the answer is right, because it depends on one's own arm."""
     right = verdict.outcome is Outcome.RIGHT and not verdict.complete
     return right and any(test.name == OWN_ARM for test in verdict.tests)
 
 
-def uses(withheld: Iterable[str]) -> str:
+def why_not_counted(withheld: Iterable[str]) -> str:
     """Why an answer that uses withheld tools is not counted."""
-    names = [spoken(tool) for tool in withheld]
+    names = [name_in_notebook(tool) for tool in withheld]
     # a whole package is never what the student should write
     own = all("." in name for name in names)
     why = "this question asks you to write" if own else "may not be used in this answer"
@@ -75,15 +76,15 @@ def uses(withheld: Iterable[str]) -> str:
 
 @dataclass(frozen=True)
 class Message:
-    """What a student reads after a check, in this order; `str` folds it to lines of text.
+    """What a student reads after a check, in this order; `str` gives lines of text.
 
     Attributes:
         head: The verdict in one line.
-        helps: What helps most: sentences.
-        tests: Each test in a line.
-        numbers: The calls that failed, with what was expected of them, and how to try one.
-        printed: What the student's code printed meanwhile.
-        hint: Where to get a hint.
+        helps: The sentences that help most.
+        tests: A line for each test.
+        numbers: The calls that failed, what was expected, and how to repeat one of them.
+        printed: What the student's code printed during the check.
+        hint: How to get a hint.
     """
 
     head: str
@@ -102,14 +103,14 @@ class Message:
 
 
 PRINTED = "While it was tried, your code printed:"
-"""Above what the student's code printed."""
+"""The line above what the student's code printed."""
 
 
 def message(
     question: Question,
     verdict: Verdict,
     printed: str = "",
-    leans_on: Sequence[str] = (),
+    depends_on: Sequence[str] = (),
     lost: str = "",
 ) -> Message:
     """Everything that a student reads after a check.
@@ -118,16 +119,16 @@ def message(
         question: The question.
         verdict: The verdict on the answer.
         printed: What the student's code printed while it was tried.
-        leans_on: Names of other answers that this one uses and that are not right.
-        lost: Why the answer will not be there when it is marked.
+        depends_on: Names of the wrong answers that this one uses.
+        lost: Why the answer will be missing when it is marked.
     """
     helps, hint = [f"But {lost}."] if lost else [], ""
     if verdict.outcome is not Outcome.RIGHT:
         if question.hints:
             call = f'hint("{question.name}", 1)'
             hint = f"Stuck? Run `{call}` in a new cell (press Esc, then B). It is free."
-        if leans_on:
-            names = " and ".join(leans_on)
+        if depends_on:
+            names = " and ".join(depends_on)
             helps.append(f"It uses your {names}, not right yet: correct {names} first.")
     tests: list[str] = []
     numbers: list[str] = []
@@ -135,32 +136,32 @@ def message(
         case Outcome.NOT_ATTEMPTED:
             helps.append(f"To do: {question.asks}")
         case Outcome.RIGHT:
-            helps += [] if verdict.complete or waits(verdict) else _unseen(question)
+            helps += [] if verdict.complete or awaits_marking(verdict) else _unseen(question)
         case Outcome.NOT_COUNTED:
             helps.append("You may use it elsewhere in the notebook; here, write it yourself.")
         case _:
             helps += _helps(verdict)
-            tests = [named(test) for test in verdict.tests]
+            tests = [test_name(test) for test in verdict.tests]
             numbers = _numbers(question, verdict)
     return Message(head(verdict), helps, tests, numbers, _printed(printed), hint)
 
 
 def summary(verdict: Verdict) -> list[str]:
-    """A verdict for an instructor: its head, and after a failure the mistake and each test."""
+    """A verdict for an instructor: its head, and after a failure also the mistake and each test."""
     lines = [head(verdict)]
     if verdict.outcome in (Outcome.WRONG, Outcome.ERROR):
         lines += [f"  {mistake(verdict.mistake)}"] if verdict.mistake else []
-        lines += [f"  {line(test)}" for test in verdict.tests]
+        lines += [f"  {test_line(test)}" for test in verdict.tests]
     return lines
 
 
 def mistake(known: Misconception) -> str:
-    """A known mistake: its name, and what to tell who made it."""
-    return f"{well_known(known)} {known.says}".lstrip()
+    """The name of a known mistake, and the explanation for a student who made it."""
+    return f"{mistake_name(known)} {known.says}".lstrip()
 
 
-def well_known(known: Misconception) -> str:
-    """The name of a known mistake, in a sentence; empty if it has none."""
+def mistake_name(known: Misconception) -> str:
+    """A sentence with the name of a known mistake; "" if the mistake has no name."""
     return f"A well-known mistake: {known.name}." if known.name else ""
 
 
@@ -170,7 +171,7 @@ def failures(failed: int, of: int) -> str:
 
 
 def _helps(verdict: Verdict) -> Iterator[str]:
-    """What helps most: the mistake, if it is known, else a likely cause, else the difference."""
+    """What helps most: a known mistake, else a difference and its likely cause, if any."""
     if verdict.mistake:
         yield mistake(verdict.mistake)
     elif lead := _lead(verdict):
@@ -180,13 +181,13 @@ def _helps(verdict: Verdict) -> Iterator[str]:
 
 
 def _lead(verdict: Verdict) -> Difference | None:
-    """The difference that says most, where no known mistake says more."""
+    """The most informative difference; None if there is a known mistake, which says more."""
     found = [test.difference for test in verdict.tests if test.difference and not verdict.mistake]
     return next(filter(likely_cause, found), found[0] if found else None)
 
 
 def _unseen(question: Question) -> Iterator[str]:
-    """What only the instructor's copy of a question tests."""
+    """Sentences about what only the instructor's copy of a question tests."""
     also = dict.fromkeys(test.also for test in question.tests if test.also)
     if also:
         yield f"The instructor also tries: {'; '.join(also)}."
@@ -196,34 +197,34 @@ def _unseen(question: Question) -> Iterator[str]:
 
 
 def wrapped(line: str) -> str:
-    """A line folded where a notebook would otherwise break it within a word."""
+    """A line, folded at spaces so that a notebook does not break it within a word."""
     margin = " " * (len(line) - len(line.lstrip()))
     return textwrap.fill(line, WIDTH, subsequent_indent=f"{margin}  ", break_long_words=False)
 
 
-def line(test: TestResult) -> str:
-    """A test in one line: whether it passed, and if it failed, on which case and why."""
+def test_line(test: TestResult) -> str:
+    """A test in one line, which says whether it passed, and if it failed, on which case and why."""
     says = "" if test.outcome in _SHORT else why(test)
-    return f"{named(test)}{says and f': {says}'}"
+    return f"{test_name(test)}{says and f': {says}'}"
 
 
-def named(test: TestResult) -> str:
-    """A test by its name, and whether it passed."""
-    return f"[{passed(test)}] {test.name}{gate(test)}"
+def test_name(test: TestResult) -> str:
+    """The name of a test, after its status in brackets."""
+    return f"[{test_status(test)}] {test.name}{gate_note(test)}"
 
 
-def passed(test: TestResult) -> str:
-    """Whether a test passed, in a word."""
+def test_status(test: TestResult) -> str:
+    """The status of a test in a word, such as "passed"."""
     return _SHORT.get(test.outcome, "failed")
 
 
-def gate(test: TestResult) -> str:
-    """That nothing counts before a test passes, if it is so."""
+def gate_note(test: TestResult) -> str:
+    """A remark if the test is a gate, without which nothing counts; else ""."""
     return "" if test.weight else " (needed before anything counts)"
 
 
 def why(test: TestResult) -> str:
-    """On which case a test failed, and how; empty if there is nothing to say."""
+    """On which case a test failed, and how; "" if neither is known."""
     hidden = f"a hidden case ({test.also})" if test.also else "a hidden case"
     where = hidden if test.hidden else test.call
     if test.difference is None:
@@ -234,7 +235,7 @@ def why(test: TestResult) -> str:
 
 
 def _numbers(question: Question, verdict: Verdict) -> list[str]:
-    """The cases that failed, each difference once, and how to try such a call again."""
+    """The cases that failed, each difference once, and how to repeat such a call."""
     lines: list[str] = []
     before: list[Difference] = []
     for test, result in zip(question.tests, verdict.tests, strict=True):
@@ -250,7 +251,7 @@ def _numbers(question: Question, verdict: Verdict) -> list[str]:
 
 
 def _again(test: Test, difference: Difference, before: list[Difference]) -> bool:
-    """Whether the student has already read this: a run stops for the same reason as a call did."""
+    """Whether a difference repeats an earlier one, as when a run stops for a call's reason."""
     if difference.kind is Kind.RAISED and any(isinstance(x, Loop | Tuned) for x in test.cases):
         if difference.error == ControllerError.__name__:
             return bool(before)
@@ -259,9 +260,9 @@ def _again(test: Test, difference: Difference, before: list[Difference]) -> bool
 
 
 def _parts(test: TestResult, led: bool) -> list[str]:
-    """A call and what came of it; two answers too long for a line stand one below the other."""
+    """A call with its expected and its actual answer, on lines of their own if they are long."""
     start, expected, got, _ = words(test.difference) if test.difference else ("", "", "", "")
-    if not got:  # a sentence; a value that is written down was not called
+    if not got:  # a sentence; a call with "()" stands for a value that was written down
         return [why(test)] if not led else [] if test.call.endswith("()") else [test.call]
     short = f"{test.call}: {start}expected {expected}, got {got}"
     if len(short) < WIDTH - 4:

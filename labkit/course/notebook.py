@@ -1,9 +1,9 @@
-"""A notebook's cells: the only module that knows what the metadata of a cell means.
+"""Cells of a notebook; no other module interprets the metadata of a cell.
 
-A course's cells are of six kinds: "setup" cells, which students leave alone; the "walk", which
+A course's cells are of six kinds: "setup" cells, which students leave alone; "walk" cells, which
 they may change; for each question and prediction a "brief", an "answer" and a "check"; and the
-"why", a text that people mark.  nbgrader knows an answer by the question's name and its check by
-that name with "-check".
+"why", a text that a person marks.  The grade_id in nbgrader of an answer is the question's name,
+and that of its check is the name with "-check".
 """
 
 from __future__ import annotations
@@ -29,22 +29,22 @@ Notebook = Any
 KERNEL = {"display_name": "Python 3 (ipykernel)", "language": "python", "name": "python3"}
 _CHECK = "-check"
 _OUTPUT = "labkit"
-"""Under this name the output of a check holds its verdict."""
+"""Metadata key of a check's output that holds the verdict."""
 _RELEASED = "released"
-"""Under this name a cell that students may change holds a hash of the text that they were given."""
+"""Metadata key of a cell that students may change; it holds a hash of the released text."""
 
 
 def read_cells(path: Path, text: bytes | None = None) -> list[dict[str, Any]]:
     """The cells of a notebook file.
 
     Args:
-        path: Where it is.
-        text: What is in it, if somebody has read it already.
+        path: The file.
+        text: Its content, if it has been read already.
 
     Raises:
-        LabkitError: It is not there, or is not a notebook.
+        LabkitError: The file is missing, or is not a notebook.
     """
-    if text is None and path.exists() and not path.is_file():  # who opens a pipe waits for ever
+    if text is None and path.exists() and not path.is_file():  # opening a pipe waits for ever
         raise LabkitError(f"{path} is a folder, a pipe or a device; give a notebook's file")
     try:
         data = json.loads(path.read_text(encoding="utf-8") if text is None else text)
@@ -67,12 +67,12 @@ def read_cells(path: Path, text: bytes | None = None) -> list[dict[str, Any]]:
 
 
 def kind(cell: Cell) -> str:
-    """Which of the six kinds a released cell is of; "" for any other."""
+    """The kind of a released cell, one of the six; "" for any other cell."""
     return str(_metadata(cell).get("lab", ""))
 
 
 def released(cell: Cell) -> str:
-    """A short hash of the text with which a walk or a brief was released; "" for any other cell."""
+    """A short hash of the released text of a walk or a brief; "" for any other cell."""
     found = _metadata(cell).get(_RELEASED)
     return found if isinstance(found, str) else ""
 
@@ -82,9 +82,9 @@ def _hashed(source: str) -> str:
 
 
 def is_edited(cell: Cell) -> bool:
-    """Whether a student changed a walk or a brief, as far as can be told.
+    """Whether a student may have changed a walk or a brief.
 
-    Of a notebook that an older labkit released nothing can be told; there each walk may be changed.
+    A notebook from an older labkit does not have the hash, so each walk in it may be changed.
     """
     if released(cell):
         return released(cell) != _hashed(cell["source"])
@@ -92,30 +92,30 @@ def is_edited(cell: Cell) -> bool:
 
 
 def grade_id(cell: Cell) -> str:
-    """What a cell was made for: a question's name, that with "-check", or ""."""
-    found = about(cell).get("grade_id")
+    """What a cell was made for: a question's name, the name with "-check", or ""."""
+    found = nbgrader_info(cell).get("grade_id")
     return found if isinstance(found, str) else ""
 
 
-def about(cell: Cell) -> Mapping[str, Any]:
-    """What nbgrader knows of a cell: grade_id, grade, solution, points; empty for most cells."""
+def nbgrader_info(cell: Cell) -> Mapping[str, Any]:
+    """A cell's metadata for nbgrader: grade_id, grade, solution, points; empty for most cells."""
     found = _metadata(cell).get("nbgrader")
     return found if isinstance(found, dict) else {}
 
 
 def check_id(question: str) -> str:
-    """What nbgrader calls the check of a question."""
+    """The grade_id of a question's check."""
     return question + _CHECK
 
 
 def question_of(grade_id: str) -> str:
-    """The question to which a cell belongs, by what nbgrader calls the cell."""
+    """The question to which a cell belongs, by its grade_id."""
     return grade_id.removesuffix(_CHECK)
 
 
 def by_hand(cell: Cell) -> bool:
     """Whether a person marks a released cell: nbgrader's manual answer, or its manual task."""
-    found = about(cell)
+    found = nbgrader_info(cell)
     return bool(found.get("task") or (found.get("grade") and found.get("solution")))
 
 
@@ -135,7 +135,7 @@ def verdict_metadata(verdict: Verdict) -> dict[str, Any]:
 
 
 def last_verdict(cells: Sequence[Cell], question: str) -> Verdict | None:
-    """The verdict that stands last in a notebook's file on a question, or None."""
+    """The last verdict on a question in a notebook's file, or None."""
     for cell in reversed(cells):
         outputs = cell.get("outputs")
         for output in outputs if isinstance(outputs, list) else ():
@@ -146,7 +146,7 @@ def last_verdict(cells: Sequence[Cell], question: str) -> Verdict | None:
 
 
 def verdict_in(output: Any) -> Verdict | None:
-    """The verdict that an output of a notebook's file shows; None if there is no whole one."""
+    """The verdict in an output of a notebook's file; None if it has no complete one."""
     try:
         data = output["metadata"][_OUTPUT]
         current = data.items() >= stamp().items()
@@ -156,7 +156,7 @@ def verdict_in(output: Any) -> Verdict | None:
 
 
 def manifest(source: Notebook) -> list[dict[str, Any]]:
-    """What each cell is, in order: how a grader knows cells without trusting a submission."""
+    """What each released cell is, in order, so that a grader need not trust a submission."""
     return [
         {
             "id": cell.id,
@@ -164,7 +164,7 @@ def manifest(source: Notebook) -> list[dict[str, Any]]:
             "kind": kind(cell),
             "grade_id": grade_id(cell) or None,
             "source": cell.source,
-            **({"points": float(about(cell)["points"])} if by_hand(cell) else {}),
+            **({"points": float(nbgrader_info(cell)["points"])} if by_hand(cell) else {}),
         }
         for cell in source.cells
     ]
@@ -178,25 +178,25 @@ def source_notebook(
     """The notebook that nbgrader takes as its source, with the solutions inside.
 
     In the source text, a code cell with ``question="name"`` holds a stub whose solution region
-    imports the answer; an empty one with ``predict="name"`` or ``find_out="name"`` marks the
-    place of a value that students write down; a Markdown cell with ``why="name"``, or
+    imports the answer.  An empty code cell with ``predict="name"`` or ``find_out="name"`` marks
+    the place of a value that students write down.  A Markdown cell with ``why="name"``, or
     ``task="name" points=3`` for a longer text, asks for a text and holds a model answer in a
-    solution region; ``setup=true`` marks cells that students should leave alone.  A brief before
-    the stub and the check after it are written here, from the question.
+    solution region.  ``setup=true`` marks cells that students should leave alone.  The brief
+    before a stub and the check after it are generated from the question.
 
     Args:
         path: The source, in jupytext's percent format.
-        questions: By name.
-        predictions: Those of this notebook, and what is to be found out.
+        questions: The questions of the notebook, by name.
+        predictions: Its predictions and identifications.
 
     Raises:
         LabkitError: Stubs and questions do not match.
     """
-    import jupytext  # slow to load, and only a release needs them
+    import jupytext  # both are slow to load, and only a release needs them
     import nbformat
 
     text = jupytext.read(path, fmt="py:percent")
-    foretold = {prediction.name: prediction for prediction in predictions}
+    by_name = {prediction.name: prediction for prediction in predictions}
     cells: list[dict[str, Any]] = []
     asked: list[str] = []
     for cell in text.cells:
@@ -204,19 +204,21 @@ def source_notebook(
         if name is not None:
             asked.append(name)
         if "why" in cell.metadata or "task" in cell.metadata:
-            cells += _why(path, str(name), cell)
-        elif name in foretold and "question" not in cell.metadata:
-            cells += _written_down(foretold[name])
+            cells += _text_cells(path, str(name), cell)
+        elif name in by_name and "question" not in cell.metadata:
+            cells += _value_cells(by_name[name])
         elif name in questions and "question" in cell.metadata:
             _check_stub(path, str(name), cell)
-            cells += _asked(questions[str(name)], cell)
+            cells += _question_cells(questions[str(name)], cell)
         elif name is not None:
-            raise LabkitError(f"{path.name} asks {name!r}, which has no Problem or Prediction")
+            raise LabkitError(
+                f"{path.name} asks {name!r}, which has no Problem or Prediction; write one"
+            )
         else:
             setup = cell.metadata.get("setup", False)
             meta = _nbgrader(f"setup-{len(cells)}", locked=True) if setup else {}
             cells.append(_cell(cell.cell_type, cell.source, "setup" if setup else "walk", meta))
-    for name in (*questions, *foretold):
+    for name in (*questions, *by_name):
         if asked.count(name) != 1:
             raise LabkitError(f"{path.name} has {asked.count(name)} stubs of {name}, and needs one")
     for number, cell in enumerate(cells):
@@ -230,7 +232,7 @@ def source_notebook(
 _ASKS = ("question", "predict", "find_out", "why", "task")
 
 
-def _asked(question: Question, stub: Cell) -> Iterator[dict[str, Any]]:
+def _question_cells(question: Question, stub: Cell) -> Iterator[dict[str, Any]]:
     """The three cells of a question."""
     name = question.name
     yield _cell("markdown", brief(question), "brief", {})
@@ -238,8 +240,8 @@ def _asked(question: Question, stub: Cell) -> Iterator[dict[str, Any]]:
     yield _check(name, question.points)
 
 
-def _written_down(asked: Prediction | Identification) -> Iterator[dict[str, Any]]:
-    """The three cells of a value; the students' copy has `BLANK` in place of the solved cell."""
+def _value_cells(asked: Prediction | Identification) -> Iterator[dict[str, Any]]:
+    """The three cells of a value; the text under `BLANK` is the answer cell in students' copies."""
     yield _cell("markdown", asked.brief(), "brief", {})
     cell = _cell("code", asked.solved(), "answer", _nbgrader(asked.name, solution=True))
     cell["metadata"][BLANK] = asked.cell()
@@ -248,7 +250,7 @@ def _written_down(asked: Prediction | Identification) -> Iterator[dict[str, Any]
 
 
 BLANK = "blank"
-"""Metadata of a source cell that names what students get where a stub would be too much."""
+"""Metadata key of a source cell; its value replaces the solution in the students' copy."""
 
 
 def _check(name: str, points: float) -> dict[str, Any]:
@@ -256,8 +258,8 @@ def _check(name: str, points: float) -> dict[str, Any]:
     return _cell("code", f'check("{name}", {name})', "check", meta)
 
 
-def _why(path: Path, name: str, cell: Cell) -> Iterator[dict[str, Any]]:
-    """What is asked, and the cell for the text, which nbgrader leaves to a person to mark."""
+def _text_cells(path: Path, name: str, cell: Cell) -> Iterator[dict[str, Any]]:
+    """The brief, and the cell for a text, which a person marks in nbgrader."""
     asks, begins, model = cell["source"].partition("### BEGIN SOLUTION")
     if not begins or not model.rstrip().endswith("### END SOLUTION"):
         raise LabkitError(
@@ -273,7 +275,7 @@ def _why(path: Path, name: str, cell: Cell) -> Iterator[dict[str, Any]]:
 
 
 PLACEHOLDER = "*Double-click here and write your text in place of this line.*"
-"""What the cell of a why says at first; nbgrader's settings say the same."""
+"""The initial text of a why; nbgrader's settings have the same text."""
 
 
 def _check_stub(path: Path, name: str, cell: Cell) -> None:

@@ -1,55 +1,56 @@
-"""Observed causes: what a wrong answer does to the numbers, where no known mistake gives them.
+"""Observed causes of wrong answers that no known mistake explains.
 
-Each sentence says what is seen on all public calls, so it is true by construction: every number has
-the other sign, the answer stays the same without an argument, what one argument adds comes twice.
+Each sentence states what holds in all public calls, so it is true by construction: every number has
+the other sign, the answer does not depend on an argument, or what an argument adds is there twice.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from time import monotonic
 from typing import Any
 
 import numpy as np
 
-from .equivalence import right_by
+from .equivalence import accepts
 from .judges import factor
-from .marking import Tried
-from .probes import arrays, ask, exchanges, variations
+from .marking import Function, PublicResult
+from .probes import exchanges, numeric_parts, try_call, variations
 from .question import Call, Case, Question
 from .relations import Parts, all_near, related, same_form
 from .verdict import Kind, Misconception, Outcome, Verdict
 
-Function = Callable[..., Any]
 LONGEST = 3.0
-"""Seconds that are spent on asking a function again."""
+"""Time that is spent on calling a function again, in [s]."""
 
 
-def diagnosed(question: Question, verdict: Verdict, tried: Tried, function: Function) -> Verdict:
-    """The verdict on a wrong answer with what is seen of it, unless it is a known mistake.
+def diagnosed(
+    question: Question, verdict: Verdict, tried: PublicResult, function: Function
+) -> Verdict:
+    """The verdict on a wrong answer, with the observed cause unless it is a known mistake.
 
     Args:
         question: The question.
-        verdict: What came of it.
-        tried: What came back from the public cases.
-        function: The student's, which is asked again with one argument changed.
+        verdict: The verdict on the answer.
+        tried: The result of the public cases.
+        function: The student's function, which is called again with one argument changed.
     """
     if verdict.mistake or verdict.outcome not in (Outcome.WRONG, Outcome.ERROR):
         return verdict
     if any(test.difference and test.difference.kind is Kind.TYPE for test in verdict.tests):
-        return verdict  # a velocity where a torque is asked: its numbers tell nothing
+        return verdict  # the numbers of another command type reveal nothing
     says = cause(question, tried.answers, function)
     return replace(verdict, mistake=Misconception("", says)) if says else verdict
 
 
 def cause(question: Question, answers: Mapping[Case, Any], function: Function) -> str:
-    """What is seen of a wrong answer, in a sentence; "" if nothing that tells much."""
+    """A sentence about what is observed of a wrong answer; "" if nothing explains it."""
     calls = [call for call in question.calls if isinstance(call, Call) and call in answers]
     if not calls or len(calls) < len(question.calls) or not question.arguments:
         return ""
-    given = [arrays(answers[call]) for call in calls]
-    expected = [arrays(call.expected) for call in calls]
+    given = [numeric_parts(answers[call]) for call in calls]
+    expected = [numeric_parts(call.expected) for call in calls]
     if not any(expected):
         return ""
     alike = all(map(same_form, given, expected))
@@ -59,11 +60,11 @@ def cause(question: Question, answers: Mapping[Case, Any], function: Function) -
 
 
 def _exchanged(question: Question, calls: Sequence[Call], function: Function) -> str:
-    """What has to be exchanged in its arguments to make the function right."""
+    """Which change of its arguments, such as an exchange of two, makes the function right."""
     changed = [dict(exchanges(call, question.arguments)) for call in calls]
     for label in changed[0]:
         if all(
-            label in one and right_by(question.judge, ask(one[label], function), call.expected)
+            label in one and accepts(question.judge, try_call(one[label], function), call.expected)
             for one, call in zip(changed, calls, strict=True)
         ):
             return f"Your function is right in every call if {label} before it is called."
@@ -73,16 +74,16 @@ def _exchanged(question: Question, calls: Sequence[Call], function: Function) ->
 def _probed(
     question: Question, calls: Sequence[Call], given: list[Parts], function: Function
 ) -> str:
-    """What the answer does where one argument is changed, and the right one does not do."""
+    """How the answer, unlike the right one, reacts to a change of one argument."""
     changed = [dict(variations(call, question.arguments)) for call in calls]
-    expected = [arrays(call.expected) for call in calls]
+    expected = [numeric_parts(call.expected) for call in calls]
     stays, moves, shares = [], [], []
     until = monotonic() + LONGEST
     for probe in question.probes:
         if monotonic() > until:
             break
-        asked = [ask(one[probe.label], function) for one in changed]
-        found, right = [arrays(x) for x in asked], [arrays(x) for x in probe.answers]
+        asked = [try_call(one[probe.label], function) for one in changed]
+        found, right = [numeric_parts(x) for x in asked], [numeric_parts(x) for x in probe.answers]
         if not all(map(same_form, found, right)):
             continue
         same, should = all(map(all_near, found, given)), all(map(all_near, right, expected))
@@ -90,7 +91,7 @@ def _probed(
             stays.append(probe.label)
         if should and not same:
             moves.append(probe.label)
-        repaired = all(map(lambda x, y: right_by(question.judge, x, y), asked, probe.answers))
+        repaired = all(map(lambda x, y: accepts(question.judge, x, y), asked, probe.answers))
         if not should and repaired and (says := _share(given, expected, right)):
             shares.append(says.format(probe.label.split("`")[1], probe.label))
     if shares:
@@ -109,7 +110,7 @@ _SHARES = {
 
 
 def _share(given: list[Parts], expected: list[Parts], right: list[Parts]) -> str:
-    """By what factor that is wrong which an argument adds to the answer, in words."""
+    """The factor by which an argument's contribution to the answer is wrong, in words."""
     g, e, r = (
         np.concatenate([x.ravel() for parts in z for x in parts]) for z in (given, expected, right)
     )

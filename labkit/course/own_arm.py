@@ -1,8 +1,8 @@
-"""An arm of one's own: no two handles have the same one; who knows the secret draws it again.
+"""Students' own arms, which are drawn from their handles and the secret of the term.
 
-Payload, stiction, lag and a wall follow from the HMAC of the handle under the term's secret.  What
-students get holds each arm as a sealed text, so that nobody reads a number by accident.  A
-student who unseals it has missed the experiment, and the grader cannot tell.
+Payload, stiction, lag and a wall follow from the HMAC of the handle under the term's secret.  The
+students' file holds each arm as a sealed text, so that nobody reads a number by accident.  A
+student who unseals it misses the experiment, and the grader cannot detect this.
 """
 
 from __future__ import annotations
@@ -31,9 +31,9 @@ from .bugs import CAUSES, MOVES, Bug
 from .seed import PUBLIC_SEED
 
 FILE = "arms.json"
-"""The sealed arms of a term, beside each notebook that asks about one's own arm."""
+"""The file of a term's sealed arms, beside each notebook that asks about one's own arm."""
 HANDLES = "course_private/handles.json"
-"""The term's seed and the handle of each student, in the course's folder."""
+"""The file with the term's seed and the handle of each student, in the course's folder."""
 DEMO = "demo"
 """The handle of the public arm, for self-study and for a course without a term."""
 
@@ -43,28 +43,31 @@ RANGES = {
     "lag": (0.03, 0.09),
     "wall": (0.04, 0.09),
 }
-"""From where to where each number is drawn; below `OwnArm` says what it is."""
+"""The range from which each number is drawn; `OwnArm` explains the numbers."""
 
 APART = {"payload": 0.15, "stiction": 0.1, "lag": 0.00625, "wall": 0.005}
-"""How far from the public arm's numbers those of any other arm lie; a measurement of the public
-arm is then wrong everywhere else.  Where a number is asked for, it is 1.25 tolerances."""
+"""Smallest difference between a number of the public arm and that of any other arm.
+
+A measurement of the public arm is therefore wrong for every other arm.  For a number that students
+measure, the difference is 1.25 tolerances.
+"""
 
 BUGS = 3
-"""The number of misbehaving runs that each arm has, of `CAUSES` times `MOVES`."""
+"""The number of misbehaving runs of each arm, of all pairs from `CAUSES` and `MOVES`."""
 ONSETS = (0.3, 0.8)
-"""In which part of a run the mistake comes in, in [s], while the arm is under way."""
+"""The range of times at which a mistake begins, in [s], while the arm is moving."""
 
 
 @dataclass(frozen=True)
 class OwnArm:
-    """What is particular about somebody's arm; the rest is Baxter's.
+    """What distinguishes a student's arm from Baxter's.
 
     Attributes:
         payload: Point mass at the tip, in [kg].
-        stiction: Dry friction of s0, in [N m]; that of the other joints is scaled alike.
+        stiction: Dry friction of s0, in [N m]; that of the other joints is scaled equally.
         lag: Time constant of the velocity mode, in [s].
         wall: Distance from the resting tip to the wall in front of it, along x, in [m].
-        bugs: Three misbehaving runs to find the cause of.
+        bugs: Three misbehaving runs, whose causes are to be found.
     """
 
     payload: float
@@ -75,7 +78,7 @@ class OwnArm:
 
     @property
     def plant(self) -> Plant:
-        """Baxter with these numbers."""
+        """The plant of Baxter with these numbers."""
         scale = self.stiction / BAXTER.stiction[0]
         return replace(
             BAXTER,
@@ -87,8 +90,8 @@ class OwnArm:
 
 
 def draw(secret: int, handle: str) -> OwnArm:
-    """The arm of a handle, in any spelling of it, by HMAC-SHA256 under the term's secret."""
-    handle = spelt(handle)
+    """The arm of a handle, whatever its spelling, by HMAC-SHA256 under the term's secret."""
+    handle = normalised(handle)
     digest = hmac.new(str(secret).encode(), handle.encode(), hashlib.sha256).digest()
     shares = (int.from_bytes(digest[8 * k : 8 * k + 8], "big") / 2.0**64 for k in range(4))
     public = None if handle == DEMO else draw(PUBLIC_SEED, DEMO)
@@ -110,7 +113,7 @@ def draw(secret: int, handle: str) -> OwnArm:
 
 
 def _number(name: str, share: float, public: OwnArm | None) -> float:
-    """A number at a share of its range, from which those near the public arm's are cut out."""
+    """The number at a share of its range, without the part of the range near the public arm."""
     least, most = RANGES[name]
     if public is None:
         return least + share * (most - least)
@@ -120,21 +123,21 @@ def _number(name: str, share: float, public: OwnArm | None) -> float:
     return number if number < cut[0] else number + (cut[1] - cut[0])
 
 
-def spelt(handle: str) -> str:
-    """A handle in the one spelling by which it is known: composed, in small letters.
+def normalised(handle: str) -> str:
+    """A handle in normalised spelling: composed characters in lower case.
 
-    A Mac may take "ö" apart into "o" and two dots, and a keyboard may type letters of full width.
+    A Mac may decompose "ö" into "o" and two dots, and a keyboard may type letters of full width.
     """
     return unicodedata.normalize("NFKC", handle).casefold().strip()
 
 
 @dataclass(frozen=True)
 class Arms:
-    """Whose arm is whose in a term.
+    """The arms of the students in a term.
 
     Attributes:
         secret: The term's seed.
-        handles: By student: their own handle, or their team's.
+        handles: The handle of each student, which may be their team's.
     """
 
     secret: int = PUBLIC_SEED
@@ -142,7 +145,7 @@ class Arms:
 
     @classmethod
     def of(cls, course: Path) -> Arms:
-        """Those of the course in a folder; of nobody where no arms were given out.
+        """The arms of the course in a folder; empty if no arms were given out.
 
         Raises:
             LabkitError: The file is damaged.
@@ -159,33 +162,33 @@ class Arms:
             ) from None
 
     def text(self) -> str:
-        """What `of` reads."""
+        """The text of the file that `of` reads."""
         return json.dumps(asdict(self), indent=1, sort_keys=True) + "\n"
 
     def arm(self, student: str) -> OwnArm | None:
-        """A student's arm, or None."""
-        known = {spelt(who): handle for who, handle in self.handles.items()}
-        handle = known.get(spelt(student))
+        """A student's arm, or None if the student has no handle."""
+        known = {normalised(who): handle for who, handle in self.handles.items()}
+        handle = known.get(normalised(student))
         return None if handle is None else draw(self.secret, handle)
 
     def sealed(self) -> dict[str, str]:
-        """What students get, for `FILE`: each opens it by the name of their folder."""
+        """The content of the students' `FILE`, in which each student's name opens one arm."""
         of = {who: draw(self.secret, handle) for who, handle in sorted(self.handles.items())}
         return {_hashed(who): _seal(arm, who) for who, arm in of.items()}
 
 
 def my_arm(handle: str = DEMO, seed: int = 0) -> Arm:
-    """Your own arm, at rest in its ready pose before its wall.
+    """Your own arm, at rest in its ready pose in front of its wall.
 
     Args:
-        handle: Yours, or your team's; "demo" is a public arm to practise on.
-        seed: Of the noise of its sensors.
+        handle: Your handle, or your team's; "demo" is a public arm to practise on.
+        seed: Seed of the sensors' noise.
 
     Returns:
-        An arm that calls itself Baxter's; what is particular about it is for you to find out.
+        An arm that reports Baxter's parameters; you find out how it differs.
 
     Raises:
-        LabkitError: The file of arms is not there, or does not know the handle.
+        LabkitError: The file of arms is missing, or does not contain the handle.
     """
     own = _own(handle)
     known = replace(BAXTER, name="own")
@@ -193,17 +196,17 @@ def my_arm(handle: str = DEMO, seed: int = 0) -> Arm:
     tip = model.pose(model.robot.ready)[:3, 3]
     wall = Wall(tip + [own.wall + TIP_RADIUS, 0.0, 0.0], (-1.0, 0.0, 0.0))
     arm = Arm("left", own.plant, seed, q0=model.robot.ready, world=World(things=[wall]))
-    # Zeroed with the load in the gripper, or its torque sensors would tell it at rest.
+    # Zeroed with the load in the gripper, or the torque sensors would reveal the load at rest.
     arm._sensors = TorqueSensors(Model("left", own.plant), own.plant, arm.world.dt)
-    arm.plant, arm.model = known, model  # what is known of it
+    arm.plant, arm.model = known, model  # what students know of it
     return arm
 
 
 def my_bug(number: int, handle: str = DEMO) -> Log:
-    """One of your misbehaving runs: a law that was right at first.
+    """One of your misbehaving runs, in which the law is right only at first.
 
     Args:
-        number: From 1 to 3.
+        number: The number of the run, from 1 to 3.
         handle: As for `my_arm`.
 
     Raises:
@@ -211,16 +214,16 @@ def my_bug(number: int, handle: str = DEMO) -> Log:
         LabkitError: As for `my_arm`.
     """
     if number not in range(1, BUGS + 1):
-        raise OutOfRange(f"there are the runs 1 to {BUGS}, and no run {number!r}")
+        raise OutOfRange(f"the run is {number!r}; choose a run from 1 to {BUGS}")
     return _own(handle).bugs[number - 1].log()
 
 
 def _own(handle: str) -> OwnArm:
-    return draw(PUBLIC_SEED, DEMO) if spelt(handle) == DEMO else _unsealed(handle)
+    return draw(PUBLIC_SEED, DEMO) if normalised(handle) == DEMO else _unsealed(handle)
 
 
 def arms_for(folder: Path) -> Path | None:
-    """The file of sealed arms that a notebook in a folder opens, if there is one."""
+    """The file of sealed arms that a notebook in a folder uses, or None."""
     files = (place / FILE for place in (folder, *folder.parents[:2]))
     return next((file for file in files if file.exists()), None)
 
@@ -228,7 +231,7 @@ def arms_for(folder: Path) -> Path | None:
 def opens_the_public_arm(cells: Iterable[str]) -> bool:
     """Whether the HANDLE that a notebook's cells set last is that of the public arm."""
     said = re.findall(r"^HANDLE\s*=\s*(['\"])(.*?)\1", "\n".join(cells), re.MULTILINE)
-    return bool(said) and spelt(said[-1][1]) == DEMO
+    return bool(said) and normalised(said[-1][1]) == DEMO
 
 
 def _unsealed(handle: str) -> OwnArm:
@@ -236,31 +239,31 @@ def _unsealed(handle: str) -> OwnArm:
     if file is None:
         raise LabkitError(
             f"there is no {FILE} here or in the two folders above; your instructor hands it out "
-            f"with the notebooks of your course. To practise, take lk.my_arm({DEMO!r})"
+            f"with the notebooks of your course. To practise, use lk.my_arm({DEMO!r})"
         )
     try:
         text = json.loads(file.read_text(encoding="utf-8")).get(_hashed(handle))
         if text is not None:
-            sealed = json.loads(_mixed(base64.b64decode(text), handle))
+            sealed = json.loads(_masked(base64.b64decode(text), handle))
             return OwnArm(**sealed | {"bugs": tuple(Bug(**bug) for bug in sealed["bugs"])})
     except (AttributeError, KeyError, TypeError, ValueError):
         raise LabkitError(
-            f"{file} is damaged; put the {FILE} that your instructor handed out in its place"
+            f"{file} is damaged; replace it with the {FILE} that your instructor handed out"
         ) from None
     raise LabkitError(
-        f"{FILE} has no arm for {handle!r}; write your handle as your course gave it to you"
+        f"{FILE} has no arm for {handle!r}; write your handle exactly as you were given it"
     )
 
 
 def _hashed(handle: str) -> str:
-    return hashlib.sha256(spelt(handle).encode()).hexdigest()[:16]
+    return hashlib.sha256(normalised(handle).encode()).hexdigest()[:16]
 
 
 def _seal(arm: OwnArm, handle: str) -> str:
-    return base64.b64encode(_mixed(json.dumps(asdict(arm)).encode(), handle)).decode()
+    return base64.b64encode(_masked(json.dumps(asdict(arm)).encode(), handle)).decode()
 
 
-def _mixed(data: bytes, handle: str) -> bytes:
-    """The data with a stream of bytes laid over it, which the handle starts; twice is once."""
-    stream = np.random.default_rng(list(spelt(handle).encode())).bytes(len(data))
+def _masked(data: bytes, handle: str) -> bytes:
+    """The data combined by XOR with pseudo-random bytes from the handle; twice restores it."""
+    stream = np.random.default_rng(list(normalised(handle).encode())).bytes(len(data))
     return bytes(a ^ b for a, b in zip(data, stream, strict=True))

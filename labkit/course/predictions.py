@@ -1,4 +1,4 @@
-"""Predictions: what a student commits to before the arm shows what it does."""
+"""Predictions, to which students commit before the arm shows what it does."""
 
 from __future__ import annotations
 
@@ -14,11 +14,11 @@ class Prediction:
     """Something to predict, as its author writes it.
 
     Attributes:
-        name: Of the value that the student commits to.
-        asks: What will the arm do?
-        form: In which form.
-        truth: What it does, as a prediction that would have been right; for the solved notebook.
-        points: For committing.
+        name: Name of the value to which the student commits.
+        asks: A question about what the arm will do.
+        form: The form of the prediction.
+        truth: The prediction that turns out right, for the solved notebook.
+        points: Points for committing.
     """
 
     name: str
@@ -28,7 +28,7 @@ class Prediction:
     points: float = 1.0
 
     def question(self) -> Question:
-        """The question that gives the point, in a notebook as in a grader."""
+        """The question that gives the points, in a notebook and in a grader."""
         test = Test(COMMITTED, (Call((), expected=True),))
         return Question(self.name, self.points, self.asks, self.form, (test,))
 

@@ -1,8 +1,8 @@
-"""Probes: the public calls of a question with one thing in them changed.
+"""Probes, which are the public calls of a question with one thing in them changed.
 
-The release asks the answer what is right then, and a check asks the student's function the same. So
-of a wrong answer that nobody knows yet something can still be said: it does not change with a
-velocity, say, or what the velocity adds to it has the other sign.
+A release records the right answers to them, and a check calls the student's function in the same
+way.  So even a mistake that is not known yet can be described: the answer does not change with a
+velocity, for example, or what the velocity adds to it has the other sign.
 """
 
 from __future__ import annotations
@@ -22,18 +22,18 @@ from ..trajectory import PoseSample, Sample
 from .question import Call, Probe, Question
 
 
-def probed(
+def make_probes(
     question: Question, answer: Callable[..., Any], expected: Callable[..., Any]
 ) -> tuple[Probe, ...]:
-    """What is right on each probe.
+    """The probes of a question, with the right answers.
 
     Args:
-        question: With its public calls; of any other kind of question nothing is probed.
+        question: The question; it has no probes unless all its public cases are calls.
         answer: The reference, for the names of its arguments.
-        expected: What to compare with, a function of the same arguments.
+        expected: A function of the same arguments that returns what to compare with.
 
     Returns:
-        A probe for each thing that can be changed in every call, if all answers are numbers then.
+        A probe for each thing that can be changed in every call, if all its answers are numbers.
     """
     calls = [call for call in question.calls if isinstance(call, Call)]
     if not calls or len(calls) < len(question.calls):
@@ -42,15 +42,15 @@ def probed(
     found = []
     for label in changed[0]:
         if all(label in one for one in changed):
-            answers = tuple(ask(one[label], expected) for one in changed)
-            parts = [arrays(one) for one in answers]
+            answers = tuple(try_call(one[label], expected) for one in changed)
+            parts = [numeric_parts(one) for one in answers]
             if all(parts) and all(np.isfinite(x).all() for one in parts for x in one):
                 found.append(Probe(label, answers))
     return tuple(found)
 
 
-def ask(call: Call, function: Callable[..., Any]) -> Any:
-    """What a function answers; None where it does not, for nobody needs to know of such cases."""
+def try_call(call: Call, function: Callable[..., Any]) -> Any:
+    """The function's answer to a call; None if it raises, because such a call reveals nothing."""
     try:
         with np.errstate(all="ignore"):
             return call.ask(function)
@@ -58,8 +58,8 @@ def ask(call: Call, function: Callable[..., Any]) -> Any:
         return None
 
 
-def arrays(answer: Any) -> list[Array]:
-    """The numbers of an answer, part by part; none if it is not made of numbers."""
+def numeric_parts(answer: Any) -> list[Array]:
+    """The numbers of an answer, part by part; empty if it does not consist of numbers."""
     answer = getattr(answer, "value", answer)
     items = answer if isinstance(answer, tuple) else (answer,)
     try:
@@ -69,18 +69,18 @@ def arrays(answer: Any) -> list[Array]:
 
 
 def variations(call: Call, names: Sequence[str]) -> Iterator[tuple[str, Call]]:
-    """A call with one thing in it replaced, by what was done, such as "`kd` is 0"."""
+    """The call with one thing in it replaced, each under a label such as "`kd` is 0"."""
     given = arguments(call, names)
     state = next((x for x in given.values() if isinstance(x, State)), None)
     model = next((x for x in given.values() if isinstance(x, Model)), None)
     for name, x in given.items():
-        if name != "t":  # where a motion is asked does not belong to it
-            for where, value, other in _others(x, state, model):
+        if name != "t":  # the time at which a motion is evaluated is not a part of it
+            for where, value, other in _changes(x, state, model):
                 yield f"`{name}{where}` is {value}", _with(call, names, {name: other})
 
 
 def exchanges(call: Call, names: Sequence[str]) -> Iterator[tuple[str, Call]]:
-    """A call with two arguments exchanged, or one transposed, by what was done."""
+    """The call with two arguments exchanged, or one transposed, each under a label."""
     given = arguments(call, names)
     for (a, x), (b, y) in combinations(given.items(), 2):
         alike = np.shape(x) == np.shape(y) if _numeric(x) and _numeric(y) else False
@@ -105,8 +105,8 @@ def _numeric(x: Any) -> bool:
     return isinstance(x, float | int | np.ndarray) and not isinstance(x, bool)
 
 
-def _others(x: Any, state: State | None, model: Model | None) -> Iterator[tuple[str, str, Any]]:
-    """What to put in the place of an argument: where in it, in words, and the new argument."""
+def _changes(x: Any, state: State | None, model: Model | None) -> Iterator[tuple[str, str, Any]]:
+    """Replacements for an argument: the place in it, its new value in words, the new argument."""
     if isinstance(x, State):
         yield ".dq", "0", x._replace(dq=0.0 * x.dq)
     elif isinstance(x, Sample):

@@ -1,7 +1,7 @@
-"""Questions as data: what is asked, how it is tried and judged, what goes wrong.
+"""Questions as data: the task, the tests, the judge and the known mistakes.
 
-A question holds no code of its own answer, so it may travel to a student; its hidden cases stay
-with the grader.  A case asks the student's function for one thing and does not judge it.
+A question does not contain its answer's code, so students may have it; its hidden cases stay with
+the grader.  A case calls the student's function and does not judge what is returned.
 """
 
 from __future__ import annotations
@@ -33,10 +33,10 @@ class Call:
     """One call of the student's function.
 
     Attributes:
-        args: Its arguments.
-        kwargs: Its arguments by name.
+        args: Positional arguments.
+        kwargs: Arguments by name.
         expected: What the judge compares the answer with.
-        hidden: Whether the student never sees it.
+        hidden: Whether it is kept from students.
     """
 
     args: tuple[Any, ...]
@@ -62,18 +62,18 @@ class Loop:
     """One closed-loop run with the student's function as the controller.
 
     Attributes:
-        target: What the arm follows.
+        target: The target that the arm follows.
         kwargs: What the controller is given besides state and target.
-        side: Which of Baxter's arms.
-        plant: What it is like.
-        things: What it meets, such as a `labkit.Push`.
-        seed: Of its noise.
-        q0: Where it starts, shape (n,) in [rad]; None is its ready pose.
+        side: The side of Baxter's arm.
+        plant: Parameters of the arm.
+        things: Things in its world, such as a `labkit.Push`.
+        seed: Seed of its noise.
+        q0: Joint angles at the start, shape (n,) in [rad]; None is the ready pose.
         rate: Control rate, in [Hz].
-        duration: In [s]; None takes the target's.
-        settle: How long it may take to recover from its start, in [s]; measured from then on.
-        expected: Largest allowed value of measures of the run, fields of `metrics.Summary`.
-        hidden: Whether the student never sees it.
+        duration: Duration of the run, in [s]; None takes the target's.
+        settle: Time to recover from the start, in [s]; the measures begin after it.
+        expected: Upper limits of measures of the run, which are fields of `metrics.Summary`.
+        hidden: Whether it is kept from students.
     """
 
     target: Any
@@ -90,7 +90,7 @@ class Loop:
     hidden: bool = False
 
     def ask(self, function: Callable[..., Any]) -> Log:
-        """The run that the function makes."""
+        """The run with the function as its controller."""
 
         def controller(state: Any, target: Any) -> Any:
             return call(function, (state, target), self.kwargs)
@@ -116,11 +116,11 @@ class Choice:
     """The student's function chooses gains with a runner that has a limited number of tries.
 
     Attributes:
-        trials: What the runner knows.
-        expected: Largest allowed ``worst_mm``.
-        unseen: What the choice is tried on instead; None takes ``trials`` again.
+        trials: The recorded trials of which the runner reports.
+        expected: The upper limit of ``worst_mm``.
+        unseen: Other trials on which the choice is judged; None takes ``trials`` again.
         budget: How many tries the runner has.
-        hidden: Whether the student never sees it.
+        hidden: Whether it is kept from students.
     """
 
     trials: Trials
@@ -134,10 +134,10 @@ class Choice:
         return function(Runner(self.trials, self.budget))
 
     def measured(self, answer: Any) -> dict[str, float]:
-        """The worst error that the chosen gains give, in [mm].
+        """The worst error with the chosen gains, in [mm].
 
         Raises:
-            LabkitError: The answer is not a pair of gains that were recorded.
+            LabkitError: The answer is not a pair of recorded gains.
         """
         try:
             Kp, Kd = answer
@@ -154,14 +154,14 @@ class Choice:
 class Tuned:
     """One closed-loop run with gains that the student's function chose.
 
-    The law is `labkit.control.springs`, which is given to students as it stands: a law with
-    more in it would be the answer to some other question.
+    The law is `labkit.control.springs`, which students are given; a law with more terms would be
+    the answer to another question.
 
     Attributes:
-        args: What the function is given; it answers (kp, kd).
-        loop: The run, its ``kwargs`` and ``expected`` unused.
-        expected: Largest allowed value of measures of the run, fields of `metrics.Summary`.
-        hidden: Whether the student never sees it.
+        args: Arguments of the function, which returns (kp, kd).
+        loop: The run, of which ``kwargs`` and ``expected`` are not used.
+        expected: Upper limits of measures of the run, which are fields of `metrics.Summary`.
+        hidden: Whether it is kept from students.
     """
 
     args: tuple[Any, ...]
@@ -170,7 +170,7 @@ class Tuned:
     hidden: bool = False
 
     def ask(self, function: Callable[..., Any]) -> Log:
-        """The run that the function's gains make."""
+        """The run with the gains that the function returns."""
         kp, kd = call(function, self.args, {})
         return self.loop.ask(springs(kp, kd))
 
@@ -190,17 +190,17 @@ Case = Call | Loop | Choice | Tuned
 
 @dataclass(frozen=True, eq=False)
 class Test:
-    """Cases that stand or fall together.
+    """Cases that pass or fail together.
 
     Attributes:
-        name: What it looks at, as the student reads it.
-        cases: Public ones first.
+        name: What it tests, as students read it.
+        cases: The cases, public ones first.
         weight: Share of the points; 0 is a gate, without which no other test counts.
-        also: The classes of hidden case it will meet, in words; never the numbers.
-        part: Of an answer of several parts, the one that it looks at; empty for all of them.
+        also: The classes of its hidden cases, in words and without their numbers.
+        part: The part of the answer that it tests; empty for all parts.
     """
 
-    __test__ = False  # pytest, this is not for you
+    __test__ = False  # pytest must not collect this class
 
     name: str
     cases: tuple[Case, ...]
@@ -211,10 +211,10 @@ class Test:
 
 @dataclass(frozen=True)
 class Raised:
-    """An answer that never came: the function raised.
+    """An exception that a function raised in place of an answer.
 
     Attributes:
-        kind: The exception's type.
+        kind: The name of the exception's type.
     """
 
     kind: str
@@ -222,10 +222,10 @@ class Raised:
 
 @dataclass(frozen=True, eq=False)
 class Mistake(Misconception):
-    """A wrong answer that people really give, known by its fingerprint.
+    """A wrong answer that students really give, recognised by its fingerprint.
 
     Attributes:
-        answers: What it gives on each public call, in order; `Raised` where it raises.
+        answers: Its answer to each public call, in order, or `Raised`.
     """
 
     answers: tuple[Any, ...]
@@ -233,7 +233,7 @@ class Mistake(Misconception):
 
 @dataclass(frozen=True, eq=False)
 class Probe:
-    """The public calls with one thing in them changed, and what is right then.
+    """The public calls with one thing in them changed, and the right answers to them.
 
     Attributes:
         label: What is changed, such as "`kd` is 0".
@@ -246,21 +246,21 @@ class Probe:
 
 @dataclass(frozen=True, eq=False)
 class Question:
-    """One thing to write, and how it is marked.
+    """One function or value that students write, and how it is marked.
 
     Attributes:
-        name: The function's name.
-        points: What it is worth.
-        asks: What it should do, in one sentence.
-        judge: Compares answers.
-        tests: In the order in which they are tried.
-        withheld: Names that would answer it, such as "labkit.Circle".
-        hints: From the idea to nearly there.
+        name: The name of the function or of the value.
+        points: Full marks.
+        asks: What the function should do, in one sentence.
+        judge: Compares answers with the expected ones.
+        tests: The tests, in the order in which they are tried.
+        withheld: Tools that the answer may not use, such as "labkit.Circle".
+        hints: Hints, from the idea to almost the answer.
         mistakes: Known wrong answers.
         core: Whether it belongs to the core path; else it is an extension.
-        outcomes: What it is evidence of, names of `outcomes.OUTCOMES`.
+        outcomes: Learning outcomes of which it is evidence, names of `outcomes.OUTCOMES`.
         arguments: Names of the function's arguments.
-        probes: What is right where something in the public calls is changed.
+        probes: The right answers to changed public calls.
     """
 
     name: str
@@ -278,13 +278,13 @@ class Question:
 
     @property
     def calls(self) -> tuple[Call | Choice, ...]:
-        """The public calls, on which fingerprints are taken."""
+        """The public calls and choices, on which fingerprints are taken."""
         cases = (case for test in self.tests for case in test.cases)
         return tuple(case for case in cases if isinstance(case, Call | Choice) and not case.hidden)
 
     @property
     def complete(self) -> bool:
-        """Whether all its cases are here; a student's copy lacks the hidden ones."""
+        """Whether the question has all its cases; a student's copy lacks the hidden ones."""
         if any(case.hidden for test in self.tests for case in test.cases):
             return True
         return all(test.cases and not test.also for test in self.tests)
@@ -294,23 +294,23 @@ class Question:
         return self.with_cases(lambda case: None if case.hidden else case)
 
     def with_cases(self, change: Callable[[Case], Case | None]) -> Question:
-        """The same question with each case changed, and without those that are changed to None."""
+        """The same question with each case changed; cases that are changed to None are left out."""
         tests = (replace(t, cases=tuple(filter(None, map(change, t.cases)))) for t in self.tests)
         return replace(self, tests=tuple(tests))
 
 
 def in_points(points: float) -> str:
-    """Points as one would write them: "1 point", "2.5 points"."""
+    """Points with their unit, such as "1 point" or "2.5 points"."""
     return f"{points:g} point{'' if points == 1 else 's'}"
 
 
 def in_brief(x: Any) -> str:
-    """A number, or a vector or matrix of them, as one would write it by hand."""
+    """A number, vector or matrix in short notation, such as "[1, 0.5]"."""
     a = np.asarray(x, dtype=float)
     if a.ndim:
         tiny = 1e-9 * max(1.0, float(np.max(np.abs(a), initial=0.0)))
         return f"[{', '.join(map(in_brief, np.where(np.abs(a) < tiny, 0.0, a)))}]"
-    return f"{float(a) + 0.0:.5g}"  # adding zero takes the sign from -0
+    return f"{float(a) + 0.0:.5g}"  # adding zero removes the sign of -0
 
 
 def _short(x: Any) -> str:

@@ -1,4 +1,4 @@
-"""The last cell of a notebook: what a look at the saved file finds, and a receipt for it."""
+"""The last cell of a notebook, which inspects the saved file and prints a receipt for it."""
 
 from __future__ import annotations
 
@@ -14,17 +14,17 @@ from .student import shell
 from .unfinished import defined_in
 
 JUST_NOW = timedelta(minutes=1)
-"""After less time a saved file is taken for what is in the notebook."""
+"""Age up to which a saved file is assumed to match the open notebook."""
 
 
 def hand_in(name: str) -> None:
-    """Say what a look at the saved file finds, and print a receipt.
+    """Inspect the saved file, and print the findings and a receipt.
 
-    With a receipt and the file students can prove which work was done by then.  The feedback page
-    has the receipt of the file that was marked.
+    With the receipt and the file, students can prove what they had done by then.  The feedback
+    page shows the receipt of the file that was marked.
 
     Args:
-        name: Of the notebook in the working directory, without ``.ipynb``.
+        name: Name of the notebook in the working directory, without ``.ipynb``.
 
     Raises:
         LabkitError: The file is missing or is not a notebook.
@@ -37,22 +37,22 @@ def hand_in(name: str) -> None:
     lines = [
         *_findings(found),
         f"receipt: {receipt(sources)} of {path.name}, saved {saved:%Y-%m-%d %H:%M %Z}",
-        _last_word(path.name, found, age, _unsaved(found, sources)),
+        _advice(path.name, found, age, _unsaved(found, sources)),
     ]
     print("\n".join(map(wrapped, lines)))
 
 
 def _findings(found: HandIn) -> list[str]:
-    """What a look at the file finds; nothing of its tasks before a result of any was saved."""
+    """The findings in the saved file; without any saved result, only what must be corrected."""
     if found.verdicts and not any(found.verdicts.values()):
         return [f"[fix] {text}" for text in found.problems]
     return str(found).splitlines()
 
 
 def _unsaved(found: HandIn, sources: Iterable[str]) -> list[str]:
-    """Answers that ran in this notebook with a text that its saved file does not hold.
+    """Answers that ran in this notebook with a text that is not in the saved file.
 
-    Predictions are left out, for one that was chosen with the mouse is written after its cell ran.
+    Predictions are left out, because one chosen with the mouse is written only after its cell ran.
     """
     notebook = shell()
     ran = notebook.history_manager.input_hist_raw if notebook is not None else ()
@@ -62,30 +62,30 @@ def _unsaved(found: HandIn, sources: Iterable[str]) -> list[str]:
     return sorted(name for name in tasks if last.get(name, "").strip() not in {"", *saved})
 
 
-def _last_word(file: str, found: HandIn, age: timedelta, unsaved: Collection[str]) -> str:
+def _advice(file: str, found: HandIn, age: timedelta, unsaved: Collection[str]) -> str:
     """Whether to hand in the file now, and if not, what to do first."""
     recent = age < JUST_NOW
     ago = f"{age.total_seconds():.0f} s" if recent else f"{age.total_seconds() / 60:.0f} min"
     says = f"{file} was saved {ago} ago"
     again = "save it and run this cell again"
     if unsaved:
-        return f"{says}, and does not hold the {', '.join(unsaved)} that you ran last: {again}."
+        return f"{says}, but does not hold the {', '.join(unsaved)} that you ran last: {again}."
     if found.verdicts and not any(found.verdicts.values()):
         return f"{says}, before any check had run: {again}."
     if found.problems:
-        return f"{says}: correct what is marked with [fix], {again}."
+        return f"{says}: correct what is marked with [fix], then {again}."
     if not recent:
         return f"{says}. Hand it in if you have changed nothing since then; if you have, {again}."
     if found.notes:
-        return f"{says}: hand it in now as it is, or see to what is marked with [note] first."
+        return f"{says}: hand it in now, or first look at what is marked with [note]."
     return f"{says} and is complete: hand it in now."
 
 
 def receipt(sources: Iterable[str]) -> str:
-    """A short name for what is written in a notebook's cells, in order.
+    """A short hash of the text in a notebook's cells, in order.
 
-    Outputs and empty cells do not count: to run the cell that prints the receipt changes the
-    outputs, and Shift+Enter in the last cell appends an empty one.
+    Outputs and empty cells do not count, because running the cell that prints the receipt changes
+    the outputs, and Shift+Enter in the last cell appends an empty one.
     """
     text = "\0".join(filter(str.strip, sources)).encode(errors="surrogatepass")
     return hashlib.sha256(text).hexdigest()[:16]

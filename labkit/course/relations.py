@@ -1,4 +1,4 @@
-"""Relations: what the numbers of a wrong answer are to the right ones, in every call alike."""
+"""Relations between a wrong answer's numbers and the right ones that hold in every call."""
 
 from __future__ import annotations
 
@@ -27,12 +27,12 @@ _FACTORS = {
     "180/π (degrees for radians)": degrees(1.0),
     "9.8/9.81": 9.8 / 9.81,
 }
-"""Factors that have a cause, in words."""
+"""Factors that have a likely cause, by their names."""
 _POWERS = {"multiplied by `{}`": 1.0, "divided by `{}`": -1.0}
 
 
 def same_form(a: Parts, b: Parts) -> bool:
-    """Whether two answers have one form, and the first is made of finite numbers."""
+    """Whether two answers have the same form, and the numbers of the first are finite."""
     pairs = zip(a, b, strict=False)
     return len(a) == len(b) and all(x.shape == y.shape and np.isfinite(x).all() for x, y in pairs)
 
@@ -43,14 +43,14 @@ def _near(a: Array, b: Array) -> bool:
 
 
 def all_near(a: Sequence[Array], b: Sequence[Array]) -> bool:
-    """Whether two lists of arrays hold the same numbers, but for rounding."""
+    """Whether two lists of arrays hold the same numbers, apart from rounding."""
     return all(map(_near, a, b))
 
 
 def related(
     question: Question, calls: Sequence[Call], given: list[Parts], expected: list[Parts]
 ) -> str:
-    """How the one wrong part of an answer, or all of it, is related to the right one."""
+    """A sentence about how the wrong parts of an answer are related to the right ones, or ""."""
     if len(set(map(len, expected))) > 1:
         return ""
     parts: list[tuple[Sequence[Array], Sequence[Array]]] = list(
@@ -79,7 +79,7 @@ def _joined(answers: list[Parts], which: list[int]) -> list[Array]:
 
 
 def _only_at_rest(given: list[Parts], expected: list[Parts]) -> bool:
-    """Whether all calls with a wrong answer are at rest, and others are not."""
+    """Whether all calls with a wrong answer are at rest, while other calls are not."""
     still = [len(e) == 3 and not any(x.any() for x in e[1:]) for e in expected]
     right = [all_near(g, e) for g, e in zip(given, expected, strict=True)]
     return all(a or b for a, b in zip(still, right, strict=True)) and not all(still)
@@ -118,7 +118,7 @@ def _exchanged_rows(a: Sequence[Array], b: Sequence[Array]) -> Iterator[str]:
 
 
 def _rows(a: Sequence[Array], b: Sequence[Array]) -> Iterator[str]:
-    """Where only some components are wrong, and those in one way."""
+    """Relations in which only some components are wrong, all of them in the same manner."""
     for axis, kind in enumerate(("row", "column") if b[0].ndim == 2 else ("component",)):
         wrong = [
             k
@@ -131,9 +131,9 @@ def _rows(a: Sequence[Array], b: Sequence[Array]) -> Iterator[str]:
         which = f"{kind}{'s' * (len(wrong) > 1)} {', '.join(map(str, wrong))}"
         be, have = ("are", "have") if len(wrong) > 1 else ("is", "has")
         if not any(x.any() for x in c):
-            yield f"is right but for {which}, which {be} zero"
+            yield f"is right except for {which}, which {be} zero"
         if all_near(c, [-x for x in d]):
-            yield f"is right but for {which}, which {have} the other sign"
+            yield f"is right except for {which}, which {have} the other sign"
 
 
 def _factors(factors: Array, given: Sequence[Mapping[str, Any]]) -> Iterator[str]:

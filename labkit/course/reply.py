@@ -1,6 +1,6 @@
-"""How a student's function answers: as data, in a notebook as in a grader's sandbox.
+"""Answers of a student's function as data, both in a notebook and in a grader's sandbox.
 
-The answer crosses the same border in both, so what one understands the other understands too.
+Both encode and decode the answer in the same way, so both accept the same answers.
 """
 
 from __future__ import annotations
@@ -21,9 +21,9 @@ from .serialize import decode_answer, encode
 from .withheld import Withheld
 
 LONGEST = 400
-"""Characters of an exception's message that are kept."""
+"""Number of characters of an exception's message that are kept."""
 MOST_ITEMS = 100_000
-"""Items that are read of an answer that is not a list but behaves as one."""
+"""Number of items that are read from an answer that is not a list but can be iterated."""
 
 
 class TimeUp(BaseException):
@@ -34,11 +34,11 @@ class NoAnswer(LabkitError):
     """A student's function did not answer.
 
     Attributes:
-        kind: The type of the exception there.
+        kind: The name of the type of its exception.
     """
 
     def __init__(self, kind: str, sentence: str) -> None:
-        """What happened there."""
+        """Take the kind of the exception, and a sentence about what happened."""
         self.kind = kind
         super().__init__(sentence)
 
@@ -46,17 +46,17 @@ class NoAnswer(LabkitError):
 def reply(
     function: Callable[..., Any], args: Sequence[Any], kwargs: Mapping[str, Any]
 ) -> dict[str, Any]:
-    """What a function does with some arguments, as JSON data, whatever that is.
+    """A function's answer, or its exception, as JSON data.
 
     A value that is not a function, such as a prediction, is its own answer; None stands for a value
     that the student has not written yet.
 
     Returns:
-        What it ``is``; or the tool that is ``withheld`` and that it used; or the type of what it
-        ``raised``, and what that ``says``.
+        What the answer ``is``; or the ``withheld`` tool that was used; or the type of the exception
+        that was ``raised``, and what it ``says``.
 
     Raises:
-        KeyboardInterrupt, TimeUp: Somebody stopped it.
+        KeyboardInterrupt, TimeUp: The call was stopped from outside.
     """
     try:
         if function is None:
@@ -73,14 +73,14 @@ def reply(
 
 
 def answer(data: Mapping[str, Any], withheld: Sequence[str]) -> Any:
-    """The answer that a `reply` holds.
+    """The answer in what `reply` returned.
 
     Args:
-        data: From `reply`, perhaps from another process.
+        data: What `reply` returned, perhaps in another process.
         withheld: The tools that the question withholds.
 
     Raises:
-        NoAnswer: There is none.
+        NoAnswer: The function did not answer.
         Withheld: The function used a tool that the question withholds.
     """
     if "is" in data:
@@ -97,7 +97,7 @@ def answer(data: Mapping[str, Any], withheld: Sequence[str]) -> Any:
 
 
 def kind(error: BaseException) -> str:
-    """The type of an exception, whatever its author made of that."""
+    """The name of an exception's type; its author may have made even this raise."""
     try:
         return str(type(error).__name__)
     except BaseException:
@@ -105,20 +105,20 @@ def kind(error: BaseException) -> str:
 
 
 def sentence(error: BaseException) -> str:
-    """What an exception says, whatever its author made of it."""
+    """The description of an exception; its author may have made this raise."""
     try:
         return description(error)[:LONGEST]
     except BaseException:
         return "(its message cannot be shown)"
 
 
-class Here:
-    """A student's function of this process, asked as one in a sandbox is.
+class LocalFunction:
+    """A student's function in this process, called in the same way as in a sandbox.
 
     Args:
         function: The student's function.
         withheld: The tools that the question withholds.
-        seconds: After so long a call is stopped, and no other is made.
+        seconds: Time limit of a call; after a call exceeds it, no other is made.
     """
 
     def __init__(
@@ -131,26 +131,26 @@ class Here:
         """The answer to one call.
 
         Raises:
-            NoAnswer: There is none.
-            Withheld: A withheld tool was used.
+            NoAnswer: The function did not answer.
+            Withheld: The function used a withheld tool.
         """
         if self.stopped is not None:
             raise self.stopped
         try:
-            with stopped_after(self.seconds):
+            with time_limit(self.seconds):
                 data = reply(self.function, args, kwargs)
         except TimeUp:
-            says = f"it did not come back within {self.seconds:g} s; does every loop in it end?"
+            says = f"it did not return within {self.seconds:g} s; does every loop in it end?"
             self.stopped = NoAnswer("TimeoutError", f"TimeoutError: {says}")
             raise self.stopped from None
         return answer(data, self.withheld)
 
 
 @contextmanager
-def stopped_after(seconds: float) -> Iterator[None]:
-    """Raise `TimeUp` in the block after some seconds, and again, should it be caught.
+def time_limit(seconds: float) -> Iterator[None]:
+    """Raise `TimeUp` in the block after some seconds, and again if the block catches it.
 
-    Only where Python can: in the main thread, and not on Windows.
+    This works only in the main thread, and not on Windows; elsewhere there is no limit.
     """
     if threading.current_thread() is not threading.main_thread() or not hasattr(
         signal, "setitimer"
@@ -171,7 +171,7 @@ def _time_up(number: int, frame: Any) -> None:
 
 
 def _as_data(given: Any) -> Any:
-    """An answer as JSON data; what behaves as an array or as a sequence is taken as one."""
+    """An answer as JSON data; what behaves like an array, number or sequence is taken for one."""
     try:
         return encode(given)
     except TypeMismatch:

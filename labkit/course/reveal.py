@@ -1,4 +1,4 @@
-"""What a notebook says of predictions: commit to one, then see it laid over the truth."""
+"""Predictions in a notebook: students commit to one, and later compare it with the truth."""
 
 from __future__ import annotations
 
@@ -15,15 +15,15 @@ from .student import desk, shell
 
 
 def predict(name: str, said: Any = None, *, truth: Any = None) -> Any:
-    """Commit to a prediction; or, with the truth, lay the prediction over it.
+    """Commit to a prediction; or, with the truth, compare the prediction with it.
 
     Args:
         name: The prediction's name.
-        said: What you believe; None shows controls to choose it with.
-        truth: What came out: a letter, letters, a number, or a curve as (places, heights).
+        said: What you predict; None shows controls for choosing it.
+        truth: The result: a letter, letters, a number, or a curve as (places, heights).
 
     Returns:
-        What you committed to, None if nothing; of a reveal, always None.
+        The prediction to which you are committed, or None; with the truth, always None.
 
     Raises:
         UnknownName: There is no such prediction.
@@ -55,7 +55,7 @@ def predict(name: str, said: Any = None, *, truth: Any = None) -> Any:
 
 
 def _write_down(name: str, said: Any) -> None:
-    """Put what was chosen into the text of the cell that runs, where a grader reads it."""
+    """Write the chosen value into the text of the running cell, where a grader reads it."""
     notebook = shell()
     if notebook is not None:
         text = f'{name} = predict("{name}", {json.dumps(said)})'
@@ -63,7 +63,7 @@ def _write_down(name: str, said: Any) -> None:
 
 
 def _reveal(name: str, form: Form, truth: Any) -> None:
-    """The prediction beside the truth; without a prediction, no truth."""
+    """Show the prediction beside the truth, but not the truth without a prediction."""
     place = desk()
     said, wrong = place.committed.get(name), place.stand_ins.wrong()
     once = "it is" if len(wrong) == 1 else "they are"
@@ -84,7 +84,7 @@ def _reveal(name: str, form: Form, truth: Any) -> None:
 
 
 def _compare(form: Form, said: Any, truth: Any) -> None:
-    """Say both, and how they differ."""
+    """Print the prediction and the truth, and how they differ."""
     print(wrapped(f"You predicted: {form.words(said)}."))
     print(wrapped(f"The arm says:  {form.words(truth)}."))
     if isinstance(form, Number):
@@ -97,7 +97,7 @@ def _compare(form: Form, said: Any, truth: Any) -> None:
 
 
 def _overlay(form: Curve, said: Any, truth: Any) -> None:
-    """Draw both curves."""
+    """Draw the predicted and the true curve."""
     import matplotlib.pyplot as plt
 
     from .. import plotting
@@ -114,19 +114,19 @@ def _overlay(form: Curve, said: Any, truth: Any) -> None:
 
 
 def _controls(name: str, form: Form) -> None:
-    """Controls for the mouse and for keys; running the cell again commits to what they say."""
+    """Show controls for mouse and keyboard; running the cell again commits to their value."""
     if shell() is None:
         return
     import ipywidgets as widgets
     from IPython.display import display
 
     again = "click into the cell above this line and press Shift+Enter once more to commit."
-    note = widgets.HTML(f"{_what_to_do(form)}; then {again}")  # a label would not break its line
+    note = widgets.HTML(f"{_what_to_do(form)}; then {again}")  # a label would not wrap its text
     parts = _inputs(form, widgets)
-    draft = desk().drafts.setdefault(name, [None] * len(parts))  # None waits for a hand
+    draft = desk().drafts.setdefault(name, [None] * len(parts))  # None until it is set
 
     def show() -> None:
-        """Take what the controls say if all of them have been set, and say what is missing."""
+        """Take the value of the controls if all are set, and else say what is missing."""
         desk().chosen.pop(name, None)
         waiting = [part.description for part, x in zip(parts, draft, strict=True) if x is None]
         said = [*map(_number, draft)] if isinstance(form, Curve) else _number(draft[0])
@@ -162,7 +162,7 @@ def _what_to_do(form: Form) -> str:
 
 
 def _number(said: Any) -> Any:
-    """A number as it was written or pulled, without the noise of its last digits; else as it is."""
+    """A number without the rounding errors of its last digits; any other value unchanged."""
     try:
         return round(float(said), 9)
     except (TypeError, ValueError):
@@ -176,7 +176,7 @@ def _inputs(form: Form, widgets: Any) -> list[Any]:
             pairs = [(f"({letter}) {text}", letter) for letter, text in options.items()]
             layout = widgets.Layout(width="auto")
             return [widgets.RadioButtons(options=pairs, value=None, layout=layout)]
-        case Rank() | Number():  # a field for numbers would begin with one that nobody chose
+        case Rank() | Number():  # a numeric field would start with a number that nobody chose
             return [widgets.Text(placeholder=form.how, layout=widgets.Layout(width="30em"))]
         case Curve(at, _, height, least, most):
             middle, step = (least + most) / 2, (most - least) / 50

@@ -1,9 +1,9 @@
-"""Everything of a course as JSON data and back: values, questions, verdicts, results.
+"""Conversion of values, questions, verdicts and results to JSON data and back.
 
-Records of labkit's own, such as verdicts, are read by msgspec as strictly as their fields are
-typed.  Values say what they are: only the kinds named here travel, never pickle, never code.
-`decode` builds whatever labkit wrote; `decode_answer` builds only plain data, because an answer was
-written by somebody else.
+labkit's own records, such as verdicts, are read by msgspec as strictly as their fields are typed.
+Other values carry the name of their kind; only the kinds named here are converted, and neither
+pickle nor code is used.  `decode` builds every kind that labkit writes; `decode_answer` builds only
+plain data, because students determine the content of an answer.
 """
 
 from __future__ import annotations
@@ -35,7 +35,7 @@ DATA = (
     control.JointTorque,
     Ratio,
 )
-"""What a student's function may give back, beside numbers, arrays, texts, lists and tables."""
+"""What a student's function may return, besides numbers, arrays, texts, lists and dicts."""
 
 GIVEN = (
     paths.Line,
@@ -60,10 +60,10 @@ GIVEN = (
     Trials,
     Runner,
 )
-"""What a student's function may be given on top, values that are sent as what they are made of."""
+"""What a student's function may also be given; each is sent as the arguments that make it."""
 
 QUESTION = (Question, Test, Mistake, Probe, Raised, TipTorque, *get_args(Case), *get_args(Judge))
-"""What a question is made of on top."""
+"""The other types in a question."""
 
 _MADE_OF: dict[type, Callable[[Any], dict[str, Any]]] = {
     paths.Spline: lambda spline: {"s": spline.s, "values": spline.values},
@@ -75,27 +75,27 @@ _MADE_OF: dict[type, Callable[[Any], dict[str, Any]]] = {
         "side": log.robot.name,
     },
 }
-"""The arguments to make those of again that are neither a dataclass nor a named tuple."""
+"""The arguments that make a value again, for types that are not dataclasses or named tuples."""
 
 _MADE_BY: dict[str, Callable[..., Any]] = {
     "Model": lambda side, plant: Model(side, plant),
     "Log": lambda side, **columns: Log(**columns, robot=robot(side)),
 }
-"""What makes them of these, where it is not their type; the course knows arms by Baxter's names."""
+"""What makes a value from these arguments, if not its type; robots are named as Baxter's arms."""
 
 Kinds = Mapping[str, Any]
 """Types by their names."""
 
 _DATA: Kinds = {kind.__name__: kind for kind in DATA}
 _ALL: Kinds = {kind.__name__: kind for kind in (*DATA, *GIVEN, *QUESTION)}
-"""What `decode` builds, beside methods."""
+"""What `decode` builds, besides methods."""
 _Record = TypeVar("_Record")
 
 _COMMANDS: dict[str, type] = {kind.__name__: kind for kind in control.COMMANDS}
 
 
 def question_data(question: Question) -> dict[str, Any]:
-    """A question as JSON data, all its cases included."""
+    """A question as JSON data, with all its cases."""
     data: dict[str, Any] = encode(question)
     return data
 
@@ -107,7 +107,7 @@ def read_question(data: Any) -> Question:
 
 
 def record_data(record: Any) -> Any:
-    """A record of labkit's own, such as a `Verdict`, as JSON data."""
+    """One of labkit's own records, such as a `Verdict`, as JSON data."""
     return msgspec.to_builtins(record)
 
 
@@ -115,7 +115,7 @@ def read_record(kind: type[_Record], data: Any) -> _Record:
     """The record that `record_data` wrote.
 
     Raises:
-        LabkitError: A field is missing, or is not of its type; the sentence says which.
+        LabkitError: A field is missing or has the wrong type; the message says which.
     """
     try:
         return msgspec.convert(data, kind)
@@ -132,7 +132,7 @@ def encode(value: Any) -> Any:
             command.
 
     Returns:
-        What `json.dumps` takes; numbers keep every bit.
+        Data for `json.dumps`; numbers keep every bit.
 
     Raises:
         TypeMismatch: The value is of another type.
@@ -159,7 +159,7 @@ def encode(value: Any) -> Any:
         return {"$": "tuple", "items": [encode(x) for x in value]}
     if isinstance(value, dict):
         if not all(isinstance(key, str) for key in value):
-            raise TypeMismatch("a dict travels only with text keys")
+            raise TypeMismatch("a dict must have text keys to be compared; convert them with str")
         return {"$": "dict", "items": {key: encode(x) for key, x in value.items()}}
     if isinstance(value, MethodType):
         return {"$": "method", "of": encode(value.__self__), "name": value.__name__}
@@ -184,19 +184,19 @@ def _made_of(value: Any) -> dict[str, Any]:
 
 
 def decode(data: Any) -> Any:
-    """The value that `encode` wrote, from JSON that labkit itself wrote; arrays come read-only."""
+    """The value that `encode` wrote, from labkit's own JSON; arrays are read-only."""
     return _decode(data, _ALL)
 
 
 def decode_answer(data: Any) -> Any:
-    """Plain data from an answer that somebody else wrote; see `DATA`.
+    """Plain data, see `DATA`, from an answer that a student's process wrote.
 
     Raises:
-        TypeMismatch: It is not of the form that `encode` writes.
+        TypeMismatch: The data do not have the form that `encode` writes.
     """
     try:
         return _decode(data, _DATA)
-    except Exception as error:  # what else may come of it, its author chooses
+    except Exception as error:  # the data may be made to raise anything
         raise TypeMismatch(f"the answer did not arrive in one piece: {error}") from None
 
 
@@ -231,5 +231,5 @@ def _decode(data: Any, kinds: Kinds) -> Any:
 
 
 def _number(x: Any) -> Any:
-    """JSON has no word for NaN and the infinities."""
+    """A number as JSON data; JSON does not have NaN and the infinities."""
     return x if isinstance(x, bool | int) or np.isfinite(x) else {"$": "float", "value": repr(x)}

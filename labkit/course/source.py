@@ -1,7 +1,7 @@
-"""What a cell's text does with names, without running it.
+"""Analysis of the names in a cell's text, without running it.
 
-The check in a notebook, `labkit submit-check` and the grader all look at cells with this, so that
-they find the same answers, and the same tools in them.
+The check in a notebook, `labkit submit-check` and the grader all use this analysis, so they find
+the same answers, and the same tools in them.
 """
 
 from __future__ import annotations
@@ -14,13 +14,13 @@ from collections.abc import Collection, Iterator, Mapping
 from functools import lru_cache
 from typing import Any
 
-Look = Mapping[str, Any]
-"""What `look` finds in a cell, as JSON data."""
+Analysis = Mapping[str, Any]
+"""What `analyse` returns for a cell, as JSON data."""
 
 RUNS_HERE = ("time", "capture", "prun")
-"""Cell magics that run their cell with the notebook's names.
+"""Cell magics that run their cell in the notebook's namespace.
 
-Any other, such as ``%%timeit`` or ``%%bash``, leaves no name behind.
+Any other, such as ``%%timeit`` or ``%%bash``, defines no name in the notebook.
 """
 _MAGIC = re.compile(r"\s*%%(\S+)[^\n]*\n?")
 _CHAINS = {ast.Name, ast.Attribute, ast.Call}
@@ -32,7 +32,7 @@ _OTHER_MAGIC = re.compile(r"get_ipython\(\)\.run_cell_magic\('([^']*)'")
 def plain(source: str) -> str:
     """A cell as plain Python, line for line.
 
-    The magics of `RUNS_HERE` are taken off; other magics and shell commands become calls, as in a
+    The magics of `RUNS_HERE` are removed; other magics and shell commands become calls, as in a
     notebook.
     """
     while (found := _MAGIC.match(source)) and found[1] in RUNS_HERE:
@@ -47,7 +47,7 @@ def plain(source: str) -> str:
 
 @lru_cache(maxsize=1)
 def parsed(source: str) -> tuple[str, ast.Module]:
-    """A cell as plain Python, and its syntax; kept until another is asked for.
+    """A cell as plain Python, and its syntax tree; the last result is cached.
 
     Raises:
         SyntaxError, ValueError, RecursionError, MemoryError: Python cannot read it.
@@ -59,16 +59,17 @@ def parsed(source: str) -> tuple[str, ast.Module]:
 
 
 @lru_cache(maxsize=4096)
-def look(source: str) -> Look:
+def analyse(source: str) -> Analysis:
     """What a code cell does with names.
 
     Args:
-        source: Python as a notebook understands it.
+        source: The text of the cell, which may contain IPython's magics.
 
     Returns:
-        ``functions`` and ``binds`` that it defines at its top level, names that it ``uses``,
-        functions that are still ``stubs``, why it is ``broken``, empty if it is not, the ``magic``
-        that keeps its names from the notebook, and its ``definitions``, see `_definition`.
+        ``functions`` that the cell defines at its top level, all names that it ``binds`` there and
+        names that it ``uses``; functions that are still ``stubs``; why it is ``broken``, or "" if
+        Python can read it; the ``magic`` that keeps its names from the notebook, or ""; and its
+        ``definitions``, see `_definition`.
     """
     found: dict[str, Any] = {
         "functions": [], "binds": [], "uses": [], "stubs": [], "broken": "", "magic": "",
@@ -97,7 +98,7 @@ def look(source: str) -> Look:
 
 
 def is_stub(statement: ast.AST) -> bool:
-    """Whether it is a function that does nothing but raise NotImplementedError."""
+    """Whether a statement is a function that only raises NotImplementedError."""
     if not isinstance(statement, ast.FunctionDef):
         return False
     body = [x for x in statement.body if not _is_text(x)]
@@ -108,10 +109,10 @@ def is_stub(statement: ast.AST) -> bool:
 
 
 def dotted(node: ast.AST) -> str:
-    """A chain of attributes as text, "lk.Model.gravity"; "" if it begins with no name.
+    """A chain of attributes as text, such as "lk.Model.gravity"; "" if it begins with no name.
 
-    What a call gives is taken for what is called, for what an instance has its class has; a
-    constant name given to ``getattr`` is an attribute.
+    A call stands for the function or class that is called, because an instance has the attributes
+    of its class.  A constant name that is passed to ``getattr`` is an attribute.
     """
     if isinstance(node, ast.Name):
         return node.id
@@ -129,7 +130,7 @@ def dotted(node: ast.AST) -> str:
 
 
 def imported(node: ast.AST) -> dict[str, str]:
-    """What the names that an import brings stand for, in full; none for any other statement."""
+    """The full name of each name that an import binds; empty for any other statement."""
     if isinstance(node, ast.Import):
         return {
             x.asname or x.name.partition(".")[0]: x.name if x.asname else x.name.partition(".")[0]
@@ -141,12 +142,12 @@ def imported(node: ast.AST) -> dict[str, str]:
 
 
 def needed(source: str, name: str, given: Collection[str] = ()) -> list[str]:
-    """The statements of a module that a name's meaning hangs on, as they are written, in order.
+    """The statements of a module on which a name depends, as they are written, in order.
 
     Args:
-        source: Of the module.
-        name: Which.
-        given: Names that get their meaning from elsewhere.
+        source: The text of the module.
+        name: The name.
+        given: Names that are defined elsewhere.
     """
     lines = source.split("\n")
     texts = [_text(part, lines) for part in _parts(ast.parse(source).body)]
@@ -154,14 +155,14 @@ def needed(source: str, name: str, given: Collection[str] = ()) -> list[str]:
     wanted, found, before = {name}, set[int](), -1
     while before < len(found):
         before = len(found)
-        found = {k for k, scope in enumerate(scopes) if not wanted.isdisjoint(_own(scope))}
-        wanted.update(*(_from_elsewhere(scopes[k]) for k in found))
+        found = {k for k, scope in enumerate(scopes) if not wanted.isdisjoint(_own_names(scope))}
+        wanted.update(*(_outside_names(scopes[k]) for k in found))
         wanted.difference_update(given)
     return [texts[k] for k in sorted(found)]
 
 
 def _parts(body: list[ast.stmt]) -> list[list[ast.stmt]]:
-    """Statements one by one, but for those that share a line."""
+    """Statements one by one, except that those on the same line stay together."""
     parts: list[list[ast.stmt]] = []
     for statement in body:
         if parts and statement.lineno <= (parts[-1][-1].end_lineno or 0):
@@ -178,20 +179,20 @@ def _text(part: list[ast.stmt], lines: list[str]) -> str:
 
 
 def _definition(part: list[ast.stmt], lines: list[str]) -> dict[str, Any]:
-    """What a statement at a cell's top level gives a meaning to, and what it leans on.
+    """What a statement at a cell's top level defines, and on what it depends.
 
     Returns:
-        Names that it ``binds``; names from ``outside``; the dotted names that it ``uses``; names
-        whose contents it ``fills`` without having made them; questions that it ``asks`` `use`
-        about; what names of these that it imports itself ``mean``, "*" for all of a module; whether
-        it is a ``stub``.
+        Names that it ``binds``; names that it takes from ``outside``; the dotted names that it
+        ``uses``; names whose contents it ``fills`` without defining them; questions that it
+        ``asks`` `use` about; what the names that it imports ``mean``, with "*" for all of a module;
+        and whether it is a ``stub``.
     """
     scope = symtable.symtable(_text(part, lines), "", "exec")
-    binds, outside = _own(scope), set(_from_elsewhere(scope))
+    binds, outside = _own_names(scope), set(_outside_names(scope))
     mean: dict[str, str] = {}
     chains, fills, sets, asks = set[str](), set[str](), set[str](), set[str]()
     grown: set[ast.AST] = set()
-    for node in _used(part):
+    for node in _nodes(part):
         kind = type(node)
         if kind in _CHAINS:
             chains.add(dotted(node))
@@ -218,8 +219,8 @@ def _definition(part: list[ast.stmt], lines: list[str]) -> dict[str, Any]:
     }
 
 
-def _used(part: list[ast.stmt]) -> Iterator[ast.AST]:
-    """All that statements are made of, but for the stand-ins that they give to ``use``."""
+def _nodes(part: list[ast.stmt]) -> Iterator[ast.AST]:
+    """All nodes of statements, except for the stand-ins that they pass to ``use``."""
     waiting: list[ast.AST] = [*part]
     while waiting:
         node = waiting.pop()
@@ -235,18 +236,18 @@ def _is_text(node: ast.stmt) -> bool:
     return isinstance(node, ast.Expr) and isinstance(node.value, ast.Constant)
 
 
-def _own(scope: symtable.SymbolTable) -> set[str]:
-    """Names that a piece of code binds at its own level."""
+def _own_names(scope: symtable.SymbolTable) -> set[str]:
+    """Names that a scope binds itself."""
     return {x.get_name() for x in scope.get_symbols() if x.is_assigned() or x.is_imported()}
 
 
-def _from_elsewhere(scope: symtable.SymbolTable) -> Iterator[str]:
-    """Names that a piece of code takes from what ran before it."""
+def _outside_names(scope: symtable.SymbolTable) -> Iterator[str]:
+    """Names that a scope takes from outside."""
     top = scope.get_type() == "module"
-    own = _own(scope) if top else set()
+    own = _own_names(scope) if top else set()
     for symbol in scope.get_symbols():
         outside = symbol.is_referenced() and (top or symbol.is_global())
         if outside and symbol.get_name() not in own:
             yield symbol.get_name()
     for inner in scope.get_children():
-        yield from (name for name in _from_elsewhere(inner) if name not in own)
+        yield from (name for name in _outside_names(inner) if name not in own)

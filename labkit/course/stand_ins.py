@@ -1,30 +1,30 @@
-"""What drives in the place of answers that are not right, and what is drawn with it."""
+"""Stand-ins, which drive the arm in place of answers that are not right, and name themselves."""
 
 from __future__ import annotations
 
 from collections.abc import Callable, Collection, Iterable
 from typing import Any
 
-from .source import look
+from .source import analyse
 
 STAND_IN, WRONG = "a stand-in for", "your wrong"
 
 
 class StandIns(dict[str, str]):
-    """The answers that are not right, and what drives for each now: `STAND_IN` or `WRONG`."""
+    """The answers that are not right; each has a `STAND_IN`, or is used although it is `WRONG`."""
 
     ran: Iterable[str] = ()
 
     def give(
         self, name: str, kind: str, given: Callable[..., Any], shell: Any
     ) -> Callable[..., Any]:
-        """What drives; from now on captions name it in each cell that draws with it.
+        """Return a function; captions name it from now on in each cell that draws with it.
 
         Args:
-            name: Of the answer.
+            name: Name of the answer.
             kind: `STAND_IN` or `WRONG`.
-            given: What drives.
-            shell: Of the notebook; None where there is none.
+            given: The function.
+            shell: Shell of the notebook, or None outside a notebook.
         """
         self[name] = kind
         if shell is not None:
@@ -35,29 +35,30 @@ class StandIns(dict[str, str]):
         return given
 
     def wrong(self) -> list[str]:
-        """The student's wrong answers that made the truth of a prediction in the last cell."""
+        """The student's wrong answers on which a prediction's truth in the last cell depends."""
         return [x for x in drawn_with(self.ran, self, ("predict",)) if self[x] == WRONG]
 
 
 def drawn_with(
     cells: Iterable[str], replaced: Collection[str], where: Collection[str] = ()
 ) -> list[str]:
-    """The answers that are not right and that the last cell uses, itself or through others.
+    """The answers that are not right and that the last cell uses, directly or through other cells.
 
-    A function that this cell defines, or gets from ``use``, counts only if the rest of it uses it.
+    A function that this cell defines, or that ``use`` returns in it, counts only if the rest of the
+    cell uses that function.
 
     Args:
-        cells: Their text, in the order in which they ran.
+        cells: The text of the cells, in the order in which they ran.
         replaced: The answers that are not right.
-        where: Only what a call of one of these functions uses; anywhere in the cell if empty.
+        where: If not empty, only statements that call one of these functions count.
     """
     means: dict[str, list[Any]] = {}
     waiting: list[Any] = []
-    for cell in map(look, cells):
+    for cell in map(analyse, cells):
         for part in cell["definitions"]:
             means |= {name: [part] for name in part["binds"] if name not in part["fills"]}
             for name in part["fills"]:
-                if not any(name in x["mean"] for x in means.get(name, ())):  # no module
+                if not any(name in x["mean"] for x in means.get(name, ())):  # not a module
                     means[name] = [*means.get(name, ()), part]
         kept = {*cell["functions"]}
         waiting = [x for x in cell["definitions"] if not kept & {*x["binds"]}]

@@ -1,6 +1,6 @@
-"""What a notebook says: ``check``, ``hint`` and ``use``.
+"""The functions that a notebook calls: ``check``, ``case``, ``hint`` and ``use``.
 
-The questions lie beside the notebook, see `checks_file`.
+The questions are in a file beside the notebook, see `checks_file`.
 """
 
 from __future__ import annotations
@@ -17,20 +17,20 @@ from typing import Any
 
 from ..errors import LabkitError, UnknownName
 from .advice import line_of
-from .calling import heard
+from .calling import captured
 from .card import card, picture
 from .checks_file import read_checks
-from .gaps import calculated
+from .gaps import calculated_from_runs
 from .identification import on_the_public_arm
 from .marking import Mismatch, mark, not_counted, try_public
-from .messages import HEADS, Message, message, waits, wrapped
+from .messages import HEADS, Message, awaits_marking, message, wrapped
 from .notebook import verdict_metadata
 from .observed import diagnosed
-from .own_arm import DEMO, spelt
+from .own_arm import DEMO, normalised
 from .question import Call, Question
-from .reply import Here
+from .reply import LocalFunction
 from .serialize import read_question
-from .source import look
+from .source import analyse
 from .stand_ins import STAND_IN, WRONG, StandIns
 from .unfinished import watch
 from .verdict import Outcome, Verdict
@@ -38,7 +38,7 @@ from .withheld import withheld_tools, withhold
 
 
 class Desk:
-    """The questions of one notebook, and what has come of them so far."""
+    """The questions of one notebook, and the state of the work on them."""
 
     def __init__(self, questions: dict[str, Question]) -> None:
         self.questions = questions
@@ -56,16 +56,16 @@ class Desk:
         """The desk of the notebook in ``folder``.
 
         Raises:
-            LabkitError: No questions lie there, or damaged ones.
+            LabkitError: The file of questions is missing or damaged.
         """
         questions = map(read_question, read_checks(folder)["questions"])
         return cls({question.name: question for question in questions})
 
     def question(self, name: str) -> Question:
-        """One question.
+        """The question of that name.
 
         Raises:
-            UnknownName: There is none of that name.
+            UnknownName: There is no such question.
         """
         if name not in self.questions:
             raise UnknownName("question", name, self.questions)
@@ -74,51 +74,47 @@ class Desk:
     def verdict(
         self, name: str, function: Callable[..., Any]
     ) -> tuple[Verdict, str, Mismatch | None]:
-        """Try a function; also what it printed meanwhile, and the numbers that differ.
+        """The verdict on a function, what the function printed, and the numbers that differ.
 
         Raises:
-            KeyboardInterrupt: The student stopped it; says in which line.
+            KeyboardInterrupt: The student stopped the function; the message says in which line.
         """
         question = self.question(name)
         self.failing[name] = None
-        cells = map(look, cells_run(function))
+        cells = map(analyse, executed_cells(function))
         used = withheld_tools(cells, name, question.withheld)
         student = shell().user_ns if shell() else getattr(function, "__globals__", {})
         try:
-            with heard() as out, withhold(question.withheld, student):
+            with captured() as out, withhold(question.withheld, student):
                 verdict, found = not_counted(question, used), None
                 if not used:
-                    here = Here(function, question.withheld)
+                    here = LocalFunction(function, question.withheld)
                     tried = try_public(question, here)
-                    verdict, found = mark(question, here, tried), tried.evidence(question)
+                    verdict, found = mark(question, here, tried), tried.first_mismatch(question)
                     verdict = diagnosed(question, verdict, tried, here)
                     self.failing[name] = tried.failing
         except KeyboardInterrupt as stop:
             line = line_of(stop)
             where = f" in the line `{line}`" if line else ""
             raise KeyboardInterrupt(
-                f"{name} was stopped{where}; does every loop in it come to its end?"
+                f"{name} was stopped{where}; does every loop in it end?"
             ) from None
         self.checked[name] = (function, verdict)
         if verdict.outcome is not Outcome.NOT_ATTEMPTED:
             self.attempted.add(name)
         return verdict, out.text, found
 
-    def leaning(self, name: str, function: Callable[..., Any]) -> tuple[str, ...]:
-        """Other answers that a function calls by name, and that were tried and are not right."""
+    def wrong_dependencies(self, name: str, function: Callable[..., Any]) -> tuple[str, ...]:
+        """Other answers that a function calls by name and that have been checked and are wrong."""
         code = getattr(function, "__code__", None)
         steps = dis.get_instructions(code) if code else ()
         called = [step.argval for step in steps if step.opname == "LOAD_GLOBAL"]
-        verdicts = {other: verdict for other, (_, verdict) in self.checked.items() if other != name}
-        return tuple(
-            other
-            for other in dict.fromkeys(called)
-            if other in verdicts and not verdicts[other].right
-        )
+        wrong = {other for other, (_, verdict) in self.checked.items() if not verdict.right}
+        return tuple(other for other in dict.fromkeys(called) if other in wrong - {name})
 
 
 def shell() -> Any:
-    """The shell of the notebook that runs here; None where there is none."""
+    """The shell of this notebook, or None outside a notebook."""
     if "IPython" not in sys.modules:
         return None
     from IPython.core.getipython import get_ipython
@@ -126,8 +122,8 @@ def shell() -> Any:
     return get_ipython()
 
 
-def cells_run(function: Callable[..., Any]) -> list[str]:
-    """The text of all cells that ran in this notebook; elsewhere, of the function's own file."""
+def executed_cells(function: Callable[..., Any]) -> list[str]:
+    """The text of all cells that ran in this notebook; elsewhere, that of the function's file."""
     notebook = shell()
     if notebook is not None:
         return list(notebook.history_manager.input_hist_raw)
@@ -140,11 +136,11 @@ def cells_run(function: Callable[..., Any]) -> list[str]:
 
 _desks: dict[Path, Desk] = {}
 _unfinished = watch(shell()) if shell() else set()
-"""Answers that are left from an earlier run of their cell, because it then had an error."""
+"""Answers from an earlier run of their cell, because its last run ended with an error."""
 
 
 def desk() -> Desk:
-    """The desk of the notebook that runs here."""
+    """The desk of this notebook."""
     folder = Path.cwd()
     if folder not in _desks:
         _desks[folder] = Desk.beside(folder)
@@ -152,36 +148,36 @@ def desk() -> Desk:
 
 
 class Points(float):
-    """Points earned: a float, which nbgrader reads from a cell's output and students do not see."""
+    """Points earned, which nbgrader reads from a cell's output and students do not see."""
 
     def _ipython_display_(self) -> None:
-        """Show nothing, for the verdict is above; where nbgrader runs the cell, the number.
+        """Show nothing, because the verdict is shown already; in nbgrader, show the number.
 
         Raises:
-            NotImplementedError: nbgrader runs the cell; by this IPython is told to show the number.
+            NotImplementedError: nbgrader runs the cell, so IPython should show the number.
         """
         if "NBGRADER_EXECUTION" in os.environ:
             raise NotImplementedError
 
 
 _NOT_RUN = (
-    "{name}: not tried, because its cell did not run: it stopped with an error, which is shown "
-    "below that cell. Run the cell without an error first, then this one."
+    "{name}: not tried, because its cell stopped with an error, which is shown below that cell. "
+    "Correct the cell and run it without an error, then run this one again."
 )
 
 
 def check(name: str, function: Callable[..., Any]) -> float:
-    """Try your function and print what came of it.
+    """Try your function and print the result.
 
     Args:
         name: The question's name.
-        function: What you wrote.
+        function: The function, or the value, that you wrote.
 
     Returns:
         The points earned, which nbgrader reads.
 
     Raises:
-        UnknownName: No such question.
+        UnknownName: There is no such question.
     """
     question = desk().question(name)
     if name in _unfinished:
@@ -189,39 +185,40 @@ def check(name: str, function: Callable[..., Any]) -> float:
         return Points(0.0)
     verdict, printed, found = desk().verdict(name, function)
     more: list[str] = []
-    if waits(verdict) and shell() and spelt(str(shell().user_ns.get("HANDLE"))) == DEMO:
+    handle = shell() and str(shell().user_ns.get("HANDLE"))
+    if awaits_marking(verdict) and handle and normalised(handle) == DEMO:
         verdict, *more = on_the_public_arm(question, verdict, function)
-    lost = calculated(cells_run(function), name) if waits(verdict) else ""
-    says = message(question, verdict, printed, desk().leaning(name, function), lost)
+    lost = calculated_from_runs(executed_cells(function), name) if awaits_marking(verdict) else ""
+    says = message(question, verdict, printed, desk().wrong_dependencies(name, function), lost)
     says = replace(says, helps=[*filter(None, more), *says.helps])
     _say(says, verdict, found if verdict.mistake else None)
     return Points(verdict.earned)
 
 
 def case(name: str) -> tuple[tuple[Any, ...], dict[str, Any]]:
-    """The arguments of the call at which the last check of a question stopped, to try it yourself.
+    """The arguments of the call at which the last check of a question stopped, for trying it again.
 
     Args:
         name: The question's name.
 
     Returns:
-        A tuple of the arguments by place, and a dictionary of those by name.
+        A tuple of the positional arguments, and a dictionary of the arguments by name.
 
     Raises:
-        UnknownName: No such question.
-        LabkitError: The last check stopped at no call of the function.
+        UnknownName: There is no such question.
+        LabkitError: The last check did not stop at a call of the function.
     """
     call = desk().failing.get(desk().question(name).name)
     if call is None:
-        raise LabkitError(f"the last check of {name} stopped at no call of it; run its check first")
+        raise LabkitError(f"the last check of {name} did not stop at a call; run its check first")
     return call.args, dict(call.kwargs)
 
 
 def hint(name: str, level: int = 1) -> None:
-    """Print a hint, from 1 (the idea) to 3 (nearly there).  It is free, and nobody is told.
+    """Print a hint, from 1 (the idea) to 3 (almost the answer); hints are free and not recorded.
 
-    The last one opens after an attempt that the check has seen and that was not right.  Beyond it
-    `hint` says so, and where else to ask.  A name that no question has is answered by a sentence.
+    The last hint opens after an attempt that was checked and was not right.  For a higher level,
+    `hint` says where else to ask.  For an unknown name, it prints the names of the questions.
     """
     if name not in desk().questions:
         names = ", ".join(desk().questions)
@@ -233,13 +230,13 @@ def hint(name: str, level: int = 1) -> None:
     elif not isinstance(level, int) or not 1 <= level <= len(hints):
         assignment = read_checks(Path.cwd())["assignment"]
         text = (
-            f"{name} has {len(hints)} hints, and no hint {level!r}. If it does not work with all "
-            "of them, ask the instructor or a forum. This line in a new cell prints what to send: "
+            f"{name} has {len(hints)} hints, and no hint {level!r}. If none of them helps, ask the "
+            "instructor or a forum. This line in a new cell prints what to send: "
             f"!labkit submit-check --forum {assignment}.ipynb"
         )
     elif 1 < level == len(hints) and name not in desk().attempted:
         text = (
-            f"Hint {level} of {name} opens after an attempt: write what you believe, run the "
+            f"Hint {level} of {name} opens after an attempt: write your best answer, run the "
             "check, and ask again."
         )
     else:
@@ -257,17 +254,17 @@ def use(
     *,
     anyway: bool = False,
 ) -> Callable[..., Any]:
-    """Your function if it is right, else the one given; so the notebook always goes on.
+    """Your function if it is right, else a stand-in, so that the notebook can always continue.
 
     Args:
         name: The question's name.
-        function: What you wrote.
-        given: What takes its place: a tool of labkit's, or something simpler.
-        yours: What to use instead of `function` itself, where the notebook wraps it first.
-        anyway: Whether to use yours even if it is wrong, to see what the arm makes of it.
+        function: The function that you wrote.
+        given: The stand-in, which is a tool of labkit or a simpler function.
+        yours: What to use instead of `function` itself, if the notebook wraps it first.
+        anyway: Whether to use yours even if it is wrong, to see how the arm then moves.
 
     Returns:
-        One of them; a badge says so each time that it is not yours, and why.
+        One of them; a line says so each time that it is not a right answer of yours, and why.
     """
     if name in _unfinished:
         print(wrapped(f"[stand-in] {_NOT_RUN.format(name=name)}"))
@@ -280,24 +277,24 @@ def use(
         desk().stand_ins.pop(name, None)
         return yours or function
     if anyway and wrong:
-        print(f"[anyway] {name}: yours is not right yet, and is used all the same.")
+        print(f"[anyway] {name}: your function is not right yet, and is used all the same.")
         return desk().stand_ins.give(name, WRONG, yours or function, shell())
     text = f"[stand-in] {name}: yours is replaced here by a stand-in ({HEADS[verdict.outcome]})."
     if wrong:
-        text += " To see what yours does, add anyway=True to this use(...)."
+        text += " To see what your function does, add anyway=True to this use(...)."
     elif anyway:
-        text += " anyway=True takes only a function that runs to its end on every case."
+        text += " anyway=True works only with a function that returns an answer in every case."
     print(wrapped(text))
     return desk().stand_ins.give(name, STAND_IN, given, shell())
 
 
 def _say(says: Message, verdict: Verdict, found: Mismatch | None) -> None:
-    """Print a message; in a notebook it is a card, which also keeps the verdict as data."""
+    """Print a message; in a notebook, show a card, whose output also stores the verdict."""
     if shell() is None:
         print(says)
         return
     from IPython.display import display
 
-    outcome = Outcome.NOT_TRIED if waits(verdict) else verdict.outcome
+    outcome = Outcome.NOT_TRIED if awaits_marking(verdict) else verdict.outcome
     shown = card(says, outcome, found and picture(found))
     display(shown, metadata=verdict_metadata(verdict), raw=True)

@@ -1,18 +1,18 @@
-"""Cells that stopped before they defined an answer, so that an older answer is still there."""
+"""Cells that stopped before they defined an answer, so that an older answer is still defined."""
 
 from __future__ import annotations
 
 import re
 from typing import Any
 
-from .source import look
+from .source import analyse
 
 _DEFINES = re.compile(r"^(?:def|class)\s+(\w+)|^(\w+)\s*=", re.MULTILINE)
 
 
 def defined_in(source: str) -> set[str]:
-    """The names that a cell is to define, also where Python cannot read the cell."""
-    found = look(source)
+    """The names that a cell should define, even if Python cannot read the cell."""
+    found = analyse(source)
     if not found["broken"]:
         return set(found["binds"])
     return {function or value for function, value in _DEFINES.findall(source)}
@@ -22,7 +22,7 @@ def watch(shell: Any) -> set[str]:
     """Follow the cells that run in an IPython shell.
 
     Returns:
-        A set that is kept up to date: the names that the last cell to define them did not define,
+        A set that is kept up to date.  It has the names that the last cell for them did not define,
         because of an error in the cell.
     """
     unfinished: set[str] = set()
@@ -46,7 +46,7 @@ def watch(shell: Any) -> set[str]:
 
 
 def _say_quotes(source: str, error: BaseException | None) -> None:
-    """After ``predict("name", c)``, what is missing."""
+    """Explain, after an error from ``predict("name", c)``, that the letter needs quotes."""
     name = error.name if isinstance(error, NameError) else None
     if name and re.search(rf"""\bpredict\(\s*["']\w+["'],\s*{name}\s*\)""", source):
-        print(f"A prediction in letters is written in quotes: {name!r}")
+        print(f"Write a prediction in letters with quotes: {name!r}")

@@ -1,6 +1,6 @@
-"""Verdicts: what came of a question, as data from the check to the gradebook.
+"""Verdicts, which are the results of questions as data, from the check to the gradebook.
 
-They hold no sentences; `messages` makes words of them.
+They do not contain sentences about the result; `messages` writes those.
 """
 
 from __future__ import annotations
@@ -13,16 +13,16 @@ from msgspec import Meta
 
 Points = Annotated[float, Meta(ge=0.0, le=1e6)]
 Name = Annotated[str, Meta(pattern=r"^\w+$")]
-"""The name of a function, of which names of files are made."""
+"""The name of a function, which is also used in names of files."""
 Value = float | str | None | tuple[float | tuple[float, ...], ...]
-"""A number, a vector or a matrix; anything else as Python writes it, shortened."""
+"""A number, a vector or a matrix; anything else as its shortened `repr`."""
 
 
 class Outcome(StrEnum):
-    """What came of a question, or of one of its tests."""
+    """The outcome of a question, or of one of its tests."""
 
     NOT_ATTEMPTED = "not attempted"
-    NOT_TRIED = "not tried"  # of a test without a case
+    NOT_TRIED = "not tried"  # a test without a case
     NOT_COUNTED = "not counted"
     ERROR = "error"
     WRONG = "wrong"
@@ -30,35 +30,35 @@ class Outcome(StrEnum):
 
 
 class Kind(StrEnum):
-    """In what an answer differs from what is expected."""
+    """The kinds of difference between an answer and the expected one."""
 
-    NUMBERS = "numbers"  # other numbers
-    RESPONSE = "response"  # another magnitude and phase at a frequency
+    NUMBERS = "numbers"  # different numbers
+    RESPONSE = "response"  # a different magnitude or phase at a frequency
     MEASURE = "measure"  # a measure of a run is above its limit
-    TYPE = "type"  # another type; "" stands for plain numbers
-    VALUE = "value"  # another text, truth value or None
+    TYPE = "type"  # a different type; "" stands for plain numbers
+    VALUE = "value"  # a different text, truth value or None
     KEY = "key"  # a key of a dict is missing
-    PARTS = "parts"  # another number of parts
-    REFUSED = "refused"  # labkit cannot read it; `found` is its sentence
-    NOTHING = "nothing"  # a function without a return
-    CHANGED = "changed"  # the function wrote to its argument; `found` is the sentence
-    RAISED = "raised"  # an exception; `found` is what it says
-    OTHER = "other"  # it cannot be compared
+    PARTS = "parts"  # a different number of parts
+    REFUSED = "refused"  # a judge refuses it; `found` is the sentence
+    NOTHING = "nothing"  # the function returned None
+    CHANGED = "changed"  # the function changed its argument; `found` is the sentence
+    RAISED = "raised"  # an exception; `found` is its description
+    OTHER = "other"  # the answer cannot be compared
 
 
 @dataclass(frozen=True)
 class Difference:
-    """How an answer differs from what is expected.
+    """How an answer differs from the expected one.
 
     Attributes:
-        kind: In what.
-        part: Which part of the answer, which key, or which measure of a run; "" is the whole.
+        kind: The kind of the difference.
+        part: The part of the answer, the key, or the measure of a run; "" is the whole answer.
         at: The index of the worst number, or the frequency in [rad/s].
-        expected: What it should be; of a response, magnitude and phase in [degrees].
-        found: What it is.
-        times: The one factor by which all numbers are off, where there is one.
-        several: Whether other answers than the expected one would be right too.
-        parts: What the parts should be.
+        expected: The expected value; for a response, magnitude and phase in [degrees].
+        found: The value in the answer.
+        times: The factor by which all numbers are wrong, if there is one.
+        several: Whether answers other than the expected one would also be right.
+        parts: Names of the expected parts.
         error: The type of the exception.
     """
 
@@ -75,21 +75,21 @@ class Difference:
 
 @dataclass(frozen=True)
 class TestResult:
-    """What came of one test.
+    """The result of one test.
 
     Attributes:
-        name: What it looked at.
+        name: What it tests.
         weight: Its share of the points; 0 is a gate.
-        outcome: Never partly right.
-        hidden: Whether a hidden case decided; then it is wrong or not counted, and there is no
-            ``call`` and no ``difference``.
-        call: The case that decided, as the student would type it.
-        also: The classes of hidden case that the test has, in words.
-        difference: Why it is not right.
-        tool: The withheld tool that was used, if that decided.
+        outcome: Its outcome; a test is never partly right.
+        hidden: Whether a hidden case failed; the outcome is then wrong or not counted, and
+            ``call`` and ``difference`` are empty.
+        call: The case that failed, as the student would type it.
+        also: The classes of its hidden cases, in words.
+        difference: Why the answer is not right.
+        tool: The withheld tool that was used, if the test failed for that reason.
     """
 
-    __test__ = False  # pytest, this is not for you
+    __test__ = False  # pytest must not collect this class
 
     name: str
     weight: Points
@@ -106,8 +106,8 @@ class Misconception:
     """A known mistake.
 
     Attributes:
-        name: In a few words.
-        says: What to tell who made it.
+        name: Its name, in a few words.
+        says: The explanation for a student who made it.
     """
 
     name: str
@@ -116,16 +116,16 @@ class Misconception:
 
 @dataclass(frozen=True)
 class Verdict:
-    """What came of a question.
+    """The result of a question.
 
     Attributes:
-        name: The question's.
-        outcome: Right only if every test is that was tried.
-        earned: Points.
-        points: What full marks would be.
-        tests: One result each.
-        withheld: The tools that it used and that the question asks to write.
-        complete: Whether no hidden case is left that could change it.
+        name: The question's name.
+        outcome: Right only if every test that was tried is right.
+        earned: Points earned.
+        points: Full marks.
+        tests: The result of each test.
+        withheld: The withheld tools that the answer used.
+        complete: Whether all hidden cases were tried, so that the verdict is final.
         mistake: The known mistake that gives the same answers, if there is one.
     """
 
@@ -140,5 +140,5 @@ class Verdict:
 
     @property
     def right(self) -> bool:
-        """Whether it is right."""
+        """Whether the outcome is right."""
         return self.outcome is Outcome.RIGHT

@@ -1,9 +1,9 @@
-"""Tools that a question asks to write, and which its answer therefore may not use.
+"""Tools that a question asks students to write, so its answer may not use them.
 
-The text of an answer is searched for them, and while it is tried they stop working for the
-student's code.  labkit's own code goes on using them, because inputs may be made of them.  This
-keeps an honest student honest; a student who goes around it is listed for the instructor, not
-stopped.
+The text of an answer is searched for these tools, and while the answer is tried they raise an
+exception when the student's code calls them.  labkit's own code can still use them, because inputs
+may be made with them.  This reminds honest students; one who evades it is not stopped, but is
+listed for the instructor.
 """
 
 from __future__ import annotations
@@ -19,29 +19,29 @@ from typing import Any
 
 from ..errors import LabkitError
 from .advice import in_labkit, in_library
-from .source import Look
+from .source import Analysis
 
 _numbers = count()
 
 
 class Withheld(LabkitError):
-    """A tool was used that the question asks the student to write.
+    """The answer used a withheld tool.
 
     Attributes:
         tool: Its dotted name, such as "labkit.Circle".
     """
 
     def __init__(self, tool: str) -> None:
-        """Name the tool."""
+        """Take the tool's dotted name."""
         super().__init__(tool)
         self.tool = tool
 
     def __str__(self) -> str:
-        return f"{spoken(self.tool)} may not be used in this answer"
+        return f"{name_in_notebook(self.tool)} may not be used in this answer"
 
 
-def spoken(tool: str) -> str:
-    """A tool as a notebook calls it: "lk.Circle"."""
+def name_in_notebook(tool: str) -> str:
+    """The name of a tool in a notebook, such as "lk.Circle"."""
     return f"lk.{tool.removeprefix('labkit.')}" if tool.startswith("labkit.") else tool
 
 
@@ -51,7 +51,7 @@ def withhold(tools: Iterable[str], student: dict[str, Any]) -> Iterator[None]:
 
     Args:
         tools: Dotted names, such as "labkit.Circle" or "pinocchio".
-        student: The student's globals, where a reference may lie already.
+        student: The student's globals, which may already refer to the tools.
     """
     with ExitStack() as undo:
         for tool in tools:
@@ -64,9 +64,9 @@ def withhold(tools: Iterable[str], student: dict[str, Any]) -> Iterator[None]:
 
 
 def _stop_module(tool: str, student: dict[str, Any], undo: ExitStack) -> None:
-    """Every public function that a package defines, and class, in whatever part of it is loaded.
+    """Stop every public function and class of a package, in all of its loaded modules.
 
-    Classes written in C stay: without functions they answer nothing.
+    Classes written in C are left alone, because they are of no use without the functions.
     """
     stopped: set[int] = set()
     for name, module in list(sys.modules.items()):
@@ -77,7 +77,7 @@ def _stop_module(tool: str, student: dict[str, Any], undo: ExitStack) -> None:
                 in_c = isclass(thing) and not isfunction(thing.__init__)
                 if public and not in_c and id(thing) not in stopped:
                     _stop(tool, module, key, thing, student, undo)
-                if isclass(thing) or isfunction(thing):  # stopped wherever it is called
+                if isclass(thing) or isfunction(thing):  # one stop is enough for all references
                     stopped.add(id(thing))
 
 
@@ -103,7 +103,7 @@ def _stop(
 
 
 def _methods(kind: type) -> Iterator[tuple[type, str, FunctionType]]:
-    """The functions through which a class of labkit's is used, where it has them from."""
+    """The public functions of a class of labkit, with the base class that defines each."""
     for base in kind.__mro__:
         if not base.__module__.startswith("labkit."):
             continue
@@ -115,7 +115,7 @@ def _methods(kind: type) -> Iterator[tuple[type, str, FunctionType]]:
 
 
 def _copied(function: FunctionType) -> FunctionType:
-    """The function as it was, to be called by the guard that takes its place."""
+    """A copy of the function, for the guard that replaces it to call."""
     copy = FunctionType(
         function.__code__, function.__globals__, function.__name__, function.__defaults__
     )
@@ -124,7 +124,7 @@ def _copied(function: FunctionType) -> FunctionType:
 
 
 def _stop_function(function: FunctionType, guard: Callable[..., Any], undo: ExitStack) -> None:
-    """Change a function itself, so that references taken earlier stop too."""
+    """Change the function itself, so that earlier references to it stop too."""
     name = f"_withheld_{next(_numbers)}"
     made: dict[str, Any] = {}
     program = f"def stub(*args, **kwargs):\n    return {name}(*args, **kwargs)\n"
@@ -148,14 +148,14 @@ def _guard(tool: str, function: Callable[..., Any], kind: type | None = None) ->
 
 
 def _is_of(kind: type, args: tuple[Any, ...]) -> bool:
-    """Whether a method is that of a class, not of a sister that shares it."""
+    """Whether a method is called on the class or its instance, not on a sibling class."""
     return bool(args) and (
         issubclass(args[0], kind) if isclass(args[0]) else isinstance(args[0], kind)
     )
 
 
 def _student_asks() -> bool:
-    """Whether the code that asks is neither labkit's nor asked by labkit through a library."""
+    """Whether the student's code calls, and not labkit, directly or through a library."""
     frame: FrameType | None = sys._getframe(1)
     while frame is not None:
         file = frame.f_code.co_filename
@@ -172,7 +172,7 @@ _HERE = _student_asks.__code__.co_filename
 
 
 def find(name: str) -> tuple[Any, Any]:
-    """What holds a dotted name, and the thing itself; None where there is no such thing."""
+    """The owner of what a dotted name means, and the object itself; None if it does not exist."""
     parts = name.split(".")
     for cut in range(len(parts), 0, -1):
         try:
@@ -188,28 +188,28 @@ def find(name: str) -> tuple[Any, Any]:
     return None, None
 
 
-def withheld_tools(cells: Iterable[Look], name: str, withheld: Sequence[str]) -> tuple[str, ...]:
+def withheld_tools(cells: Iterable[Analysis], name: str, tools: Sequence[str]) -> tuple[str, ...]:
     """The withheld tools that an answer uses.
 
-    What is reached through an instance, such as ``model.gravity``, only a call can tell; see
-    `withhold`.
+    The use of a tool through an instance, such as ``model.gravity``, is found only when it is
+    called; see `withhold`.
 
     Args:
-        cells: What `source.look` found in each cell, in the order in which they run.
+        cells: What `source.analyse` returned for each cell, in the order in which they run.
         name: The answer's name.
-        withheld: Dotted names, such as "labkit.Circle" or "pinocchio".
+        tools: Dotted names of the withheld tools, such as "labkit.Circle" or "pinocchio".
 
     Returns:
         Those that are used, in the order given.
     """
-    if not withheld:
+    if not tools:
         return ()
     used = set(_uses(_last_definitions(cells), name))
-    return tuple(tool for tool in withheld if any(_is_part(tool, other) for other in used))
+    return tuple(tool for tool in tools if any(_is_part(tool, other) for other in used))
 
 
-def _last_definitions(cells: Iterable[Look]) -> dict[str, Mapping[str, Any]]:
-    """What each name means at the end; an empty stub takes no answer's place."""
+def _last_definitions(cells: Iterable[Analysis]) -> dict[str, Mapping[str, Any]]:
+    """The last definition of each name; a stub does not replace an answer."""
     means: dict[str, Mapping[str, Any]] = {}
     for cell in cells:
         for definition in cell["definitions"]:
@@ -220,7 +220,7 @@ def _last_definitions(cells: Iterable[Look]) -> dict[str, Mapping[str, Any]]:
 
 
 def _uses(means: Mapping[str, Mapping[str, Any]], name: str) -> Iterator[str]:
-    """Everything that a name's definition uses, directly or through others, by its full name."""
+    """The full names of all that a definition uses, directly or through other definitions."""
     imports = {key: d["mean"][key] for key, d in means.items() if key in d["mean"]}
     waiting, seen = [name], {name}
     while waiting:
@@ -240,7 +240,7 @@ def _uses(means: Mapping[str, Mapping[str, Any]], name: str) -> Iterator[str]:
 
 
 def _is_part(tool: str, other: str) -> bool:
-    """Whether a dotted name is a withheld tool's, or a part of it, or another name of it."""
+    """Whether a dotted name means a withheld tool, a part of it, or the tool by another name."""
     if _within(other, tool):
         return True
     if other.partition(".")[0] != tool.partition(".")[0]:
@@ -261,7 +261,7 @@ def _within(name: str, whole: str) -> bool:
 
 
 def _loaded(name: str) -> Iterator[Any]:
-    """The things along a dotted name; no module is imported for it."""
+    """The objects along a dotted name, without importing a module."""
     first, *parts = name.split(".")
     thing: Any = sys.modules.get(first)
     for part in parts:

@@ -13,7 +13,7 @@ from labkit.course.before_handing_in import HandIn, examine
 from labkit.course.forms import COMMITTED, OWN_ARM
 from labkit.course.notebook import PLACEHOLDER, verdict_metadata
 from labkit.course.own_arm import FILE
-from labkit.course.receipt import _last_word, hand_in, receipt
+from labkit.course.receipt import _advice, hand_in, receipt
 from labkit.course.verdict import Outcome, TestResult, Verdict
 
 ASSIGNMENT = Path(__file__).resolve().parents[2] / "assignments" / "01_paths"
@@ -46,7 +46,7 @@ def test_an_untouched_notebook_is_whole_and_not_run(folder):
     assert set(found.verdicts.values()) == {None}
     assert "  bang_bang: not run" in str(found).splitlines()
     assert str(found).endswith(
-        "0 of 6 tasks were right, as far as can be tried here, and 0 of 2 predictions were "
+        "0 of 6 tasks were right, as far as can be tested here, and 0 of 2 predictions were "
         "committed."
     )
 
@@ -56,10 +56,10 @@ def test_only_what_there_is_is_counted():
     verdict = Verdict("x", Outcome.RIGHT, 1.0, 1.0)
     some = HandIn("08_report", (), (), {"x": verdict}, ["x"])
     assert str(some).splitlines()[-1] == (
-        "08_report: it can be handed in as it is; when it was last run, 1 of 1 predictions were "
-        "committed."
+        "08_report: the notebook can be handed in as it is; in its last run, 1 of 1 predictions "
+        "were committed."
     )
-    assert str(HandIn("a", (), (), {})) == "a: it can be handed in as it is."
+    assert str(HandIn("a", (), (), {})) == "a: the notebook can be handed in as it is."
 
 
 def test_what_is_not_yet_right_is_named(folder):
@@ -91,7 +91,7 @@ def test_a_verdict_older_than_its_function_is_told(folder):
 
         return examine(edited(folder / "01_paths.ipynb", change)).notes
 
-    assert any(note.startswith("changed since it was checked: witness;") for note in ran(9, 8))
+    assert any(note.startswith("changed since the last check: witness;") for note in ran(9, 8))
     assert not any(note.startswith("changed") for note in ran(8, 9))
 
 
@@ -129,7 +129,7 @@ def test_what_the_check_said_is_repeated(folder):
     found = answered(folder, "circle", "def circle(*a): return 1", ran)
     says = "  circle: right on all cases here; 4 points if the instructor's cases agree."
     assert says in str(found).splitlines()
-    assert "1 of 6 tasks were right, as far as can be tried here, and 0 of" in str(found)
+    assert "1 of 6 tasks were right, as far as can be tested here, and 0 of" in str(found)
     lies = [{"output_type": "stream", "name": "stdout", "text": "circle: right. 4 of 4 points.\n"}]
     assert answered(folder, "circle", "x = 1", lies).verdicts["circle"] is None
 
@@ -139,8 +139,8 @@ def test_a_magic_that_keeps_an_answer_to_itself_is_to_be_mended(folder, magic):
     """Where a notebook would define nothing, the sentence says which line to take away."""
     found = answered(folder, "circle", f"{magic}\ndef circle(s, start, centre):\n    return 1")
     assert found.problems == (
-        f"the cell of circle begins with {magic}, which keeps what it defines to itself; "
-        "take that line away",
+        f"the cell of circle begins with {magic}, so the notebook does not see what it "
+        "defines; delete that line",
     )
     assert answered(folder, "circle", "%%time\ndef circle(*a): return 1").problems == ()
 
@@ -196,7 +196,7 @@ def test_missing_and_doubled_cells_are_named(folder):
 
     problems = examine(edited(folder / "01_paths.ipynb", change)).problems
     assert any(text.startswith("no cell defines bang_bang") for text in problems)
-    assert any("circle is there 2 times" in text for text in problems)
+    assert any("there are 2 cells of circle" in text for text in problems)
 
 
 def test_a_given_cell_that_is_gone_and_an_error_are_named(folder):
@@ -253,7 +253,7 @@ def test_numbers_of_the_public_arm_are_named_where_ones_own_was_due(tmp_path):
 
     (problem,) = examine(edited(path, measured)).problems
     assert problem == (
-        'HANDLE is "demo", the public arm, and my_wall will be judged by an arm of your own; set '
+        'HANDLE is "demo", the public arm, but my_wall will be judged by an arm of your own; set '
         "HANDLE to the name that your instructor gave you, and measure again"
     )
     path.write_text(path.read_text().replace('HANDLE = \\"demo\\"', 'HANDLE = \\"ada\\"'))
@@ -297,7 +297,7 @@ def test_words_of_a_text_are_counted_without_the_placeholder(folder):
     assert any(f"{name} has 0 words; it needs" in str(found) for name in found.texts)
     found = with_texts_of(folder, 30)
     assert all(
-        f"  {name}: 30 words; your instructor reads it" in str(found) for name in found.texts
+        f"  {name}: 30 words; your instructor will read it" in str(found) for name in found.texts
     )
     assert "at most" not in str(found)
 
@@ -361,16 +361,16 @@ def test_the_last_word_says_whether_to_hand_in(folder):
     found = replace(blank, verdicts=dict.fromkeys(blank.verdicts, object()))
     clean = replace(found, notes=())
     says = [
-        _last_word("f", clean, timedelta(seconds=5), []),
-        _last_word("f", found, timedelta(seconds=5), []),
-        _last_word("f", clean, timedelta(minutes=5), []),
-        _last_word("f", clean, timedelta(seconds=5), ["circle"]),
+        _advice("f", clean, timedelta(seconds=5), []),
+        _advice("f", found, timedelta(seconds=5), []),
+        _advice("f", clean, timedelta(minutes=5), []),
+        _advice("f", clean, timedelta(seconds=5), ["circle"]),
     ]
     assert says[0] == "f was saved 5 s ago and is complete: hand it in now."
     assert "[note]" in says[1] and "if you have changed nothing" in says[2]
-    assert "does not hold the circle that you ran last" in says[3]
+    assert "but does not hold the circle that you ran last" in says[3]
     word = "f was saved 5 s ago, before any check had run: save it and run this cell again."
-    assert _last_word("f", blank, timedelta(seconds=5), []) == word
+    assert _advice("f", blank, timedelta(seconds=5), []) == word
 
 
 def test_a_file_without_any_result_is_not_told_task_by_task(folder, capsys, monkeypatch):

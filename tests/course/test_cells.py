@@ -7,7 +7,7 @@ import sys
 
 import pytest
 
-from labkit.course.source import dotted, look, plain
+from labkit.course.source import analyse, dotted, plain
 
 BODY = "def answer(x):\n    return 2 * x\n"
 HEADS = [
@@ -36,8 +36,8 @@ def test_a_magic_defines_here_what_it_defines_in_a_notebook(tmp_path):
         input=json.dumps(cells), capture_output=True, text=True, check=True, cwd=tmp_path,
     )  # fmt: skip
     defined = json.loads(done.stdout.splitlines()[-1])
-    assert [("answer" in look(cell)["binds"]) for cell in cells] == defined
-    assert [not look(cell)["magic"] for cell in cells] == defined
+    assert [("answer" in analyse(cell)["binds"]) for cell in cells] == defined
+    assert [not analyse(cell)["magic"] for cell in cells] == defined
     assert len(set(defined)) == 2
 
 
@@ -49,12 +49,12 @@ def test_lines_keep_their_numbers():
 
 def test_what_a_cell_needs_and_binds():
     """Names by def, class, import, loop and assignment, wherever they stand in a line."""
-    found = look(
+    found = analyse(
         "import a.b, c as d\nfor e in range(f): g = h; i = (\n 1)\nclass J(k): l = m\nn += 1"
     )
     assert found["binds"] == ["J", "a", "d", "e", "g", "i", "n"]
     assert set(found["uses"]) == {"f", "h", "k", "m", "range"}
-    assert look("a = (1,\n 2); b = a; from x import *")["binds"] == ["*", "a", "b"]
+    assert analyse("a = (1,\n 2); b = a; from x import *")["binds"] == ["*", "a", "b"]
 
 
 @pytest.mark.parametrize(
@@ -72,7 +72,7 @@ def test_what_a_cell_needs_and_binds():
 )
 def test_no_text_is_too_odd(source):
     """Whatever stands in a cell, a look at it comes back."""
-    assert set(look(source)) == set(look("x = 1"))
+    assert set(analyse(source)) == set(analyse("x = 1"))
 
 
 def test_dotted_names():

@@ -1,7 +1,7 @@
 """The word for a prediction."""
 
 from labkit.course.forms import COMMITTED
-from labkit.course.messages import foretells, word
+from labkit.course.messages import is_prediction, outcome_word
 from labkit.course.verdict import Outcome, TestResult, Verdict
 
 
@@ -10,4 +10,4 @@ def test_a_prediction_is_committed_and_not_right():
     for name, says in ((COMMITTED, "committed"), ("on a circle", "right")):
         test = TestResult(name, 1.0, Outcome.RIGHT)
         verdict = Verdict("it", Outcome.RIGHT, 1.0, 1.0, (test,))
-        assert word(verdict) == says and foretells(verdict) == (says == "committed")
+        assert outcome_word(verdict) == says and is_prediction(verdict) == (says == "committed")

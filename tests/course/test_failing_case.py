@@ -39,7 +39,7 @@ def test_without_a_failing_call_there_is_a_sentence(beside):
     with pytest.raises(LabkitError, match="run its check first"):
         case("orientation_error")
     check("orientation_error", lk.se3.orientation_error)
-    with pytest.raises(LabkitError, match="stopped at no call"):
+    with pytest.raises(LabkitError, match="did not stop at a call"):
         case("orientation_error")
 
 

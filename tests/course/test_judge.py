@@ -48,7 +48,7 @@ def test_lists_and_rounding_are_the_same(answer):
         ([1, 2, np.nan], "nan"),
         ([1, 2, np.inf], "inf"),
         (np.float64("nan"), "shape"),
-        (lk.JointVelocity(np.zeros(7)), "plain numbers are asked for, not a JointVelocity"),
+        (lk.JointVelocity(np.zeros(7)), "the answer should be plain numbers, not a JointVelocity"),
         ([[1], [2, 3]], "different lengths"),
     ],
 )
@@ -139,7 +139,7 @@ def test_at_most():
     judge = AtMost()
     assert judge({"max_mm": 1.0, "effort": 2.0}, {"max_mm": 1.5}) is None
     assert says(judge({"max_mm": 2.0}, {"max_mm": 1.5})) == (
-        "the largest error of the tip is 2 mm, allowed 1.5 mm"
+        "the largest error of the tip is 2 mm; the limit is 1.5 mm"
     )
     assert judge({"max_mm": float("nan")}, {"max_mm": 1.5}) is not None
 
@@ -181,7 +181,10 @@ def test_torques_are_judged_by_what_the_tip_does():
         answer = lk.JointTorque(expected.value + 0.01 * joint)
         assert judge.distance(answer, expected) > 1.0
         words = says(judge(answer, expected))
-        assert words.startswith("expected [") and "or any that moves the tip alike, got [" in words
+        assert (
+            words.startswith("expected [")
+            and "or any that moves the tip in the same way, got [" in words
+        )
 
 
 @pytest.mark.parametrize("answer", [np.zeros(7), None, lk.JointVelocity(np.zeros(7))])

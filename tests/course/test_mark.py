@@ -147,7 +147,7 @@ def test_a_closed_loop_after_it_has_settled():
 
     assert mark(loop_question(settle=0.3), controller).outcome is Outcome.RIGHT
     verdict = mark(loop_question(), controller)
-    assert verdict.outcome is Outcome.WRONG and "allowed 5 mm" in why(verdict.tests[0])
+    assert verdict.outcome is Outcome.WRONG and "the limit is 5 mm" in why(verdict.tests[0])
 
 
 def test_a_closed_loop_that_breaks():

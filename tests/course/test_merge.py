@@ -9,7 +9,7 @@ import pytest
 
 from labkit import LabkitError
 from labkit.__main__ import main
-from labkit.course.merge import BESIDE, merge
+from labkit.course.merge import KEPT_TEXT, merge
 from labkit.course.notebook import is_edited, read_cells, released
 
 ASSIGNMENT = Path(__file__).resolve().parents[2] / "assignments" / "01_paths"
@@ -147,11 +147,11 @@ def test_what_student_and_release_changed_stands_beside(tmp_path, capsys):
         paths[name].write_text(json.dumps(data))
     to = tmp_path / "merged.ipynb"
     assert main(["merge", str(paths["mine"]), str(paths["new"]), "--to", str(to)]) == 0
-    assert BESIDE in capsys.readouterr().out
+    assert KEPT_TEXT in capsys.readouterr().out
     merged, new = read_cells(to), read_cells(paths["new"])
     at = merged.index(walk(merged, 'HANDLE = "demo"'))
     assert "my_arm(HANDLE, 1)" in merged[at]["source"]
-    assert merged[at + 1]["source"].startswith(f'# {BESIDE}\n# HANDLE = "zoe"  # in a course')
+    assert merged[at + 1]["source"].startswith(f'# {KEPT_TEXT}\n# HANDLE = "zoe"  # in a course')
     assert [*merged[: at + 1], *merged[at + 2 :]] == new
 
 
@@ -166,7 +166,7 @@ def test_of_an_older_notebook_no_change_is_lost():
     walk(mine, "# ").update(source="A note of mine.")
     merged = merge(mine, new)
     added = [c["source"] for c in merged if c not in new]
-    assert added == [f"> {BESIDE}\n> A note of mine.", f'# {BESIDE}\n# HANDLE = "zoe"']
+    assert added == [f"> {KEPT_TEXT}\n> A note of mine.", f'# {KEPT_TEXT}\n# HANDLE = "zoe"']
 
 
 def test_a_copy_that_was_pasted_and_changed_is_the_students_own():

@@ -86,8 +86,8 @@ def test_an_answer_that_leans_on_a_wrong_one_is_told(capsys):
     assert "it uses your" not in capsys.readouterr().out
     check("again", answers["again"])
     assert "It uses your double, not right yet: correct double first." in capsys.readouterr().out
-    assert notebook.desk().leaning("again", answers["again"]) == ("double",)
-    assert notebook.desk().leaning("again", answers["method"]) == ()
+    assert notebook.desk().wrong_dependencies("again", answers["again"]) == ("double",)
+    assert notebook.desk().wrong_dependencies("again", answers["method"]) == ()
 
 
 def test_an_answer_that_uses_a_withheld_tool_is_not_counted(desk, capsys):
@@ -242,7 +242,7 @@ def test_anyway_takes_yours_only_if_it_runs(capsys):
     assert "[anyway] double" in capsys.readouterr().out
     assert use("double", lambda x: 1 / 0, given, anyway=True) is given
     out = " ".join(capsys.readouterr().out.split())
-    assert "(it stopped with an error)" in out and "runs to its end" in out
+    assert "(it stopped with an error)" in out and "returns an answer in every case" in out
 
 
 def test_use_remembers_the_check():

@@ -24,10 +24,10 @@ from labkit.course import (
 from labkit.course.authoring.layout import Course
 from labkit.course.bugs import CAUSES, MOVES, Bug, tells_apart
 from labkit.course.differences import sentence
-from labkit.course.identification import personal
+from labkit.course.identification import personalised
 from labkit.course.messages import message
 from labkit.course.own_arm import APART, DEMO, FILE, RANGES, Arms, draw
-from labkit.course.reply import Here
+from labkit.course.reply import LocalFunction
 from labkit.errors import LabkitError
 
 
@@ -102,7 +102,7 @@ def test_a_damaged_file_of_arms_is_a_sentence(tmp_path, monkeypatch, text):
     (who,) = Arms(7, {"kestrel": "kestrel"}).sealed()
     (tmp_path / FILE).write_text(text.replace("%s", who))
     monkeypatch.chdir(tmp_path)
-    with pytest.raises(LabkitError, match=r"arms\.json is damaged; put the arms\.json that your"):
+    with pytest.raises(LabkitError, match=r"arms\.json is damaged; replace it with the arms\.json"):
         my_arm("kestrel")
 
 
@@ -111,10 +111,12 @@ def test_a_number_is_judged_against_ones_own_arm():
     demo, other = draw(2019, DEMO), draw(7, "kestrel")
     judge = Measured("payload", "kg", 0.0, 3.0, 0.01)
     asked = Identification("m", "?", judge, demo.payload, "one number", 1.0).question()
-    assert mark(asked, Here(demo.payload, ())).outcome is Outcome.RIGHT
-    assert mark(personal(asked, other), Here(other.payload, ())).outcome is Outcome.RIGHT
-    assert mark(personal(asked, other), Here(demo.payload, ())).earned == 0.0
-    assert mark(asked.public(), Here(other.payload, ())).outcome is Outcome.RIGHT
+    assert mark(asked, LocalFunction(demo.payload, ())).outcome is Outcome.RIGHT
+    assert (
+        mark(personalised(asked, other), LocalFunction(other.payload, ())).outcome is Outcome.RIGHT
+    )
+    assert mark(personalised(asked, other), LocalFunction(demo.payload, ())).earned == 0.0
+    assert mark(asked.public(), LocalFunction(other.payload, ())).outcome is Outcome.RIGHT
 
 
 def test_two_joints_agree_about_the_load_where_they_really_swing(monkeypatch):
@@ -168,7 +170,7 @@ def test_a_bug_is_found_by_its_cause_and_its_time():
 
 def test_a_mistake_shows_after_its_onset():
     """Until the mistake comes in the run is the right one."""
-    assert 0.5 <= Bug("b", 0, 0.5, 1).shows() < 0.6
+    assert 0.5 <= Bug("b", 0, 0.5, 1).first_visible() < 0.6
 
 
 def test_an_experiment_must_tell_two_suspects_apart():
@@ -214,5 +216,5 @@ def test_a_measurement_of_the_public_arm_is_right_or_wrong_at_once(monkeypatch):
     wrong, right, waiting = said
     assert wrong.startswith("my_lag: not yet right.") and "not true of the public arm" in wrong
     assert "Where it fails" not in wrong and "0.03" not in wrong
-    assert "a possible answer" in right and "It is true of the public arm" in right
+    assert "a possible answer" in right and "Your answer is true of the public arm" in right
     assert "a possible answer" in waiting and "public arm" not in waiting

@@ -5,7 +5,7 @@ import pytest
 
 from labkit.course import Choose, Curve, Number, Outcome, Prediction, Rank, mark, predict
 from labkit.course import student as desk
-from labkit.course.reply import Here
+from labkit.course.reply import LocalFunction
 from labkit.course.serialize import question_data, read_question
 
 TWO = {"a": "up", "b": "down"}
@@ -21,7 +21,7 @@ each = pytest.mark.parametrize(("form", "said", "nonsense"), FORMS)
 def verdict(form, said):
     """What a grader says of a value, the question having travelled as data."""
     question = read_question(question_data(Prediction("x", "?", form, said).question()))
-    return mark(question, Here(said, ()))
+    return mark(question, LocalFunction(said, ()))
 
 
 @each

@@ -23,17 +23,20 @@ def writes():
         (lambda: STATE - STATE, "did you mean state.q?"),
         (lambda: SAMPLE - np.zeros(7), "not a 'Sample'; did you mean target.position?"),
         (writes, "make a new array"),
-        (lambda: np.eye(4) @ np.zeros(3), "left of the @ are 4 columns, right of it 3 rows"),
+        (
+            lambda: np.eye(4) @ np.zeros(3),
+            "the left side of @ has 4 columns and the right side 3 rows",
+        ),
         (lambda: 2.0 @ np.zeros(3), "for a number write *"),
-        (lambda: np.zeros((7, 6)) * np.zeros((6, 6)), "the product of matrices is @"),
+        (lambda: np.zeros((7, 6)) * np.zeros((6, 6)), "use @ to multiply matrices"),
         (
             lambda: np.zeros(6) + np.zeros(7),
-            "a velocity of the tip has 6 numbers, one of the joints 7",
+            "the tip's velocity has 6 numbers, the joints' 7",
         ),
-        (lambda: np.zeros(3) - np.zeros(7), "so sizes must be equal"),
-        (lambda: np.linalg.inv(np.zeros((6, 7))), "only square matrices"),
+        (lambda: np.zeros(3) - np.zeros(7), "so the sizes must be equal"),
+        (lambda: np.linalg.inv(np.zeros((6, 7))), "only a square matrix"),
         (lambda: FIXED(2.0), "is a * missing"),
-        (lambda: writes(1), "leave the names in the function's first line"),
+        (lambda: writes(1), "leave the parameter names in the function's first line"),
     ],
 )
 def test_a_usual_slip_has_a_way_out(does, remedy):

@@ -13,7 +13,7 @@ from labkit.course import Call, Close, Outcome, Question, Test
 from labkit.course.calling import ArgumentChanged, call
 from labkit.course.marking import mark
 from labkit.course.messages import message, why
-from labkit.course.reply import Here, NoAnswer, answer, reply
+from labkit.course.reply import LocalFunction, NoAnswer, answer, reply
 from labkit.course.withheld import Withheld
 from labkit.errors import LabkitError
 
@@ -46,7 +46,7 @@ class Eats:
         (clears, ({"a": 1},), "clears changes the dict `table` {}, dict(table)"),
         (writes_deep, ([[1.0]],), "writes_deep changes the list `rows` {}, copy.deepcopy(rows)"),
         (writes_deep, (([1.0],),), "writes_deep changes the tuple `rows` {}, copy.deepcopy(rows)"),
-        (Eats(), (0, [1]), "it changes the list {}"),
+        (Eats(), (0, [1]), "the function changes the list {}"),
     ],
 )  # fmt: skip
 def test_what_is_changed_is_told_and_whole_again(function, args, says):
@@ -100,11 +100,14 @@ SEGMENTS = Question(
 def test_an_answer_that_changes_its_argument_is_wrong_every_time():
     """It is told so, not that its numbers are wrong; a mended one is right at once."""
     for _ in range(2):
-        verdict = mark(SEGMENTS, Here(pops, ()))
+        verdict = mark(SEGMENTS, LocalFunction(pops, ()))
         assert verdict.outcome is Outcome.WRONG
         words = " ".join(str(message(SEGMENTS, verdict)).split())
         assert " pops changes the list `durations` that it is given; work on a copy" in words
-    assert mark(SEGMENTS, Here(lambda durations, t: durations[0], ())).outcome is Outcome.RIGHT
+    assert (
+        mark(SEGMENTS, LocalFunction(lambda durations, t: durations[0], ())).outcome
+        is Outcome.RIGHT
+    )
 
 
 class Raises:
@@ -186,7 +189,7 @@ ODD = [
 @pytest.mark.parametrize("make", ODD)
 def test_no_answer_is_too_odd(make):
     """Whatever comes back, there is a verdict and a sentence, and it is short enough to read."""
-    verdict = mark(DOUBLE, Here(lambda x: make(), ()))
+    verdict = mark(DOUBLE, LocalFunction(lambda x: make(), ()))
     words = str(message(DOUBLE, verdict))
     assert verdict.outcome in (Outcome.WRONG, Outcome.ERROR)
     assert len(words) < 3000 and max(map(len, words.splitlines())) < 300
@@ -202,7 +205,7 @@ def test_no_answer_is_too_odd(make):
 )  # fmt: skip
 def test_no_exception_is_too_odd(error):
     """Whatever is raised is an error of the student's code, told in a sentence."""
-    verdict = mark(DOUBLE, Here(throw(error), ()))
+    verdict = mark(DOUBLE, LocalFunction(throw(error), ()))
     assert verdict.outcome is Outcome.ERROR
     assert len(str(message(DOUBLE, verdict))) < 3000
 
@@ -232,13 +235,13 @@ def test_a_loop_without_end_is_stopped():
         while True:
             pass
 
-    verdict = mark(DOUBLE, Here(endless, (), seconds=0.2))
+    verdict = mark(DOUBLE, LocalFunction(endless, (), seconds=0.2))
     assert verdict.outcome is Outcome.ERROR and len(calls) == 1
-    assert "TimeoutError: it did not come back within 0.2 s; does every" in why(verdict.tests[0])
+    assert "TimeoutError: it did not return within 0.2 s; does every" in why(verdict.tests[0])
 
 
 def test_an_interrupt_is_nobodys_answer():
     """Who presses stop stops the check."""
     question = replace(DOUBLE, withheld=())
     with pytest.raises(KeyboardInterrupt):
-        mark(question, Here(throw(KeyboardInterrupt()), ()))
+        mark(question, LocalFunction(throw(KeyboardInterrupt()), ()))

@@ -2,7 +2,7 @@
 
 import pytest
 
-from labkit.course.source import look, needed
+from labkit.course.source import analyse, needed
 from labkit.course.withheld import withheld_tools
 
 WITHHELD = (
@@ -25,7 +25,7 @@ class Schedule:
 
 def found(*cells):
     """What is found in an answer called f, in a notebook with a setup cell and a walk's cell."""
-    return withheld_tools(map(look, (SETUP, GIVEN, *cells)), "f", WITHHELD)
+    return withheld_tools(map(analyse, (SETUP, GIVEN, *cells)), "f", WITHHELD)
 
 
 @pytest.mark.parametrize(

@@ -81,7 +81,7 @@ def test_a_known_mistake_is_named_first():
 
 def test_an_answer_that_is_wrong_already_is_named_before_all_else():
     """Who uses a wrong answer of theirs reads first that it is to be corrected first."""
-    words = said(square, leans_on=("half", "third")).splitlines()
+    words = said(square, depends_on=("half", "third")).splitlines()
     assert words[1] == "  It uses your half and third, not right yet: correct half and third first."
 
 

@@ -16,7 +16,7 @@ from labkit.course.marking import mark
 from labkit.course.messages import why
 from labkit.course.own_arm import Arms
 from labkit.course.question import Question, Test
-from labkit.course.source import look
+from labkit.course.source import analyse
 from labkit.course.verdict import Outcome
 from labkit.grader.grading.grade import grade
 from labkit.grader.grading.plan import imports, plan
@@ -163,7 +163,7 @@ def test_state_survives_between_calls_but_not_between_questions(marks, solved):
         ("import os; os._exit(1)", "SystemExit: its process ended before it answered"),
         ("import ctypes; ctypes.string_at(0)", "SystemExit: its process ended before it answered"),
         ("import sys; sys.exit()", "SystemExit"),
-        ("while True: pass", "TimeoutError: it did not come back within 1 s"),
+        ("while True: pass", "TimeoutError: it did not return within 1 s"),
         ("return bytearray(10**10)", "MemoryError"),
         ("return undefined", "NameError: name 'undefined' is not defined"),
     ],
@@ -310,12 +310,12 @@ def test_an_argument_that_is_changed_is_told(marks, solved):
 
 def test_names_that_a_cell_needs():
     """Needed are names from elsewhere: no parameters, no locals, nothing that the cell binds."""
-    found = look("k = 2\ndef f(a, b=c):\n    d = a + e\n    return [g for x in d] + k\n")
+    found = analyse("k = 2\ndef f(a, b=c):\n    d = a + e\n    return [g for x in d] + k\n")
     assert set(found["uses"]) == {"c", "e", "g"}
     assert found["functions"] == ["f"]
-    assert look("def f(x):\n    'Says.'\n    raise NotImplementedError")["stubs"] == ["f"]
-    assert look("%matplotlib inline\n!ls\nx = 1")["binds"] == ["x"]
-    assert "SyntaxError" in look("def f(:")["broken"]
+    assert analyse("def f(x):\n    'Says.'\n    raise NotImplementedError")["stubs"] == ["f"]
+    assert analyse("%matplotlib inline\n!ls\nx = 1")["binds"] == ["x"]
+    assert "SyntaxError" in analyse("def f(:")["broken"]
 
 
 def test_what_every_submission_imports_is_known(bundle):

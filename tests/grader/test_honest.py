@@ -8,7 +8,7 @@ import pytest
 
 from labkit.course.authoring.layout import Course
 from labkit.course.authoring.solved import inlined
-from labkit.course.source import look
+from labkit.course.source import analyse
 from labkit.course.withheld import withheld_tools
 from labkit.grader.grading.plan import plan
 from labkit.grader.sandbox.parse import read
@@ -26,13 +26,13 @@ def test_no_answer_of_the_course_is_suspected(assignment):
     cells = json.loads(file.read_text(encoding="utf-8"))["cells"]
     walk = ["".join(cell["source"]) for cell in cells if cell["cell_type"] == "code"]
     problems = COURSE.problems(assignment)
-    solved = [*map(look, (*walk, *map(inlined, problems)))]
+    solved = [*map(analyse, (*walk, *map(inlined, problems)))]
     assert not [found for text in walk for found in find_tricks(text)]
     for problem in problems:
         assert withheld_tools(solved, problem.name, problem.withheld) == ()
         known = [problem.answer, *problem.variants, *(w.function for w in problem.wrong)]
         for text in (inlined(problem), *(inline(f, problem.name) for f in known)):
-            found = withheld_tools([*solved, look(text)], problem.name, problem.withheld)
+            found = withheld_tools([*solved, analyse(text)], problem.name, problem.withheld)
             assert (found, find_tricks(text)) == ((), []), text
 
 

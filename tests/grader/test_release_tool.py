@@ -207,7 +207,7 @@ def test_a_weighted_test_needs_a_hidden_case():
     (sentence,) = refused(bare)
     assert sentence == (
         "transform_point: the test 'a frame shifted and turned by 90 degrees of yaw' carries 1 of "
-        "2 points and has no hidden case; give its Trial a maker of them"
+        "2 points and has no hidden case; give its Trial `hidden` cases"
     )
     gate = with_trials("transform_point", lambda k, t: replace(t, hidden=_none) if k == 0 else t)
     assert refused(gate) == [], "a gate carries no points"

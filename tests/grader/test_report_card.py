@@ -8,7 +8,7 @@ from labkit.__main__ import main
 from labkit.course import Outcome
 from labkit.course.authoring import report_card
 from labkit.course.authoring.layout import Course
-from labkit.course.authoring.refusals import by_heart
+from labkit.course.authoring.refusals import memorised
 from labkit.course.authoring.report_card import functions_from, make, markdown, write
 from labkit.course.marking import mark
 from labkit.errors import LabkitError, UnknownName
@@ -64,14 +64,14 @@ def test_answers_from_outside_count(card):
     assert row.variants == 1 + len(problem.variants) + 2, "though both are called <lambda>"
     assert row.accepted == row.variants - 1
     assert any("a right answer earned only 0" in words for words in row.failures)
-    assert any("sigma from the tolerance, and 3 needed" in words for words in row.failures)
+    assert any("sigma from the tolerance, needs 3" in words for words in row.failures)
     assert row.margin_sigma < 0.0, "what claims to be right lies beyond the tolerance"
 
 
 def test_a_mistake_that_only_hidden_cases_reject_fails():
     """The student's check calls it right, so that its points are lost without a word."""
     problem = next(p for p in COURSE.problems("00_warmup") if p.name == "joint_error")
-    learnt = {"joint_error": [by_heart(problem.question(5))]}
+    learnt = {"joint_error": [memorised(problem.question(5))]}
     (row,) = make(COURSE, ["00_warmup/joint_error"], 5, learnt, draws=2).rows
     assert row.rejected == row.mistakes
     (failure,) = row.failures
@@ -84,12 +84,12 @@ def test_an_answer_nearer_than_three_sigma_fails(tmp_path, monkeypatch, capsys):
     words += ["--course", str(COURSE.root), "--to", str(tmp_path)]
     assert main(words) == 0
     margins = iter([(3.5, "a"), (2.97, "the answer: seven errors")])
-    monkeypatch.setattr(report_card, "least", lambda *_: next(margins))
+    monkeypatch.setattr(report_card, "least_margin", lambda *_: next(margins))
     assert main(words) == 1
     page = capsys.readouterr().out
     least = "2.97 (00_warmup/joint_error), 3.50 (00_warmup/transform_point)"
     assert f"least margins, in sigma: {least}" in page
-    assert "the answer: seven errors: 2.97 sigma from the tolerance, and 3 needed" in page
+    assert "the answer: seven errors: 2.97 sigma from the tolerance, needs 3" in page
 
 
 def test_an_answer_from_outside_spoils_nothing_for_the_others():

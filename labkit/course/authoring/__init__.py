@@ -1,1 +1,1 @@
-"""How an author's problems become a release; the students' labkit comes without this folder."""
+"""Making a release from an author's problems; the students' labkit comes without this folder."""

@@ -1,4 +1,4 @@
-"""The bundle: what a release leaves for graders, hidden cases included."""
+"""The bundle, which is the file of a release for graders, with the hidden cases."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from typing import Any
 
 from ...errors import LabkitError
 from ...formats import check_stamp, stamp
-from ..identification import personal
+from ..identification import personalised
 from ..own_arm import Arms
 from ..question import Question
 from ..seed import PUBLIC_SEED
@@ -22,12 +22,12 @@ from .layout import Course
 
 @dataclass(frozen=True)
 class Bundle:
-    """What a release leaves for graders.
+    """The file of a release for graders.
 
     Attributes:
-        data: Assignment, seed, manifest, questions with their hidden cases, hash; and, if there are
-            any, the questions ``added`` when some had handed in already.
-        arms: Whose arm is whose, where arms were given out.
+        data: Assignment, seed, manifest, questions with their hidden cases, and hash; also the
+            questions ``added`` after the first students had handed in, if there are any.
+        arms: The students' own arms, if arms were given out.
     """
 
     data: Mapping[str, Any]
@@ -38,7 +38,7 @@ class Bundle:
         """The bundle of an assignment.
 
         Raises:
-            LabkitError: It was not released, or its file is damaged.
+            LabkitError: The assignment was not released, or its file is damaged.
         """
         path = course.bundle / f"{assignment}.json"
         if not path.exists():
@@ -63,11 +63,11 @@ class Bundle:
         return cls(data, Arms.of(course.root))
 
     def of_student(self, student: str) -> Bundle:
-        """The same with what is true of the student's own arm."""
+        """The same bundle with the right answers for the student's own arm."""
         arm = self.arms.arm(student)
         if arm is None:
             return self
-        questions = tuple(personal(q, arm) for q in self.questions)
+        questions = tuple(personalised(q, arm) for q in self.questions)
         if all(own is q for own, q in zip(questions, self.questions, strict=True)):
             return self
         own_hash = hashlib.sha256(f"{self.data['hash']} {arm}".encode()).hexdigest()
@@ -77,27 +77,27 @@ class Bundle:
 
     @cached_property
     def questions(self) -> tuple[Question, ...]:
-        """Its questions, hidden cases included; read once for all submissions."""
+        """The questions with their hidden cases, which are read once for all submissions."""
         return tuple(map(read_question, self.data["questions"]))
 
     @property
     def added(self) -> frozenset[str]:
-        """Questions that came when some had handed in already."""
+        """Names of the questions added after the first students had handed in."""
         return frozenset(self.data.get("added", ()))
 
     @property
     def points(self) -> float:
-        """Full marks for the questions that are graded here."""
+        """Full marks for the questions that are graded automatically."""
         return float(sum(q["points"] for q in self.data["questions"]))
 
     @property
     def is_report(self) -> bool:
-        """Whether people give most of the points; one member hands in for the whole team."""
+        """Whether a person gives most of the points; one member then hands in for the team."""
         return self.by_hand > self.points
 
     @property
     def by_hand(self) -> float:
-        """Points that a person gives, on top."""
+        """Points that a person gives, besides `points`."""
         return float(sum(cell.get("points", 0.0) for cell in self.data["cells"]))
 
 
@@ -109,19 +109,19 @@ def write_bundle(
     questions: Mapping[str, Question],
     added: Iterable[str],
 ) -> None:
-    """Write a release's bundle; questions that were added stay so until the next term.
+    """Write a release's bundle; added questions are marked as added until the next term.
 
     Args:
         course: The course.
-        assignment: Which.
-        seed: Of the hidden cases.
+        assignment: Name of the assignment.
+        seed: Seed of the hidden cases.
         cells: The manifest of its notebook.
-        questions: By name, hidden cases included.
-        added: Those that are new to students who have handed in already.
+        questions: The questions by name, with their hidden cases.
+        added: Names of the questions that are new to students who have handed in already.
     """
     path = course.bundle / f"{assignment}.json"
     before: Mapping[str, Any] = {}
-    with suppress(OSError, TypeError, ValueError):  # a damaged one is made anew
+    with suppress(OSError, TypeError, ValueError):  # a damaged one is made again
         before = dict(json.loads(path.read_text(encoding="utf-8")))
     late = sorted({*before.get("added", ()), *added} & set(questions))
     data: dict[str, Any] = {

@@ -1,4 +1,4 @@
-"""The course on disk: where sources, assignments, submissions and results lie."""
+"""The layout of a course on disk: sources, assignments, submissions and results."""
 
 from __future__ import annotations
 
@@ -39,8 +39,8 @@ class Course:
         """The course around a folder, the working directory by default.
 
         Raises:
-            LabkitError: There is none; or nobody named it, and it lies inside another course, as
-                a submission does that brings a configuration of its own.
+            LabkitError: There is none; or `start` is not given and the course is inside another
+                one, which happens in a submission that has its own configuration.
         """
         place = (start or Path.cwd()).resolve()
         if not place.exists():
@@ -60,22 +60,22 @@ class Course:
 
     @property
     def build(self) -> Path:
-        """What is made and never committed."""
+        """Generated files, which are never committed."""
         return self.root / "build" / "course"
 
     @property
     def source(self) -> Path:
-        """The sources for nbgrader, with hidden cases: for instructors."""
+        """The sources for nbgrader with the hidden cases, for instructors only."""
         return self.build / "source"
 
     @property
     def solution(self) -> Path:
-        """Solved notebooks with the answers' source, for after the deadline."""
+        """Solved notebooks with the source of the answers, for after the deadline."""
         return self.build / "solution"
 
     @property
     def bundle(self) -> Path:
-        """What a grader needs: manifests, questions, hidden cases."""
+        """The bundles for graders: manifests, questions, hidden cases."""
         return self.build / "bundle"
 
     @property
@@ -90,7 +90,7 @@ class Course:
 
     @property
     def submitted(self) -> Path:
-        """What came back: student/assignment/notebook."""
+        """The submissions, as student/assignment/notebook."""
         return self.root / "submitted"
 
     @property
@@ -103,10 +103,10 @@ class Course:
         return tuple(sorted(path.stem for path in self.root.glob("solutions/*/[0-9][0-9]_*.py")))
 
     def notebook_source(self, name: str) -> Path:
-        """The text an assignment is made from.
+        """The source text of an assignment's notebook.
 
         Raises:
-            UnknownName: There is none of that name.
+            UnknownName: There is no assignment of that name.
         """
         if name not in self.names():
             raise UnknownName("assignment", name, self.names())
@@ -117,21 +117,21 @@ class Course:
 
         Raises:
             UnknownName: There is no assignment of that name.
-            LabkitError: It has a notebook, and no problems.
+            LabkitError: The assignment has a notebook but no problems.
         """
         return self._listed(name, "problems")
 
     def predictions(self, name: str) -> tuple[Prediction | Identification, ...]:
-        """The predictions of an assignment, from the ``solutions`` package as its problems.
+        """The predictions of an assignment, from the course's own ``solutions`` package.
 
         Raises:
             UnknownName: There is no assignment of that name.
-            LabkitError: It has a notebook, and no predictions.
+            LabkitError: The assignment has a notebook but no predictions.
         """
         return self._listed(name, "predictions")
 
     def _listed(self, name: str, what: str) -> tuple[Any, ...]:
-        """What a module of an assignment's folder lists."""
+        """The list in a module of an assignment's folder."""
         self.notebook_source(name)
         if str(self.root) not in sys.path:
             sys.path.insert(0, str(self.root))

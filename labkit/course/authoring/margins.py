@@ -1,12 +1,12 @@
-"""Margins: how many sigmas lie between an answer and the tolerance.
+"""Margins, which are the distances in sigmas between answers and the tolerance.
 
-Distances from what is expected are measured in tolerances: right answers lie below 1, a mistake
-lies above it wherever it is found out.  Over draws of the hidden cases, disturbed inputs, starts
-and seeds of the noise these distances spread; the margin is how many of their standard deviations
-lie between their mean and the tolerance.  Logarithms are compared, since distances spread over
-decades.  Where nothing spreads there is no sigma.
+The distance of an answer from the expected one is measured in tolerances: it is below 1 for a right
+answer, and above 1 for a mistake in each case that reveals the mistake.  These distances vary with
+the draws of the hidden cases, disturbed inputs, starts and seeds of the noise.  The margin is the
+number of standard deviations between their mean and the tolerance.  Logarithms are compared,
+because distances range over decades.  If the distances do not vary, there is no margin.
 
-A run of the arm is made once for each function, however many draws ask for it.
+A run of the arm is made only once for each function, and all draws share it.
 """
 
 from __future__ import annotations
@@ -24,22 +24,22 @@ from ..serialize import encode
 from .problem import Problem
 
 ROUNDING = 1e-3
-"""Distances below this, in tolerances, are rounding, and count as this much."""
+"""Distances below this, in tolerances, are rounding errors, and count as this much."""
 HUGE = 1e12
 """Distances above this count as this much."""
 
 
-def least(
+def least_margin(
     questions: Sequence[Question],
     problem: Problem,
     right: Mapping[str, Callable[..., Any]],
     wrong: Mapping[str, Callable[..., Any]],
 ) -> tuple[float | None, str]:
-    """The least distance from a tolerance in sigmas, and whose it is."""
+    """The least margin, in sigmas, and the answer and test that have it."""
     found: list[tuple[float, str]] = []
     for k, test in enumerate(questions[0].tests):
         for label, function in right.items():
-            apart: dict[type, list[float]] = {}  # runs and calls have tolerances of different kinds
+            apart: dict[type, list[float]] = {}  # runs and calls have different tolerances
             for q, case in _cases(questions, k):
                 spread = apart.setdefault(_kind(case), [])
                 spread.append(_distance(q, case, function))
@@ -56,18 +56,18 @@ def least(
 
 
 def _cases(questions: Sequence[Question], k: int) -> list[tuple[Question, Case]]:
-    """All cases of the k-th test over all draws, public ones once."""
+    """All cases of the k-th test in all draws; the public ones are included once."""
     hidden = [(q, case) for q in questions for case in q.tests[k].cases if case.hidden]
     return [(questions[0], c) for c in questions[0].tests[k].cases if not c.hidden] + hidden
 
 
 def _kind(case: Case | Remembered) -> type:
-    """What sort of case it is, remembered or not."""
+    """The type of a case, whether it is remembered or not."""
     return type(case.run if isinstance(case, Remembered) else case)
 
 
 def _sigmas(distances: Sequence[float], sign: float, whose: str) -> list[tuple[float, str]]:
-    """How many standard deviations the mean lies beyond the tolerance, on the side ``sign``."""
+    """The number of standard deviations from the tolerance to the mean, on the side ``sign``."""
     logs = np.log10(np.clip([d for d in distances if np.isfinite(d)], ROUNDING, HUGE))
     if len(logs) < 2 or float(np.std(logs)) < 1e-9:
         return []
@@ -75,7 +75,7 @@ def _sigmas(distances: Sequence[float], sign: float, whose: str) -> list[tuple[f
 
 
 def _distance(question: Question, case: Case | Remembered, function: Callable[..., Any]) -> float:
-    """How far an answer is off, in tolerances; infinite where none came."""
+    """The distance of an answer, in tolerances; infinite if the function raises."""
     try:
         answer: Any = case.ask(function)
         if isinstance(case, Call):
@@ -88,7 +88,7 @@ def _distance(question: Question, case: Case | Remembered, function: Callable[..
 def _disturbed(
     question: Question, case: Case | Remembered, function: Callable[..., Any], problem: Problem
 ) -> float:
-    """The same with the input disturbed: rounded numbers, or another seed of the arm's noise."""
+    """The distance with a disturbed input: rounded numbers, or another seed of the noise."""
     if isinstance(case, Remembered):
         return _distance(question, replace(case, run=_another_noise(case.run)), function)
     if isinstance(case, Call):
@@ -105,7 +105,7 @@ def _another_noise(run: Loop | Tuned) -> Loop | Tuned:
 
 
 def _rounded(x: Any) -> Any:
-    """Numbers and arrays to seven digits; anything else as it is."""
+    """Numbers and arrays, rounded to seven digits; anything else unchanged."""
     if isinstance(x, float):
         return float(f"{x:.7g}")
     if isinstance(x, np.ndarray):
@@ -119,34 +119,34 @@ Memory = dict[Any, dict[str, float]]
 
 @dataclass(frozen=True, eq=False)
 class Remembered:
-    """A case whose run is made once for each function, however often it is asked for.
+    """A case whose run is made only once for each function.
 
     Attributes:
         run: The case.
-        memory: What came of runs so far.
+        memory: The measures of earlier runs.
     """
 
     run: Loop | Tuned
     memory: Memory
 
     def __getattr__(self, name: str) -> Any:
-        """What else a case has is the run's."""
+        """Take all other attributes of a case from `run`."""
         return getattr(self.run, name)
 
     def ask(self, function: Callable[..., Any]) -> dict[str, float]:
-        """The measures of the run, for a log takes room; runs that raise are made again."""
+        """The measures of the run, whose log is too large to keep; runs that raise are repeated."""
         key = (function, json.dumps(encode(self.run)))
         if key not in self.memory:
             self.memory[key] = self.run.measured(self.run.ask(function))
         return self.memory[key]
 
     def measured(self, answer: dict[str, float]) -> dict[str, float]:
-        """What `ask` gave."""
+        """The measures that `ask` returned."""
         return answer
 
 
-def remembering(questions: Sequence[Question]) -> list[Question]:
-    """The same questions, with one memory for the runs of all of them."""
+def share_runs(questions: Sequence[Question]) -> list[Question]:
+    """The same questions, which share one memory for their runs."""
     memory: Memory = {}
 
     def case(x: Case) -> Any:

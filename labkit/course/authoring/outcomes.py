@@ -1,4 +1,4 @@
-"""What a student can do after the course, and which question is evidence of it."""
+"""The learning outcomes of the course, for which questions are evidence."""
 
 from __future__ import annotations
 
@@ -17,16 +17,16 @@ OUTCOMES = {
     "experiment": "design an experiment that identifies a number or a fault of an arm",
     "evidence": "state a claim with a number, its unit and an interval, or that it is undecided",
 }
-"""Eight outcomes, by the name that a question's ``outcomes`` gives them."""
+"""What students can do after the course, by the names that ``outcomes`` of a question uses."""
 
 
 def check_outcomes(file: Path, name: str, outcomes: Iterable[str]) -> None:
     """Raise a LabkitError unless a question's outcomes are names of `OUTCOMES`.
 
     Args:
-        file: Where they are written.
-        name: Of the question.
-        outcomes: What it is evidence of.
+        file: The file with the question.
+        name: Name of the question.
+        outcomes: The outcomes of which it is evidence.
     """
     for outcome in outcomes:
         if outcome not in OUTCOMES:

@@ -1,6 +1,6 @@
-"""A problem: a question as its author writes it, with the code that a student must not see.
+"""Problems, which are questions as their authors write them, with code that students must not see.
 
-Evaluating the answer, the mistakes and the hidden cases turns it into a `labkit.course.Question`.
+Evaluating the answer, the mistakes and the hidden cases turns one into a `labkit.course.Question`.
 """
 
 from __future__ import annotations
@@ -15,14 +15,14 @@ import numpy as np
 from ..equivalence import Judge
 from ..judges import Close
 from ..marking import fingerprint
-from ..probes import probed
+from ..probes import make_probes
 from ..question import Call, Case, Mistake, Question, Test
 
 CLOSE = Close()
 
 
 def call(*args: Any, **kwargs: Any) -> Call:
-    """One call of the student's function; what is expected comes from the answer."""
+    """One call of the student's function; the expected result is computed by the answer."""
     return Call(args, kwargs)
 
 
@@ -32,15 +32,15 @@ def _none(random: np.random.Generator) -> Iterable[Case]:
 
 @dataclass(frozen=True, eq=False)
 class Trial:
-    """Cases that stand or fall together; see `labkit.course.Test`.
+    """Cases that pass or fail together; see `labkit.course.Test`.
 
     Attributes:
-        name: What it looks at.
-        public: Cases that the student sees.
-        hidden: Makes the cases that the student does not see, from a generator.
+        name: What it tests.
+        public: Cases that students see.
+        hidden: Makes the cases that students do not see, from a random generator.
         also: The class of the hidden cases, in words.
         weight: Share of the points; 0 is a gate.
-        part: Of an answer of several parts, the one that it looks at; empty for all of them.
+        part: The part of the answer that it tests; empty for all parts.
     """
 
     name: str
@@ -53,11 +53,11 @@ class Trial:
 
 @dataclass(frozen=True, eq=False)
 class Wrong:
-    """A wrong answer that people really give.
+    """A wrong answer that students really give.
 
     Attributes:
-        name: In a few words, as the student reads it.
-        says: What to tell who made it.
+        name: Its name in a few words, as students read it.
+        says: The explanation for a student who made it.
         function: The wrong answer.
         lecture: What to say in the next lecture, for the class report.
     """
@@ -70,22 +70,22 @@ class Wrong:
 
 @dataclass(frozen=True, eq=False)
 class Problem:
-    """A question, its answer, and what people write instead.
+    """A question with its answer and its known mistakes.
 
     Attributes:
         name: The function's name.
-        points: What it is worth.
-        asks: What it should do, in one sentence.
+        points: Full marks.
+        asks: What the function should do, in one sentence.
         answer: The reference.
-        trials: How it is tried; gates first.
-        judge: Compares answers.
-        withheld: Names that would answer it.
-        hints: From the idea to nearly there, three of them.
+        trials: The trials, gates first.
+        judge: Compares answers with the expected ones.
+        withheld: Tools that the answer may not use.
+        hints: Three hints, from the idea to almost the answer.
         wrong: Known mistakes.
         variants: Right answers in another form; every one must pass.
-        expected: What to compare with, where that is not the answer's own output.
+        expected: Returns what to compare with, if that is not the answer's own result.
         core: Whether it belongs to the core path; else it is an extension.
-        outcomes: What it is evidence of, names of `outcomes.OUTCOMES`.
+        outcomes: Learning outcomes of which it is evidence, names of `outcomes.OUTCOMES`.
     """
 
     name: str
@@ -103,7 +103,7 @@ class Problem:
     outcomes: tuple[str, ...] = ()
 
     def question(self, seed: int) -> Question:
-        """The question with hidden cases drawn from a seed; the mistakes as fingerprints."""
+        """The question, with hidden cases drawn from a seed and the mistakes as fingerprints."""
         tests = tuple(
             self._test(trial, np.random.default_rng([seed, k, *self.name.encode()]))
             for k, trial in enumerate(self.trials)
@@ -120,7 +120,7 @@ class Problem:
             outcomes=self.outcomes,
         )
         mistakes = (Mistake(w.name, w.says, fingerprint(plain, w.function)) for w in self.wrong)
-        probes = probed(plain, self.answer, self.expected or self.answer)
+        probes = make_probes(plain, self.answer, self.expected or self.answer)
         names = tuple(signature(self.answer).parameters) if callable(self.answer) else ()
         return replace(plain, mistakes=tuple(mistakes), arguments=names, probes=probes)
 

@@ -1,8 +1,8 @@
-"""What a release refuses: points that nobody works for, and mistakes that cannot be told apart.
+"""Reasons to refuse a release: points without work, and mistakes that cannot be told apart.
 
-A notebook says `use(question, answer, stand_in)`, and a stand-in must earn nothing.  Of all that
-stands before it in the notebook only what the stand-in needs is run, so no arm moves and no figure
-is drawn; the other answers are right there.
+A notebook calls `use(question, answer, stand_in)`, and a stand-in must earn nothing.  To try it,
+only the earlier statements that the stand-in needs are run, so no arm moves and no figure is drawn;
+the other answers in them are right.
 """
 
 from __future__ import annotations
@@ -19,17 +19,17 @@ from ..judges import Within
 from ..marking import fingerprint, mark, recognise
 from ..notebook import Notebook
 from ..question import Call, Question, Raised
-from ..reply import Here
+from ..reply import LocalFunction
 from ..serialize import encode
-from ..source import look, needed
+from ..source import analyse, needed
 from ..verdict import Outcome
 from ..withheld import withheld_tools, withhold
 from .problem import Problem
 
 USE = "def use(name, function, given, yours=None, **options):\n    return yours or function\n"
-"""Takes the place of the notebook's, since the other parts are right."""
+"""Replaces the notebook's `use`, because the other answers are right."""
 STAND_IN = "the_stand_in"
-"""What a stand-in is called where it is tried alone."""
+"""The name of a stand-in while it is tried alone."""
 
 
 def refusals(
@@ -39,8 +39,8 @@ def refusals(
 
     Args:
         source: The notebook with its solution regions.
-        problems: By name.
-        questions: The same as questions, hidden cases included.
+        problems: The problems by name.
+        questions: The questions that they become, with their hidden cases.
     """
     texts = stand_ins(source)
     return [
@@ -56,9 +56,9 @@ def _reasons(problem: Problem, question: Question, text: str | None) -> Iterator
         if test.weight and not any(case.hidden for case in test.cases):
             yield (
                 f"the test {test.name!r} carries {question.points * test.weight / whole:g} of "
-                f"{question.points:g} points and has no hidden case; give its Trial a maker of them"
+                f"{question.points:g} points and has no hidden case; give its Trial `hidden` cases"
             )
-    earned = _earned(question, by_heart(question))
+    earned = _earned(question, memorised(question))
     if earned > 0.0:
         yield (
             f"an answer that memorises its public cases earns {earned:g} of {question.points:g} "
@@ -75,7 +75,7 @@ def _reasons(problem: Problem, question: Question, text: str | None) -> Iterator
 
 
 def _alike(question: Question, problem: Problem) -> Iterator[str]:
-    """Known mistakes that are not told from another one, or from a right answer."""
+    """Reasons why a known mistake cannot be told from another one, or from a right answer."""
     for mistake in question.mistakes:
         if mistake.answers and all(isinstance(x, Raised) for x in mistake.answers):
             kinds = ", ".join(sorted({x.kind for x in mistake.answers}))
@@ -98,8 +98,8 @@ def _alike(question: Question, problem: Problem) -> Iterator[str]:
         )
 
 
-def by_heart(question: Question) -> Callable[..., Any]:
-    """An answer that knows the public calls with their answers, and nothing else."""
+def memorised(question: Question) -> Callable[..., Any]:
+    """An answer that only knows the answers to the public calls."""
     known = {
         _key(case.args, case.kwargs): _right(question.judge, case.expected)
         for case in question.calls
@@ -107,14 +107,14 @@ def by_heart(question: Question) -> Callable[..., Any]:
     }
 
     def recite(*args: Any, **kwargs: Any) -> Any:
-        """The answer from ``checks.json``; for any other call the first one."""
+        """The answer from ``checks.json``; for an unknown call, the first answer there."""
         return known.get(_key(args, kwargs), next(iter(known.values()), None))
 
     return recite
 
 
 def _right(judge: Judge, expected: Any) -> Any:
-    """A right answer, from what it is compared with."""
+    """A right answer, made from the expected one."""
     if isinstance(expected, TipTorque):
         return JointTorque(expected.value)
     return sum(expected[0]) / 2.0 if isinstance(judge, Within) else expected
@@ -125,16 +125,16 @@ def _key(args: tuple[Any, ...], kwargs: Mapping[str, Any]) -> str:
 
 
 def _stand_in_earns(question: Question, text: str) -> float:
-    """What the stand-in is worth as an answer; withheld tools count nothing."""
-    if withheld_tools([look(text)], STAND_IN, question.withheld):
+    """The points that the stand-in earns as an answer; none if it uses a withheld tool."""
+    if withheld_tools([analyse(text)], STAND_IN, question.withheld):
         return 0.0
     function = _run(text)
     with withhold(question.withheld, function.__globals__):
-        return _earned(question, Here(function, question.withheld))
+        return _earned(question, LocalFunction(function, question.withheld))
 
 
 def _earned(question: Question, function: Callable[..., Any]) -> float:
-    """Points, found quickly: where a gate fails the other tests are not tried."""
+    """The points that a function earns; if a gate fails, the other tests are not tried."""
     gates = tuple(replace(test, weight=1.0) for test in question.tests if not test.weight)
     if gates and mark(replace(question, tests=gates), function).outcome is not Outcome.RIGHT:
         return 0.0
@@ -159,7 +159,7 @@ def stand_ins(source: Notebook) -> dict[str, str]:
 
 
 def _text(given: ast.expr, before: Sequence[ast.stmt]) -> str:
-    """The stand-in as a function of its own, after all that it needs from what stands before."""
+    """The stand-in as a separate function, after the earlier statements that it needs."""
     made = f"def {STAND_IN}(*args, **kwargs):\n    return ({ast.unparse(given)})(*args, **kwargs)"
     source = "\n".join([*map(ast.unparse, before), made])
     return "\n\n".join([USE, *needed(source, STAND_IN, ["use"])])

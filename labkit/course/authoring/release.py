@@ -1,7 +1,7 @@
-"""Release: from the course's sources to what nbgrader, graders and a solved notebook need.
+"""Making the files of a release from the course's sources: for nbgrader, graders and solutions.
 
-A release is prepared first, which may refuse it, and then written; between the two the grader makes
-room for it in the gradebook.
+A release is first prepared, and may be refused, and is then written; between these steps the grader
+makes room for it in the gradebook.
 """
 
 from __future__ import annotations
@@ -31,15 +31,15 @@ from .solved import solution_notebook
 
 @dataclass(frozen=True)
 class Prepared:
-    """An assignment that may be released, and of which nothing is written yet.
+    """An assignment that may be released, before its files are written.
 
     Attributes:
-        course: Its course.
-        name: The assignment.
-        seed: Of the hidden cases.
+        course: The course.
+        name: Name of the assignment.
+        seed: Seed of the hidden cases.
         source: The notebook for nbgrader, with the solutions inside.
         solved: The solved notebook.
-        questions: By name, hidden cases included.
+        questions: The questions by name, with their hidden cases.
     """
 
     course: Course
@@ -51,15 +51,15 @@ class Prepared:
 
 
 def prepare(course: Course, name: str, seed: int) -> Prepared:
-    """Make an assignment, and write nothing.
+    """Make an assignment without writing any file.
 
     Args:
         course: The course.
-        name: Of the assignment, such as "01_paths".
-        seed: Of the hidden cases; keep your own, the repository's is public.
+        name: Name of the assignment, such as "01_paths".
+        seed: Seed of the hidden cases; use a secret one, because the repository's is public.
 
     Raises:
-        UnknownName: No such assignment.
+        UnknownName: There is no such assignment.
         LabkitError: A question withholds a tool that does not exist, gives points for no work, or
             cannot tell two known mistakes apart.
     """
@@ -93,7 +93,7 @@ def write(made: Prepared, added: Iterable[str] = ()) -> None:
 
 
 def _at_home(source: Notebook) -> Notebook:
-    """A source whose answers find the course's ``solutions``, so that nbgrader can validate it."""
+    """The source, whose answers find the course's ``solutions``, so nbgrader can validate it."""
     notebook = copy.deepcopy(source)
     for cell in notebook.cells:
         if kind(cell) == "answer":

@@ -1,9 +1,9 @@
-"""The report card: how well the checks tell right from wrong, and by what margin.
+"""The report card, which says how well the checks tell right from wrong, and by what margin.
 
-Every answer, known mistake and right variant is marked with many draws of the hidden cases; how
-near the nearest of them comes to the tolerance, `margins` says.  A question where nothing spreads
-has no margin and is listed apart.  It fails where a mistake earns too much, a right answer too
-little, where only hidden cases reject a mistake, or where an answer comes nearer than `NEAREST`.
+Every answer, known mistake and right variant is marked with many draws of the hidden cases, and
+`margins` measures how close they come to the tolerance.  A question whose distances do not vary has
+no margin and is listed separately.  A question fails if a mistake earns too much or a right answer
+too little, if only hidden cases reject a mistake, or if a margin is below `LEAST_MARGIN`.
 """
 
 from __future__ import annotations
@@ -16,43 +16,43 @@ from pathlib import Path
 from typing import Any
 
 from ...errors import LabkitError, UnknownName
-from ..calling import heard
+from ..calling import captured
 from ..marking import mark
 from ..question import Question
-from ..reply import Here
+from ..reply import LocalFunction
 from ..verdict import Outcome
 from .layout import Course
-from .margins import least, remembering
+from .margins import least_margin, share_runs
 from .problem import Problem
 
 Functions = Mapping[str, Sequence[Callable[..., Any]]]
-"""Functions by their question, its name, or "assignment/name" where two assignments ask it."""
+"""Functions by the name of their question, or by "assignment/name" if two assignments ask it."""
 
 DRAWS = 20
-HANGS = 600.0
-"""Seconds after which one call of an answer is stopped, because it may be endless."""
-NEAREST = 3.0
-"""Sigmas that must lie between every answer and the tolerance."""
+TIMEOUT = 600.0
+"""Time after which one call of an answer is stopped, because it may be endless, in [s]."""
+LEAST_MARGIN = 3.0
+"""The smallest permitted margin between an answer and the tolerance, in sigmas."""
 LARGEST_PART = 0.6
-"""Share of the points that one right part of an answer may earn."""
+"""The largest share of the points that one right part of an answer may earn."""
 
 
 @dataclass(frozen=True)
 class Row:
-    """What the card says of one question.
+    """The row of the card for one question.
 
     Attributes:
-        assignment: Where it is asked.
+        assignment: The assignment that asks it.
         question: Its name.
-        mistakes: Wrong answers tried.
-        rejected: Of these, how many earned less than `rejected_below`.
-        named: Of the course's own, how many were called by their name.
-        variants: Right answers tried, the reference included.
-        accepted: Of these, how many earned full marks.
-        seeds_agree: Draws of the hidden cases after which every mark is that of the first draw.
-        margin_sigma: Distance of the nearest answer from the tolerance, in sigmas; None where
-            nothing spreads.
-        nearest: Which answer that is.
+        mistakes: Number of wrong answers that were tried.
+        rejected: How many of these earned less than `rejected_below`.
+        named: How many of the course's known mistakes were recognised by name.
+        variants: Number of right answers that were tried, including the reference.
+        accepted: How many of these earned full marks.
+        seeds_agree: Number of draws of the hidden cases that give the same marks as the first.
+        margin_sigma: Distance of the nearest answer from the tolerance, in sigmas; None if the
+            distances do not vary.
+        nearest: The nearest answer and its test.
         failures: What went wrong, in words.
     """
 
@@ -74,9 +74,9 @@ class ReportCard:
     """The whole card.
 
     Attributes:
-        seed: Of the first draw.
-        seeds: How many draws.
-        rows: One for each question.
+        seed: Seed of the first draw.
+        seeds: Number of draws.
+        rows: One row for each question.
     """
 
     seed: int
@@ -85,7 +85,7 @@ class ReportCard:
 
     @property
     def nearest(self) -> list[tuple[float, Row]]:
-        """The margins there are, in sigmas, and their rows; the least first."""
+        """The margins, in sigmas, with their rows, in ascending order."""
         found = [(row.margin_sigma, row) for row in self.rows if row.margin_sigma is not None]
         return sorted(found, key=lambda pair: pair[0])
 
@@ -107,7 +107,10 @@ class ReportCard:
 
 
 def rejected_below(question: Question) -> float:
-    """The points that a wrong answer may not earn: half of them, or more than the largest part."""
+    """The points that a wrong answer must stay below.
+
+    They are half of the points, or just more than the largest part earns.
+    """
     weights = [test.weight for test in question.tests]
     share = max(weights) / sum(weights)
     return (share + 1e-9 if 0.5 < share <= LARGEST_PART else 0.5) * question.points
@@ -122,19 +125,19 @@ def make(
     progress: Callable[[Row], None] = lambda row: None,
     draws: int = DRAWS,
 ) -> ReportCard:
-    """Mark everything that is known of some assignments.
+    """Mark all known answers and mistakes of some assignments.
 
     Args:
         course: The course.
-        names: Of the assignments; one question of one is "assignment/question".
-        seed: Of the first draw of hidden cases; the others follow it.
-        mistakes: More wrong answers, from outside; these have no name to be called by.
-        variants: More right answers, from outside.
-        progress: Told each row when it is done.
-        draws: How many draws of the hidden cases.
+        names: Names of the assignments; "assignment/question" selects one question.
+        seed: Seed of the first draw of hidden cases; the next draws take the next seeds.
+        mistakes: Further wrong answers, which cannot be recognised by name.
+        variants: Further right answers.
+        progress: Called with each row when it is complete.
+        draws: Number of draws of the hidden cases.
 
     Raises:
-        UnknownName: No such assignment, or an answer to a question that nobody asks.
+        UnknownName: There is no such assignment, or no such question for an answer.
     """
     problems = [
         (assignment, problem)
@@ -157,7 +160,7 @@ def make(
 
 
 def _asked(course: Course, assignment: str, only: str) -> Sequence[Problem]:
-    """The problems of an assignment, or the one that is named."""
+    """The problems of an assignment, or only the one that is named."""
     problems = {problem.name: problem for problem in course.problems(assignment)}
     if only and only not in problems:
         raise UnknownName("question", only, tuple(problems))
@@ -176,16 +179,16 @@ def _row(
     mistakes: Sequence[Callable[..., Any]],
     variants: Sequence[Callable[..., Any]],
 ) -> Row:
-    questions = remembering([problem.question(seed + k) for k in range(draws)])
+    questions = share_runs([problem.question(seed + k) for k in range(draws)])
     own = {w.name: w.function for w in problem.wrong}
     wrong = own | _labelled("from outside: ", mistakes)
     right = {"the answer": problem.answer} | _labelled("", [*problem.variants, *variants])
-    with heard():  # what answers print is not the card's
+    with captured():  # what answers print is not the card's
         verdicts = {
             label: [mark(question, function) for question in questions]
             for label, function in (wrong | right).items()
         }
-        margin, nearest = least(questions, problem, right, wrong)
+        margin, nearest = least_margin(questions, problem, right, wrong)
     marks = {label: [verdict.earned for verdict in found] for label, found in verdicts.items()}
     failures = []
     limit = rejected_below(questions[0])
@@ -207,33 +210,33 @@ def _row(
             accepted += 1
         else:
             failures.append(f"{label}: a right answer earned only {min(marks[label]):g}")
-    if margin is not None and margin < NEAREST:
-        failures.append(f"{nearest}: {margin:.2f} sigma from the tolerance, and {NEAREST:g} needed")
+    if margin is not None and margin < LEAST_MARGIN:
+        failures.append(f"{nearest}: {margin:.2f} sigma from the tolerance, needs {LEAST_MARGIN:g}")
     agree = sum(all(m[k] == m[0] for m in marks.values()) for k in range(draws))
     tried = len(wrong), rejected, named, len(right), accepted, agree
     return Row(name, problem.name, *tried, margin, nearest, tuple(failures))
 
 
 def _labelled(whose: str, functions: Sequence[Callable[..., Any]]) -> dict[str, Callable[..., Any]]:
-    """Functions by their names, asked as a student's are.
+    """Functions by their names, which are called as students' functions are.
 
-    Those of one name are numbered, so that none is left out.
+    Functions of the same name are numbered, so that none is left out.
     """
     names = [f"{whose}{getattr(f, '__name__', type(f).__name__)}" for f in functions]
     before = [names[:k].count(name) for k, name in enumerate(names)]
     labels = [f"{name} ({n + 1})" if n else name for name, n in zip(names, before, strict=True)]
-    return {label: Here(f, (), HANGS) for label, f in zip(labels, functions, strict=True)}
+    return {name: LocalFunction(f, (), TIMEOUT) for name, f in zip(labels, functions, strict=True)}
 
 
 def functions_from(file: Path, table: str) -> Functions:
-    """Answers from outside: a dict of a Python file.
+    """Further answers, from a dict in a Python file.
 
     Args:
-        file: Holds a dict {question: [function, ...]}; a question is named as its stub.
+        file: Contains a dict {question: [function, ...]}; a question is named as its stub.
         table: The dict's name, "MISTAKES" or "VARIANTS".
 
     Raises:
-        LabkitError: There is no such file, it does not run, or there is no such dict in it.
+        LabkitError: The file is missing, does not run, or does not contain such a dict.
     """
     try:
         names = runpy.run_path(str(file))

@@ -1,4 +1,4 @@
-"""The solved notebook, for after the deadline: the answers' own source where the stubs were."""
+"""The solved notebook for after the deadline, with the source of the answers."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from .problem import Problem
 
 
 def solution_notebook(source: Notebook, problems: Mapping[str, Problem]) -> Notebook:
-    """The solved notebook: the answers' own source in place of the stubs, model texts for whys."""
+    """The notebook with the answers' source in place of stubs, and model texts in place of whys."""
     notebook = copy.deepcopy(source)
     for cell in notebook.cells:
         if kind(cell) == "answer" and grade_id(cell) in problems:
@@ -24,10 +24,10 @@ def solution_notebook(source: Notebook, problems: Mapping[str, Problem]) -> Note
 
 
 def inlined(problem: Problem) -> str:
-    """The answer's source as a cell of its own, with the imports and helpers that it needs.
+    """The source of an answer as one cell, with the imports and helpers that it needs.
 
     Raises:
-        LabkitError: The answer leans on something that cannot be copied.
+        LabkitError: The answer depends on something that cannot be copied.
     """
     function = inspect.unwrap(problem.answer)
     module = inspect.getmodule(function)
@@ -36,6 +36,8 @@ def inlined(problem: Problem) -> str:
     imports = [part for part in parts if part.startswith(("import ", "from "))]
     for line in imports:
         if line.startswith(("import solutions", "from solutions", "from .")):
-            raise LabkitError(f"the answer of {problem.name} needs `{line}`: keep it whole")
+            raise LabkitError(
+                f"the answer of {problem.name} needs `{line}`; define it in its module"
+            )
     bodies = [part for part in parts if part not in imports]
     return "\n\n\n".join(["\n".join(imports), *bodies] if imports else bodies)

@@ -14,7 +14,7 @@ from itertools import islice
 
 from ...course.authoring.bundle import Bundle
 from ...course.authoring.layout import Course
-from ...course.marking import Tried, recognise, try_public
+from ...course.marking import PublicResult, recognise, try_public
 from ...course.question import Call, Loop, Question, Tuned
 from ...course.verdict import Misconception, Outcome
 from ...errors import LabkitError
@@ -223,7 +223,7 @@ def _with(edit: Edit, one: Accepted, todo: Plan, sandbox: Sandbox, limits: Limit
     )
 
 
-def _worst(question: Question, tried: Tried) -> Run | None:
+def _worst(question: Question, tried: PublicResult) -> Run | None:
     """The first public run that is not as good as it must be."""
     failed = {x.name for x in tried.results if x.outcome in (Outcome.WRONG, Outcome.ERROR)}
     return next(
@@ -231,6 +231,6 @@ def _worst(question: Question, tried: Tried) -> Run | None:
     )
 
 
-def _known(question: Question, tried: Tried) -> Misconception | None:
+def _known(question: Question, tried: PublicResult) -> Misconception | None:
     found = recognise(question, [tried.answers.get(call) for call in question.calls])
     return found and Misconception(found.name, found.says)

@@ -13,7 +13,7 @@ from typing import Any, NamedTuple
 from ...course.authoring.outcomes import OUTCOMES
 from ...course.authoring.problem import Problem
 from ...course.forms import Form
-from ...course.messages import uses
+from ...course.messages import why_not_counted
 from ...course.question import Question
 from ...course.verdict import Outcome, Verdict
 from ..clean import clean_line
@@ -184,7 +184,7 @@ def _tool_lines(graded: Sequence[Result], who: Mapping[str, str]) -> Iterator[st
     """For each student, the withheld tools that they used and the tricks in their cells."""
     for result in graded:
         verdicts = [question.verdict for question in result.questions]
-        used = [f"{v.name} {uses(v.withheld)}" for v in verdicts if v.withheld]
+        used = [f"{v.name} {why_not_counted(v.withheld)}" for v in verdicts if v.withheld]
         if used:
             yield f"{who[result.student]}, not counted: {'; '.join(used)}"
         if result.tricks:

@@ -14,8 +14,8 @@ from ...course.authoring.bundle import Bundle
 from ...course.authoring.layout import Course
 from ...course.bugs import Found, Telling
 from ...course.forms import Measured
-from ...course.messages import line as of_test
 from ...course.messages import summary, wrapped
+from ...course.messages import test_line as of_test
 from ...course.own_arm import DEMO
 from ...course.serialize import question_data
 from ...course.source import parsed

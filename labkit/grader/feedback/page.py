@@ -24,7 +24,7 @@ from markupsafe import Markup
 
 from ...course import messages
 from ...course.authoring.layout import Course
-from ...course.messages import foretells
+from ...course.messages import is_prediction
 from ...errors import LabkitError
 from ...metrics import SETTLED
 from ...replay.motion import unpack
@@ -96,8 +96,8 @@ def page(
         reviews=reviews,
         lines=asked | {line.name: line for line in mark.lines},
         by_hand=[line for line in mark.lines if line.name not in asked],
-        answers=[q.verdict for q in result.questions if not foretells(q.verdict)],
-        predictions=[q.verdict for q in result.questions if foretells(q.verdict)],
+        answers=[q.verdict for q in result.questions if not is_prediction(q.verdict)],
+        predictions=[q.verdict for q in result.questions if is_prediction(q.verdict)],
         say=messages,
         error_over_time=error_over_time,
         measures=measures,

@@ -13,8 +13,8 @@ from dataclasses import replace
 from typing import Any, cast
 
 from ...course.authoring.bundle import Bundle
-from ...course.marking import Tried, all_alike, mark, not_counted, try_public
-from ...course.messages import uses
+from ...course.marking import PublicResult, all_alike, mark, not_counted, try_public
+from ...course.messages import why_not_counted
 from ...course.own_arm import opens_the_public_arm
 from ...course.question import Question
 from ...course.receipt import receipt
@@ -190,7 +190,7 @@ def _other_notebook(cells: list[dict[str, Any]], bundle: Bundle) -> str:
     return f"{OTHER_NOTEBOOK}: only {len(ours)} of the {len(named)} named cells are of {name}"
 
 
-def _try_public(function: RemoteFunction) -> Tried:
+def _try_public(function: RemoteFunction) -> PublicResult:
     """Try the public cases; all of them come before any hidden one, so none can reveal it."""
     try:
         tried = try_public(function.question, function)
@@ -198,12 +198,12 @@ def _try_public(function: RemoteFunction) -> Tried:
             function.session.right.append(function.question.name)
         return tried
     except Exception:
-        return Tried(_incomparable(function.question).tests, {})
+        return PublicResult(_incomparable(function.question).tests, {})
     finally:
         function.session.close_question()
 
 
-def _mark_safely(function: RemoteFunction, tried: Tried) -> Verdict:
+def _mark_safely(function: RemoteFunction, tried: PublicResult) -> Verdict:
     """Mark an answer, even one that is so odd that comparing it raises an exception."""
     question = function.question
     try:
@@ -226,8 +226,8 @@ def _incomparable(question: Question) -> Verdict:
     return all_alike(question, Outcome.ERROR, Kind.OTHER)
 
 
-def _answer(question: Question, verdict: Verdict, tried: Tried | None, todo: Plan) -> Answer:
-    why = (f"it {uses(verdict.withheld)}",) if verdict.withheld else ()
+def _answer(question: Question, verdict: Verdict, tried: PublicResult | None, todo: Plan) -> Answer:
+    why = (f"it {why_not_counted(verdict.withheld)}",) if verdict.withheld else ()
     notes = tuple(map(clean_line, (*why, *todo.notes.get(verdict.name, ()))))
     answer = Answer(verdict, notes, todo.source(verdict.name))
     if tried is None:

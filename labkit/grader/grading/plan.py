@@ -12,7 +12,7 @@ from dataclasses import dataclass, field
 from itertools import chain
 from typing import Any
 
-from ...course.source import look, plain
+from ...course.source import analyse, plain
 from ..sandbox.session import Step
 
 Cell = Mapping[str, Any]
@@ -30,7 +30,7 @@ class Plan:
         own: The student's own cells, each with its ``type``, its ``source`` and the released cell
             ``after`` which it comes.
         written: The text of each cell that a person marks, by the name of the cell.
-        looks: How each step uses names; see `labkit.course.source.look`.
+        looks: How each step uses names; see `labkit.course.source.analyse`.
         tricks: Sentences on what in the student's own cells may get around a withheld tool.
     """
 
@@ -81,7 +81,7 @@ def plan(cells: Sequence[Cell], manifest: Sequence[Cell]) -> Plan:
     by_hand = {m["grade_id"]: _find_cells(cells, m) for m in manifest if "points" in m}
     known = (*by_hand.values(), *unread.values())
     steps = [Step(k - len(setup), source) for k, source in enumerate(setup)]
-    looks: list[Cell] = [look(source) for source in setup]
+    looks: list[Cell] = [analyse(source) for source in setup]
     for k, cell in code.items():
         if (k in own and k not in ignored) or (k in needed and _strip(cell["source"]) in walk):
             answers = tuple(name for name, place in places.items() if place == k)

@@ -10,7 +10,7 @@ from typing import Any
 
 import numpy as np
 
-from ...course.marking import Ran, Tried
+from ...course.marking import PublicResult, PublicRun
 from ...course.question import Question, Tuned
 from ...log import Log
 from ...replay import Motion, motion_of
@@ -26,7 +26,7 @@ MAX_NUMBERS = 400
 """How many numbers of an answer are kept, each with the expected one."""
 
 
-def runs(question: Question, tried: Tried) -> tuple[Run, ...]:
+def runs(question: Question, tried: PublicResult) -> tuple[Run, ...]:
     """The public runs of a question as data: measures, their limits, and the motion.
 
     Args:
@@ -40,14 +40,14 @@ def runs(question: Question, tried: Tried) -> tuple[Run, ...]:
     return tuple(_run(question, ran) for ran in tried.runs(question))
 
 
-def numbers(question: Question, tried: Tried) -> Numbers | None:
+def numbers(question: Question, tried: PublicResult) -> Numbers | None:
     """The numbers of the first public call whose answer is wrong; None if there are none.
 
     Returns:
         The ``call``; the first `MAX_NUMBERS` numbers ``expected`` and ``given``; and ``of``, how
         many numbers the answer has.
     """
-    found = tried.evidence(question)
+    found = tried.first_mismatch(question)
     if found is None or not len(found.given) or not np.isfinite(found.expected).all():
         return None
     return {
@@ -58,7 +58,7 @@ def numbers(question: Question, tried: Tried) -> Numbers | None:
     }
 
 
-def _run(question: Question, ran: Ran) -> Run:
+def _run(question: Question, ran: PublicRun) -> Run:
     loop = ran.case.loop if isinstance(ran.case, Tuned) else ran.case
     says = ran.case.shown(question.name)
     shown = motion(ran.log, f"Your run: {ran.test}")

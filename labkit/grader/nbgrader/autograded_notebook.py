@@ -14,7 +14,7 @@ import nbformat
 
 from ...course.authoring.layout import Course
 from ...course.messages import summary
-from ...course.notebook import Notebook, about, by_hand, grade_id, kind, question_of
+from ...course.notebook import Notebook, by_hand, grade_id, kind, nbgrader_info, question_of
 from ...errors import LabkitError
 from ..clean import clean_line
 from ..grading.results import Answer, Result
@@ -38,9 +38,8 @@ def in_release_form(source: Notebook, result: Result) -> Notebook:
     for cell in notebook.cells:
         name = grade_id(cell)
         if by_hand(cell):
-            cell.source = (
-                cell.source if about(cell)["task"] else result.written.get(name, cell.source)
-            )
+            if not nbgrader_info(cell)["task"]:
+                cell.source = result.written.get(name, cell.source)
         elif kind(cell) == "answer":
             cell.source = answers.get(name, "")
     notebook.cells = extra.get("", []) + [
@@ -55,7 +54,7 @@ def with_verdicts(notebook: Notebook, result: Result) -> Notebook:
     for cell in notebook.cells:
         if cell.cell_type == "code":
             cell.outputs, cell.execution_count = [], None
-        if not about(cell).get("grade") or by_hand(cell):
+        if not nbgrader_info(cell).get("grade") or by_hand(cell):
             continue
         answer = answers.get(question_of(grade_id(cell)))
         text = "\n".join(_told(answer)) if answer else result.rejected
@@ -93,7 +92,7 @@ def release_source(course: Course, assignment: str) -> Notebook:
     )
     blank = {grade_id(cell): cell for cell in given.cells}
     for cell in source.cells:
-        if about(cell).get("solution"):
+        if nbgrader_info(cell).get("solution"):
             cell.source, cell.metadata = (blank[grade_id(cell)][x] for x in ("source", "metadata"))
     return source
 

@@ -19,7 +19,7 @@ from sqlalchemy.exc import DatabaseError, OperationalError, SAWarning
 
 from ...course.authoring.bundle import Bundle
 from ...course.authoring.layout import Course
-from ...course.notebook import about, by_hand, grade_id, question_of, read_cells
+from ...course.notebook import by_hand, grade_id, nbgrader_info, question_of, read_cells
 from ...errors import LabkitError
 from ..atomic import write
 from ..each import Failure, for_student
@@ -177,11 +177,11 @@ def automatic_scores(notebook: Any, result: Result) -> dict[str, float | None]:
     found: dict[str, float | None] = {}
     for cell in notebook.cells:
         name = grade_id(cell)
-        if about(cell).get("task"):
+        if nbgrader_info(cell).get("task"):
             found[name] = 0.0 if result.rejected else None
         elif by_hand(cell):
             found[name] = determine_grade(cell)[0]
-        elif about(cell).get("grade"):
+        elif nbgrader_info(cell).get("grade"):
             found[name] = earned.get(question_of(name), 0.0)
     return found
 

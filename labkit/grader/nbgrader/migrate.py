@@ -6,7 +6,7 @@ from collections.abc import Iterable
 from typing import Any
 
 from ...course.authoring.layout import Course
-from ...course.notebook import about, grade_id, question_of
+from ...course.notebook import grade_id, nbgrader_info, question_of
 from ...errors import LabkitError
 from .gradebook import open_gradebook
 
@@ -32,7 +32,7 @@ def migrate(course: Course, assignment: str, source: Any) -> list[str]:
     """
     from nbgrader.api import GradeCell, MissingEntry, SolutionCell, SourceCell, TaskCell
 
-    cells = {grade_id(cell): (cell, about(cell)) for cell in source.cells if grade_id(cell)}
+    cells = {grade_id(cell): (cell, nbgrader_info(cell)) for cell in source.cells if grade_id(cell)}
     graded = {k: pair for k, pair in cells.items() if pair[1]["grade"] or pair[1]["task"]}
     solved = {name for name, pair in cells.items() if pair[1]["solution"]}
     with open_gradebook(course) as book:

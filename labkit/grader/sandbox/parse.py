@@ -11,7 +11,7 @@ from collections.abc import Iterator
 from typing import Any
 
 from ...course.notebook import grade_id
-from ...course.source import look
+from ...course.source import analyse
 from .clean import clean_text
 from .tricks import find_tricks
 
@@ -31,7 +31,8 @@ def read(data: bytes) -> dict[str, Any]:
 
     Returns:
         ``{"cells": [...]}``, or ``{"rejected": sentence}``.  Each cell has ``id``, ``grade_id``,
-        ``type``, ``source``; code also has what `labkit.course.source.look` finds, and ``tricks``.
+        ``type`` and ``source``; a code cell also has ``tricks`` and what
+        `labkit.course.source.analyse` finds.
     """
     try:
         return {"cells": list(_cells(_notebook(data)))}
@@ -78,7 +79,7 @@ def _cells(notebook: dict[str, Any]) -> Iterator[dict[str, Any]]:
             "grade_id": _name(grade_id(cell)),
             "type": kind,
             "source": source,
-            **({**look(source), "tricks": find_tricks(source)} if kind == "code" else {}),
+            **({**analyse(source), "tricks": find_tricks(source)} if kind == "code" else {}),
         }
 
 

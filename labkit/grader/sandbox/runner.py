@@ -20,10 +20,10 @@ from collections.abc import Iterator
 from contextlib import contextmanager, suppress
 from typing import Any
 
-from labkit.course.calling import Capped
+from labkit.course.calling import CappedText
 from labkit.course.reply import LONGEST, TimeUp, kind, reply, sentence
 from labkit.course.serialize import decode
-from labkit.course.source import look, plain
+from labkit.course.source import analyse, plain
 from labkit.course.withheld import withhold
 
 from . import stubs
@@ -70,7 +70,7 @@ class Notebook:
 
     def run(self, cell: int, source: str, answers: list[str], seconds: float) -> dict[str, Any]:
         """Run one cell, and keep the functions that answer questions."""
-        out = Capped(min(20_000, self.output))
+        out = CappedText(min(20_000, self.output))
         error = raised = ""
         with _captured(out):
             try:
@@ -95,7 +95,7 @@ class Notebook:
         wants = isinstance(why, stubs.NoOwnArm)
         wants |= isinstance(why, NameError) and why.name in self.own_arm_names
         if wants:
-            self.own_arm_names.update(look(source)["binds"])
+            self.own_arm_names.update(analyse(source)["binds"])
         return wants
 
     def _execute(self, name: str, source: str) -> None:
@@ -129,7 +129,7 @@ class Notebook:
         kwargs: dict[str, Any] = {}
         connection.send({"ready": name})
         while "args" in (asked := connection.read()):
-            with _captured(Capped(0)):
+            with _captured(CappedText(0)):
                 try:
                     args = [decode(x) for x in asked["args"]]
                     if asked["kwargs"] is not None:
@@ -150,7 +150,7 @@ class Notebook:
             with self._alarm(seconds):
                 return reply(self.functions[name], args, kwargs)
         except TimeUp:
-            return {"raised": "TimeUp", "says": f"it did not come back within {seconds:g} s"}
+            return {"raised": "TimeUp", "says": f"it did not return within {seconds:g} s"}
 
     @contextmanager
     def _alarm(self, seconds: float) -> Iterator[None]:
@@ -204,7 +204,7 @@ def _cpu() -> float:
 
 
 @contextmanager
-def _captured(out: Capped) -> Iterator[None]:
+def _captured(out: CappedText) -> Iterator[None]:
     """Redirect Python's standard streams to a buffer and silence warnings in a block."""
     sys.stdout = sys.stderr = out
     warnings.simplefilter("ignore")

@@ -263,7 +263,7 @@ class RemoteFunction:
             return self._answer({"args": data, "kwargs": self._changed_kwargs(kwargs)})
         except Timeout:
             limit = self.session.limits.call
-            failed = "TimeoutError", f"TimeoutError: it did not come back within {limit:g} s"
+            failed = "TimeoutError", f"TimeoutError: it did not return within {limit:g} s"
         except BadMessage as error:
             failed = "TypeMismatch", str(error)
         except Disconnected:

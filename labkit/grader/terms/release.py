@@ -22,8 +22,8 @@ from ...course.authoring.layout import Course
 from ...course.authoring.outcomes import check_outcomes
 from ...course.authoring.problem import Problem
 from ...course.authoring.release import Prepared, prepare, write
-from ...course.notebook import BLANK, about, by_hand, grade_id, kind, manifest
-from ...course.source import look, parsed
+from ...course.notebook import BLANK, by_hand, grade_id, kind, manifest, nbgrader_info
+from ...course.source import analyse, parsed
 from ...errors import LabkitError
 from ..clean import how_many
 from ..grading.results import Results
@@ -200,7 +200,7 @@ def _where(course: Course, error: Exception) -> str:
 def _unreadable(made: Prepared) -> Iterator[str]:
     """Cells that Python cannot read, which no student could run."""
     for number, cell in enumerate(made.source.cells, start=1):
-        broken = look(cell.source)["broken"] if cell.cell_type == "code" else ""
+        broken = analyse(cell.source)["broken"] if cell.cell_type == "code" else ""
         if broken:
             what = f"the stub of {grade_id(cell)}" if grade_id(cell) else f"cell {number}"
             yield f"{what} is not Python: {broken}"
@@ -209,7 +209,7 @@ def _unreadable(made: Prepared) -> Iterator[str]:
 def _not_importable(made: Prepared) -> Iterator[str]:
     """Imports in the stubs, solutions included, that find nothing."""
     for cell in made.source.cells:
-        if kind(cell) != "answer" or look(cell.source)["broken"]:
+        if kind(cell) != "answer" or analyse(cell.source)["broken"]:
             continue
         nodes = list(ast.walk(parsed(cell.source)[1]))
         tried = {x for node in nodes if isinstance(node, ast.Try) for x in ast.walk(node)}
@@ -225,7 +225,7 @@ def _not_importable(made: Prepared) -> Iterator[str]:
 def _sums(made: Prepared) -> Iterator[str]:
     """Points that the first cell promises and the questions do not add up to."""
     found = _POINTS.findall(made.source.cells[0].source) if made.source.cells else []
-    manual = sum(float(about(x)["points"]) for x in made.source.cells if by_hand(x))
+    manual = sum(float(nbgrader_info(x)["points"]) for x in made.source.cells if by_hand(x))
     points = sum(q.points for q in made.questions.values()) + manual
     if found and points not in map(float, found):
         yield f"the first cell says {found[0]} points, and the questions come to {points:g}"

@@ -19,7 +19,7 @@ from soak.attacks.attack import CANARY, Attack, Notebook
 from soak.attacks.others import VICTIM
 
 from labkit.course.authoring.layout import Course
-from labkit.course.notebook import about, grade_id, kind
+from labkit.course.notebook import grade_id, kind, nbgrader_info
 from labkit.grader.terms.release import release
 
 NAME = "01_paths"
@@ -77,7 +77,8 @@ def full_marks(course: Course) -> tuple[float, float]:
     """What right code earns, and what there is to earn with the text that a person marks."""
     cells = handed_out(course)["cells"]
     code, text = (
-        sum(about(c)["points"] for c in cells if kind(c) == which) for which in ("check", "why")
+        sum(nbgrader_info(c)["points"] for c in cells if kind(c) == which)
+        for which in ("check", "why")
     )
     return float(code), float(code + text)
 
