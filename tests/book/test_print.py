@@ -47,20 +47,20 @@ def test_links_stay_in_the_document_and_pictures_are_files(paper):
 
 
 def test_what_is_printed_has_formulas_numbers_and_no_empty_page(book, tmp_path):
-    """Two chapters on paper: drawn formulas, contents with page numbers, no machine's path."""
-    pages = ["index", "chapters/paths", "chapters/velocity"]
+    """Two pages on paper: drawn formulas, contents with page numbers, no machine's path."""
+    pages = ["index", "chapters/paths", "glossary"]
     made = book_print.print_pdf(lambda _: None, pages, tmp_path / "some.pdf")
     file = PdfReader(made)
     width, height = file.pages[0].mediabox[2:]
     assert (round(width), round(height)) == (595, 842)  # A4 in points
     texts = [page.extract_text() for page in file.pages]
     begins = {item.title: file.get_destination_page_number(item) for item in file.outline}
-    assert [t.split(". ")[-1] for t in begins] == ["Paths and time scaling", "Velocity control"]
+    assert [t.split(". ")[-1] for t in begins] == ["Paths and time scaling", "Glossary"]
     for title, number in begins.items():
         assert title in texts[number]
         assert re.search(rf"{re.escape(title)}\s+{number + 1}\b", texts[1])
     for text, page in zip(texts, file.pages, strict=True):
-        assert len(text) > 60 or page.images
+        assert len(text) > 30 or page.images
         assert not re.search(r"\\dot|\\lambda|\\frac|file:///", text)
     links = [a.get_object().get("/A", {}).get("/URI", "") for page in file.pages
              for a in page.get("/Annots", [])]  # fmt: skip

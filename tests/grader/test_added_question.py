@@ -24,7 +24,10 @@ from labkit.grader.nbgrader.gradebook import open_gradebook, record
 from labkit.grader.nbgrader_api import nbgrader_api
 from labkit.grader.terms.release import release
 
-pytestmark = pytest.mark.slow  # whole classes are graded
+pytestmark = [
+    pytest.mark.slow,  # whole classes are graded
+    pytest.mark.xdist_group("added question"),
+]
 
 NAME, LATER = "01_paths", "compose"
 SEED = 7

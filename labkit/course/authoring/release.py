@@ -68,7 +68,9 @@ def prepare(course: Course, name: str, seed: int) -> Prepared:
     for question in questions.values():
         for withheld in question.withheld:
             if find(withheld)[1] is None:
-                raise LabkitError(f"{question.name} withholds {withheld}, which does not exist")
+                raise LabkitError(
+                    f"{question.name} withholds {withheld}, which does not exist; correct the name"
+                )
     predictions = course.predictions(name)
     source = source_notebook(course.notebook_source(name), questions, predictions)
     if reasons := refusals(source, problems, questions):
