@@ -174,7 +174,7 @@ class Arm:
         self.stop()
 
     def become(self, plant: Plant) -> None:
-        """Be an arm of another plant from now on, where it is and as fast as it is, told to stop.
+        """Switch to another plant, keeping angles and speeds, and command the arm to stop.
 
         Raises:
             ShapeError: The plant belongs to an arm with a different number of joints.

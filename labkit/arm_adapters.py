@@ -83,7 +83,7 @@ class Simulated:
         return 0.0
 
     def advance(self, k: int) -> tuple[int, float, bool]:
-        """Go on to the next tick; its number, its time, and whether a limit cut the last command."""
+        """Go on to the next tick; its number and time, and whether a limit cut the last command."""
         self._arm.world.step(self._steps)
         return k + 1, (k + 1) * self.period, self._arm.saturated
 

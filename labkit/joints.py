@@ -175,7 +175,7 @@ class Joints:
         self._stand([STICK] * len(self._lower))
 
     def _stand(self, stands: list[int]) -> None:
-        """Store the joints' states: which are held, and in which direction the others are driven."""
+        """Store the states: which are held, and in which direction the others are pushed."""
         self._stands = stands
         self._sticking = stands.count(STICK) == len(stands)
         signs = [float(STICK - k) for k in stands]
