@@ -8,7 +8,7 @@ from typing import Any
 from .errors import LabkitError
 
 FORMAT = 2
-"""Version of checks.json, bundles, results and logs; files of labkit 0.1 have none, which means 1."""
+"""Version of checks.json, bundles, results and logs; files of version 0.1 have none and mean 1."""
 PHYSICS = 2
 """Version of the plant and its engines; the same run gives a different log in another version."""
 

@@ -75,7 +75,7 @@ class Kinematics:
     def tip_jacobian(self, q: Any) -> Array:
         r"""The Jacobian of the tip in world axes, :math:`(\dot p, \omega_w) = J\,\dot q`.
 
-        Its rows give the velocity of the tip's origin and the angular velocity; Siciliano calls this
+        Its rows give the velocity of the tip's origin and the angular velocity; Siciliano calls it
         the geometric Jacobian.
 
         Args:
@@ -170,7 +170,7 @@ class Kinematics:
         return float(np.prod(np.linalg.svd(self.tip_jacobian(q), compute_uv=False)))
 
     def nearness_to_singularity(self, q: Any) -> float:
-        """The smallest singular value of `tip_jacobian`, the least tip speed per unit of joint speed.
+        """The smallest singular value of `tip_jacobian`: least tip speed per unit of joint speed.
 
         Args:
             q: Joint angles, shape (n,) in [rad].
@@ -215,7 +215,7 @@ class Kinematics:
             Shape (n,) in [rad], within the joint limits, exact to 1e-9 m and rad.
 
         Raises:
-            Unreachable: No such angles were found; the message says how close the search came, and why.
+            Unreachable: No such angles were found; the message says how close it came and why.
         """
         if self.robot.n < 6:
             raise Unreachable(
@@ -261,11 +261,11 @@ class Kinematics:
     def joint_trajectory(self, target: Any, q0: Any, *, samples: int = 101) -> Any:
         """The joint motion that takes the tip along a workspace target.
 
-        Inverse kinematics is solved once along s, where each solution starts the search for the next
+        Inverse kinematics runs once along s.  Each solution starts the search for the next one,
         and all stay close to ``q0``.  A quintic spline joins them on the target's own schedule.
 
         Args:
-            target: A `Trajectory`, a `Chain` of trajectories, or a `Hold`, of poses or of points; for
+            target: A `Trajectory`, a `Chain` of trajectories or a `Hold`, of poses or points; for
                 points, the tip keeps the orientation that it has at ``q0``.
             q0: Joint angles at the start, shape (n,) in [rad].
             samples: How many poses to solve along each path.

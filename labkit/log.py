@@ -104,7 +104,7 @@ class Log:
         """Read a log that `save` wrote.
 
         Raises:
-            LabkitError: The file cannot be read, is not a log, or belongs to another labkit version.
+            LabkitError: The file cannot be read, is not a log, or needs another labkit version.
         """
         path = Path(path)
         if not path.exists() and path.suffix != ".npz":
@@ -117,7 +117,7 @@ class Log:
             with np.load(path) as file:
                 about = json.loads(str(file["about"]))
                 columns: dict[str, Any] = {x: file[x] for x in file.files if x != "about"}
-            check_stamp(stamp() | about, str(path), "run it again")  # the earliest logs have no numbers
+            check_stamp(stamp() | about, str(path), "run it again")  # the first logs have no numbers
             return cls(**_read(about, columns))
         except _UNREADABLE as error:
             raise LabkitError(

@@ -84,7 +84,7 @@ class Motors:
         """
         if self._fresh:
             M, g = self._own.mass_matrix(q), self._own.gravity(q)
-            spare = np.maximum(self._own.robot.effort - np.abs(g), 0.0)  # zero if gravity takes it all
+            spare = np.maximum(self._own.robot.effort - np.abs(g), 0.0)  # too weak: zero
             self._braking = BRAKING * spare / M.diagonal()
         gain = min(self._plant.position_gain or np.inf, 1.0 / self._dt)
         gap = self._wanted - q
