@@ -117,7 +117,7 @@ class Log:
             with np.load(path) as file:
                 about = json.loads(str(file["about"]))
                 columns: dict[str, Any] = {x: file[x] for x in file.files if x != "about"}
-            check_stamp(stamp() | about, str(path), "run it again")  # the first logs have no numbers
+            check_stamp(stamp() | about, str(path), "run it again")  # the first logs lack numbers
             return cls(**_read(about, columns))
         except _UNREADABLE as error:
             raise LabkitError(

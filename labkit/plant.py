@@ -28,7 +28,7 @@ class Plant:
         name: Its name in figures and tables.
         gravity_compensation: Whether the arm itself adds the torque that holds it against gravity,
             in every mode, as Baxter does; a torque controller then adds none.
-        armature: Inertia of each motor's rotor as felt at its joint, which is the rotor's own inertia
+        armature: Inertia of each motor's rotor as felt at its joint, which is the rotor's inertia
             times the gear ratio squared, shape (n,) in [kg m^2]; it adds to the diagonal of M.
         viscous: Viscous friction, shape (n,) in [N m s/rad].
         stiction: Dry friction that a joint must overcome, shape (n,) in [N m].

@@ -91,7 +91,7 @@ class Trials:
     def error(self, case: int, Kp: float, Kd: float) -> float:
         """The error of one case, in [mm], infinite where the arm is lost.
 
-        Between the recorded gains, the error is interpolated linearly in Kd and in the logarithm of Kp.
+        Between the recorded gains, it is interpolated linearly in Kd and in the logarithm of Kp.
 
         Args:
             case: Index of the case.

@@ -75,8 +75,8 @@ class Robot:
 
         Raises:
             UnknownName: The file has no link ``tip``.
-            LabkitError: There is no such file, it is not a URDF, or the arm has something that labkit
-                does not support, such as a prismatic joint; the message says what to do.
+            LabkitError: There is no such file, it is not a URDF, or the arm has a feature that is
+                not supported, such as a prismatic joint; the message says what to do.
             ShapeError: ``ready`` has a different number of joints.
             JointLimitExceeded: ``ready`` is outside the joints' range.
         """
