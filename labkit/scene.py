@@ -116,7 +116,7 @@ class Table(_Slab):
     """A level table top.
 
     Attributes:
-        height: Height of its upper face in the world, in [m]; the default is out of reach of motions
+        height: Height of its upper face in the world, in [m]; the default is clear of motions
             that stay within 0.25 m of `Robot.ready`.
         centre: Centre of its upper face, x and y in the world, shape (2,) in [m].
         size: Size along x and y, shape (2,) in [m].

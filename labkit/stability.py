@@ -102,7 +102,7 @@ def margins(joint: VelocityJoint, Kp: float, Kd: float = 0.0) -> Margins:
         inf if x is None or np.isnan(x) else float(x) for x in control.stability_margins(data)
     )
     room = radians(phase) / crossover if crossover < inf else inf
-    # With an integrator and falling gain, the loop is stable exactly if both margins are positive.
+    # With an integrator and falling gain, this condition is exact.
     return Margins(gain, phase, crossover, room, stable=gain > 1.0 and phase > 0.0)
 
 

@@ -1,7 +1,7 @@
 r"""Motion: paths, time scalings and their composition, as functions that return samples.
 
-A *path* is geometry, a curve in s from 0 to 1.  A *time scaling* is s(t).  A *trajectory* is the
-composition of the two, with derivatives by the chain rule (Lynch & Park, *Modern Robotics*, section 9.1).
+A *path* is geometry, a curve in s from 0 to 1.  A *time scaling* is s(t).  A *trajectory* is
+their composition, differentiated by the chain rule (Lynch & Park, *Modern Robotics*, section 9.1).
 """
 
 from __future__ import annotations
@@ -104,7 +104,7 @@ class Trajectory:
         return self.scaling.duration
 
     def __call__(self, t: float) -> Any:
-        """The motion at time ``t`` [s], by the chain rule, as the same type of sample as the path's.
+        """The motion at time ``t`` [s], by the chain rule, as a sample of the path's type.
 
         Raises:
             TypeMismatch: The scaling or the path returned something unexpected.
