@@ -162,7 +162,7 @@ class Camera:
         return self._developed(*self._exposed(picture, robot, T_wc))
 
     def _exposed(self, picture: Any, robot: RobotVisuals, T_wc: Array) -> tuple[Any, list[Window]]:
-        """A picture with the tags printed over it, averaged over the exposure, and their windows."""
+        """The picture with the tags printed on it, averaged over the exposure; their windows."""
         if not self.exposure:
             return picture, self._print(picture, robot, T_wc, self.world.t)
         total, windows = np.zeros_like(picture), []

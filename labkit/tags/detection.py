@@ -2,8 +2,8 @@ r"""Detection: from a picture to the poses of the tags in it.
 
 OpenCV finds the tags and refines their corners as AprilTag does; `edges` makes the corners exact.
 A flat square seen from afar looks the same tilted in either of two directions, so there are two
-poses to choose from (Collins & Bartoli 2014, "Infinitesimal plane-based pose estimation", IPPE); the ratio
-of their errors says how reliable the choice is.
+poses to choose from (Collins & Bartoli 2014, "Infinitesimal plane-based pose estimation", IPPE);
+the ratio of their errors says how reliable the choice is.
 
 The covariance is that of least squares, :math:`J^+ C J^{+T}`, with J the derivative of the corners'
 pixels with respect to a small motion of the tag, and C the corners' covariance from the edges of
@@ -53,7 +53,8 @@ class Detection:
 
     Attributes:
         id: Its number.
-        corners: Its corners in the picture, clockwise from the tag's upper left, shape (4, 2) in [px].
+        corners: Its corners in the picture, clockwise from the upper left of the tag, shape (4, 2) in
+            [px].
         noise: Standard deviation of a corner's coordinate, estimated from the edges, in [px].
         T_cm: Pose of the tag in the camera's frame, shape (4, 4).
         error: Root mean square distance between the corners and those of the pose, in [px].
@@ -79,8 +80,8 @@ def detect_tags(
     Args:
         image: Grey levels (height, width) or RGB (height, width, 3), uint8.
         camera: The camera that took it, or its intrinsics.
-        size: Side of the black square, in [m]; or a mapping from tag numbers to sizes, in which case
-            tags with other numbers are ignored.
+        size: Side of the black square, in [m]; or a mapping from tag numbers to sizes; tags
+            with other numbers are ignored.
 
     Returns:
         The detected tags in the order of their numbers; empty if there are none.

@@ -79,7 +79,7 @@ class Intrinsics:
         return np.asarray(straight, dtype=float)[:, 0]
 
     def bent(self, pixels: Any) -> Array:
-        """Convert pixels of the same lens without distortion, shape (n, 2), to those of this lens."""
+        """Convert pixels of the lens without distortion, shape (n, 2), to those of this lens."""
         K = self.matrix
         rays = (np.asarray(pixels) - K[:2, 2]) / K.diagonal()[:2]
         return self.project(np.column_stack([rays, np.ones(len(rays))]))

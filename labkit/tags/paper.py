@@ -61,7 +61,7 @@ def paper(
 
 
 def _levels(tag: Tag, to_tag: Any, u: Any, v: Any) -> tuple[Array, tuple[Any, Any]]:
-    """Whiteness of the paper at points of the picture, -1 beside the paper, and the points' cells."""
+    """Whiteness of the paper at points of the picture, -1 beside it, and the points' cells."""
     x, y, w = (to_tag[i, 0] * u + to_tag[i, 1] * v + to_tag[i, 2] for i in range(3))
     table = _table(tag)
     n = len(table) - 2

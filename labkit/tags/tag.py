@@ -1,8 +1,8 @@
 """AR tags: a square pattern with a number, of a stated size, to print or to put on a `Board`.
 
 The origin of the tag's frame m is the middle of the black square, with x to the right, y up and z
-out of the paper towards the viewer.  Its size is the side of the black square, as in OpenCV and AprilTag;
-the white border around it does not count.
+out of the paper towards the viewer.  Its size is the side of the black square, as in OpenCV and
+AprilTag; the white border around it does not count.
 """
 
 from __future__ import annotations

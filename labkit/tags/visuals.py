@@ -83,7 +83,7 @@ class RobotVisuals:
         return np.einsum("nij,nj->ni", self.frames, centres)[:, :3], radii
 
     def surface(self, wanted: Any) -> Surface:
-        """The surface, in the world, of the pieces for which ``wanted``, shape (pieces,), is true."""
+        """The world surface of the pieces for which ``wanted``, shape (pieces,), is true."""
         chosen = np.flatnonzero(wanted)
         return joined(self.pieces[i].surface.moved(self.frames[i]) for i in chosen)
 
