@@ -113,8 +113,8 @@ class Real:
         return self._at(0.0)
 
     def _at(self, t: float) -> float:
-        now = self._asked(self._arm.wait, t)
-        with self._useful():
+        now = self._call(self._arm.wait, t)
+        with self._checking_answer():
             self._now = as_number(now, "the time from its wait")
         return self._now
 
@@ -125,9 +125,9 @@ class Real:
 
     def observe(self) -> tuple[State, State, Array]:
         """The reported state twice, because the true state is unknown, and the torque."""
-        answer = self._asked(self._arm.state)
-        torque = self._asked(getattr, self._arm, "torque", self.robot.zeros)
-        with self._useful():
+        answer = self._call(self._arm.state)
+        torque = self._call(getattr, self._arm, "torque", self.robot.zeros)
+        with self._checking_answer():
             if not isinstance(answer, State):
                 raise TypeMismatch(f"its state is {shown(answer)}, expected lk.State(t, q, dq)")
             named = zip((*answer[1:], torque), ("q", "dq", "tau_ext", "torque"), strict=True)
@@ -137,7 +137,7 @@ class Real:
             self._latest, self._since = t, self._now
         elif self._now - self._since > SILENCE:
             raise ArmLost(
-                f"the arm's state has not changed since t = {self._since:.3f} s; {self._rest()}"
+                f"the arm's state has not changed since t = {self._since:.3f} s; {self._halt()}"
             )
         state = State(t, *numbers[:3])
         return state, state, numbers[3]
@@ -152,7 +152,7 @@ class Real:
             kept = np.clip(x, -most, most)
             self._saturated = bool((kept != x).any())
             command = type(command)(kept) if self._saturated else command
-        self._asked(self._arm.apply, command)
+        self._call(self._arm.apply, command)
 
     def recover(self) -> None:
         """Bring an arm that ran away to rest."""
@@ -161,27 +161,27 @@ class Real:
     def stop(self) -> None:
         """Leave the arm at rest; a lost arm has already been sent the command to stop."""
         if not self._lost:
-            self._asked(self._arm.stop)
+            self._call(self._arm.stop)
 
-    def _asked(self, ask: Any, *args: Any) -> Any:
+    def _call(self, ask: Any, *args: Any) -> Any:
         try:
             return ask(*args)
         except Exception as error:
             what = f"{type(error).__name__}: {error}"
             raise ArmLost(
-                f"the arm stopped answering at t = {self._now:.3f} s ({what}); {self._rest()}"
+                f"the arm stopped answering at t = {self._now:.3f} s ({what}); {self._halt()}"
             ) from error
 
     @contextmanager
-    def _useful(self) -> Iterator[None]:
+    def _checking_answer(self) -> Iterator[None]:
         """Raise `ArmLost` if the block cannot read an answer of the arm."""
         try:
             yield
         except LabkitError as error:
             what = f"the arm's answer at t = {self._now:.3f} s cannot be used: {error}"
-            raise ArmLost(f"{what}; {self._rest()}") from error
+            raise ArmLost(f"{what}; {self._halt()}") from error
 
-    def _rest(self) -> str:
+    def _halt(self) -> str:
         """Try to stop the arm, and return a clause that says whether that worked."""
         self._lost = True
         with suppress(Exception):

@@ -244,7 +244,7 @@ class Kinematics:
         if e @ e < 1e-18:
             return q
         place = ", ".join(f"{x:.3f}" for x in T_wt[:3, 3])
-        raise Unreachable(f"the pose at ({place}) m {self._why(T_wt, q, e)}")
+        raise Unreachable(f"the pose at ({place}) m {self._reason(T_wt, q, e)}")
 
     def pose_error(self, T_wd: Any, q: Any) -> Array:
         """Target minus actual: how far the tip at ``q`` is from a pose.
@@ -325,7 +325,7 @@ class Kinematics:
         _warn_of_speed(joints, self.robot)
         return joints
 
-    def _why(self, T_wt: Array, q: Array, e: Array) -> str:
+    def _reason(self, T_wt: Array, q: Array, e: Array) -> str:
         """Why a search failed at q with error e: too far away, a joint at its limit, or stuck."""
         off = f"(nearest found: {1e3 * np.linalg.norm(e[:3]):.3g} mm and " + (
             f"{np.degrees(np.linalg.norm(e[3:])):.3g} degrees off)"

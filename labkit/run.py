@@ -111,7 +111,7 @@ def _loop(
             asked = who
             command = controller(seen[1], sample)
             if type(command) is not kind:
-                recorder.kind = kind = _settled(command, kind, who, t)
+                recorder.kind = kind = _command_type(command, kind, who, t)
             if command.value.shape != robot.zeros.shape:
                 raise ShapeError(kind.__name__, robot.zeros.shape, command.value.shape)
             recorder.keep(t, seen, command, sample)
@@ -136,7 +136,7 @@ def _loop(
     except Exception as error:
         samples.read(samples.latest, t)  # was it the target that broke the controller?
         raise ControllerError(
-            f"{asked} failed at t = {t:.3f} s, tick {k}: {_what(error, samples.latest, robot.n)}"
+            f"{asked} failed at t = {t:.3f} s, tick {k}: {_error_text(error, samples.latest, robot.n)}"
         ) from error
     finally:
         driven.stop()
@@ -226,7 +226,7 @@ def _ticks(target: Target, duration: float | None, period: float) -> int:
     return round(as_number(duration, "duration", least=0.0) / period + 1e-9) + 1
 
 
-def _what(error: Exception, sample: AnySample, joints: int) -> str:
+def _error_text(error: Exception, sample: AnySample, joints: int) -> str:
     """A controller's error in words, with a hint if the target does not give joint angles."""
     if isinstance(error, LabkitError):
         return str(error)
@@ -243,7 +243,7 @@ def _what(error: Exception, sample: AnySample, joints: int) -> str:
     return what
 
 
-def _settled(command: object, kind: type | None, who: str, t: float) -> type:
+def _command_type(command: object, kind: type | None, who: str, t: float) -> type:
     """The type of this run's commands; raises if the command does not fit."""
     names = ", ".join(f"lk.{c.__name__}(...)" for c in COMMANDS)
     if not isinstance(command, COMMANDS):

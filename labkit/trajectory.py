@@ -75,7 +75,7 @@ class TimeScaling(Protocol):
 
 
 Target = Callable[[float], AnySample]
-"""What `run` follows: any function of the time since the run began, in [s]."""
+"""Any function that `run` can follow, of the time since the run began, in [s]."""
 
 
 @dataclass(frozen=True)

@@ -1,4 +1,4 @@
-"""The notebook's widgets, imported only when one is shown, because anywidget is slow to import."""
+"""The notebook's widgets, imported only when one is shown, because they need anywidget."""
 
 from __future__ import annotations
 

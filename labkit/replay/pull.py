@@ -72,7 +72,7 @@ class Pull:
 
 
 def tip_force(model: Model, q: Array, torque: Array) -> Array:
-    """The force at the tip that joint torques amount to, world axes, shape (3,) in [N]."""
+    """The force at the tip that is equivalent to joint torques, world axes, shape (3,) in [N]."""
     return np.asarray(np.linalg.lstsq(model.tip_jacobian(q).T, torque, rcond=1e-3)[0][:3])
 
 

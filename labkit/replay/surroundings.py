@@ -132,7 +132,7 @@ class Surroundings:
             self._goals[int(number)] = position
 
     def approach(self, seconds: float) -> None:
-        """Move dragged things towards their goals for ``seconds``, at most at the speed `FASTEST`."""
+        """Move dragged things towards their goals for ``seconds``, at `FASTEST` at most."""
         world = self._arm.world
         for number, goal in list(self._goals.items()):
             old: Any = world.things[number]

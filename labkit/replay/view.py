@@ -44,7 +44,7 @@ def live(
             and so can walls, tables, bands and tags.
         rate: How often the controller is called, in [Hz].
         title: The heading.
-        **dials: For each dial a range (low, high) or (low, high, start), and perhaps a unit, such as
+        **dials: For each dial a range (low, high) or (low, high, start), and perhaps a unit, as in
             (50.0, 1500.0, 300.0, "N/m").  A number of `Plant`, such as payload, stiction or
             state_delay, changes the arm itself.
 

@@ -24,7 +24,7 @@ SLOW, CALLS = 1.0, 40
 """Least total duration, in [s], and least number of calls by which a controller is judged."""
 
 TURN = 5e-4
-"""Switch interval of Python's threads while an arm is live, in [s], so that other cells delay it less."""
+"""Switch interval of Python's threads while an arm is live, in [s], lest other cells delay it."""
 
 _LOOK = 0.05  # period of the watch, in [s]
 
@@ -49,7 +49,7 @@ class _Turns:
 
 
 class _Ended(BaseException):
-    """Raised in a controller that does not return; no `except Exception` of a student catches it."""
+    """Raised in a controller that does not return; a student's `except Exception` misses it."""
 
 
 class TooSlow(LabkitError):

@@ -53,7 +53,7 @@ class Detection:
 
     Attributes:
         id: Its number.
-        corners: Its corners in the picture, clockwise from the upper left of the tag, shape (4, 2) in
+        corners: Its corners in the picture, clockwise from the tag's upper left, shape (4, 2) in
             [px].
         noise: Standard deviation of a corner's coordinate, estimated from the edges, in [px].
         T_cm: Pose of the tag in the camera's frame, shape (4, 4).
