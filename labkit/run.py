@@ -136,7 +136,7 @@ def _loop(
     except Exception as error:
         samples.read(samples.latest, t)  # was it the target that broke the controller?
         raise ControllerError(
-            f"{asked} failed at t = {t:.3f} s, tick {k}: {_error_text(error, samples.latest, robot.n)}"
+            f"{asked} failed at t = {t:.3f} s, tick {k}: {_reason(error, samples.latest, robot.n)}"
         ) from error
     finally:
         driven.stop()
@@ -226,7 +226,7 @@ def _ticks(target: Target, duration: float | None, period: float) -> int:
     return round(as_number(duration, "duration", least=0.0) / period + 1e-9) + 1
 
 
-def _error_text(error: Exception, sample: AnySample, joints: int) -> str:
+def _reason(error: Exception, sample: AnySample, joints: int) -> str:
     """A controller's error in words, with a hint if the target does not give joint angles."""
     if isinstance(error, LabkitError):
         return str(error)

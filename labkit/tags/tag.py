@@ -21,7 +21,7 @@ Picture = NDArray[np.uint8]
 """Grey levels (height, width) or colours (height, width, 3) in RGB order, 0 to 255."""
 
 PATTERNS = cv2.aruco.getPredefinedDictionary(cv2.aruco.DICT_APRILTAG_36h11)
-"""The family of tags most common in robotics: 587 tags, any two differing in at least 11 bits."""
+"""The family of tags most common in robotics, 587 tags that differ in at least 11 of 36 bits."""
 
 CELLS = 8
 """Cells along a side of the black square."""
