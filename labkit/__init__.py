@@ -1,10 +1,10 @@
-"""A small laboratory for robot control: Baxter's arm or your own, and what it takes to teach it.
+"""A small laboratory for robot control: Baxter's arm or your own, and the course built on it.
 
-Three nouns and a verb: an `Arm`, a `Trajectory`, a controller (any function of state and target),
-and `run`.  Everything that a notebook needs is ``lk.something``.
+It has three nouns and a verb: an `Arm`, a `Trajectory`, a controller (any function of a state and
+a target), and `run`.  Everything that a notebook needs is available as ``lk.something``.
 """
 
-# ruff: noqa: F405  # the lazy names are listed where they are at home, in `tags`
+# ruff: noqa: F405  # `tags` lists the names that are loaded lazily
 from __future__ import annotations
 
 import platform
@@ -48,7 +48,7 @@ __all__ = [
 
 
 def __getattr__(name: str) -> Any:
-    """What is loaded when first asked for: OpenCV, Matplotlib and IPython are slow to import."""
+    """Load a name on first use, because OpenCV, Matplotlib and IPython are slow to import."""
     if name in ("course", "plotting", "replay", "tags"):
         return import_module(f".{name}", __name__)
     if name == "live":
@@ -65,14 +65,14 @@ def __dir__() -> list[str]:
 
 
 def ready() -> None:
-    """Move the simulated arm once and print one line that says so.
+    """Move the simulated arm once and print a line that confirms it.
 
     Raises:
-        LabkitError: The arm did not move as it should.
+        LabkitError: The arm did not reach its goal.
     """
-    import psutil  # not needed where nobody asks
+    import psutil  # only this function needs it
 
-    from .run import run  # whatever somebody put in the place of `lk.run`
+    from .run import run  # not `lk.run`, which a user may have replaced
 
     with Arm() as arm:
         start = arm.robot.neutral

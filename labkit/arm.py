@@ -1,4 +1,4 @@
-"""The arm: the plant in a physics engine.  Read its state, give it a command."""
+"""The arm: a plant in a physics engine that reports its state and accepts commands."""
 
 from __future__ import annotations
 
@@ -23,13 +23,13 @@ from .world import World
 
 
 class Arm:
-    """A robot's arm in a world: n bodies, motors with limits, and the plant's realism.
+    """A robot arm in a world: n bodies, motors with limits, and the imperfections of the plant.
 
     Attributes:
         robot: Names and limits.
-        plant: How it differs from the textbook.
-        model: A model that knows of this plant's rotors and payload.
-        world: Where it stands.
+        plant: How the arm differs from the textbook's.
+        model: A model that includes this plant's rotors and payload.
+        world: The world that the arm is in.
     """
 
     def __init__(
@@ -46,17 +46,17 @@ class Arm:
         Args:
             robot: A `Robot`, or "left" or "right" for Baxter's.
             plant: `IDEAL`, `BAXTER` or a `Plant` of your own.
-            seed: Of the measurement noise and of the ticks that come late.
-            q0: Joint angles at the start, shape (n,) in [rad]; None is `Robot.neutral`.
-            world: Where to put it; None opens an empty world of its own.
+            seed: The seed of the measurement noise and of the late ticks.
+            q0: Initial joint angles, shape (n,) in [rad]; None means `Robot.neutral`.
+            world: The world to put the arm in; None opens an empty one.
 
         Raises:
             UnknownName: Baxter has no such arm.
-            TypeMismatch: Plant, seed or world is something else.
+            TypeMismatch: ``plant``, ``seed`` or ``world`` has the wrong type.
             Closed: The world is closed.
-            LabkitError: The world has this arm already.
+            LabkitError: The world already has this arm.
             JointLimitExceeded: q0 is outside the joints' range.
-            ShapeError: The plant is that of an arm with another number of joints.
+            ShapeError: The plant belongs to an arm with a different number of joints.
         """
         self.robot = robot = as_robot(robot)
         self.model = Model(robot, plant)
@@ -70,17 +70,18 @@ class Arm:
         self.world.arms.append(self)
 
     def _build(self, model: Model) -> None:
-        """Make all that hangs on the plant."""
+        """Create everything that depends on the plant."""
         robot, plant, dt = self.robot, model.plant, self.world.dt
         self.plant, self.model = plant, model
         elastic = any(plant.joint_stiffness)
         self._springs = Springs(plant, robot.n, dt) if elastic else None
-        # Behind springs there are rotors and friction; the links have neither.  So there are up to
-        # four models: the arm's, the one it believes in, the links' and the one its sensors feel.
+        # With elastic joints, rotors and friction are on the motor side of the springs, and the
+        # links have neither.  So there are up to four models: the true one, the arm's own (without
+        # the payload), that of the links, and the one with which the torque sensors compute.
         links = replace(plant, armature=0.0, viscous=0.0, joint_stiffness=0.0)
         links = links if elastic else plant
         self._engine = new_arm(self.world.engine, robot, links, dt)
-        own = Model(robot, replace(plant, payload=0.0))  # the arm does not know what it carries
+        own = Model(robot, replace(plant, payload=0.0))  # the arm does not know its payload
         self._viscous = links.each("viscous", robot.n)
         self._patience = round(plant.command_timeout / dt)  # in physics steps
         self._motors = Motors(dt, plant, own)
@@ -100,10 +101,10 @@ class Arm:
                 "use that one, or make a new World too"
             )
 
-    # What a controller may use
+    # For controllers
 
     def state(self) -> State:
-        """The joints as the arm reports them now: as old and as noisy as the plant makes them."""
+        """The joints as the arm reports them now, with the delay and the noise of the plant."""
         if not self._reports.every:
             return self.truth()
         if self._reports.due(self.world.steps):
@@ -113,14 +114,14 @@ class Arm:
     def apply(self, command: Command) -> None:
         """Follow ``command`` until the next one, or until the plant's command timeout.
 
-        Speeds and torques beyond the limits are cut to them, as the real arm does.
+        Speeds and torques beyond the limits are clipped to them, as on the real arm.
 
         Args:
             command: `JointPosition`, `JointVelocity` or `JointTorque`.
 
         Raises:
-            ControllerError: It is not a command.
-            ShapeError: It has not as many numbers as the arm has joints.
+            ControllerError: ``command`` is not a command.
+            ShapeError: It does not have one number for each joint.
             JointLimitExceeded: A position is outside the joints' range.
         """
         self.check_open()
@@ -132,7 +133,7 @@ class Arm:
         self.follow(command)
 
     def follow(self, command: Command) -> None:
-        """As `apply`, for a command whose type and shape were checked."""
+        """Do the same as `apply` for a command whose type and shape have been checked."""
         if type(command) is JointPosition:
             self.model.within_limits(command.value, "JointPosition")
         self._motors.follow(command)
@@ -140,18 +141,18 @@ class Arm:
 
     @property
     def saturated(self) -> bool:
-        """Whether a limit cut the command that the arm follows, at any time since it came."""
+        """Whether a limit has cut the current command at any time since the arm received it."""
         return self._motors.saturated
 
     def stop(self) -> None:
-        """Come to rest and stay."""
+        """Come to rest and stay there."""
         self.apply(JointVelocity(self.robot.zeros))
 
     def reset(self, q: Any = None) -> None:
-        """Put the arm at rest at ``q``, shape (n,) in [rad]; None is `Robot.neutral`.
+        """Put the arm at rest at ``q``, shape (n,) in [rad]; None means `Robot.neutral`.
 
         Raises:
-            JointLimitExceeded: A joint is out of its range.
+            JointLimitExceeded: A joint is outside its range.
         """
         q = self.robot.neutral if q is None else self.model.within_limits(q, "q")
         self.check_open()
@@ -173,10 +174,10 @@ class Arm:
         self.stop()
 
     def become(self, plant: Plant) -> None:
-        """Be an arm of another plant from now on, where it is and as fast as it is, told to stop.
+        """Switch to another plant, keeping angles and speeds, and command the arm to stop.
 
         Raises:
-            ShapeError: The plant is that of an arm with another number of joints.
+            ShapeError: The plant belongs to an arm with a different number of joints.
         """
         q, dq = self._read()
         before = self._engine
@@ -200,7 +201,7 @@ class Arm:
 
     @property
     def torque(self) -> Array:
-        """What the motors gave in the last physics step, gravity compensation included.
+        """The motor torque in the last physics step, including gravity compensation.
 
         Returns:
             Shape (n,) in [N m].
@@ -209,9 +210,9 @@ class Arm:
         return self._torque
 
     def push(self, force: Any, moment: Any = (0.0, 0.0, 0.0)) -> None:
-        """Push the tip during the next physics step; world axes, at the tip's origin.
+        """Push the tip at its origin, in world axes, during the next physics step.
 
-        A force that lasts is a `Push` in the world, which the arm can also feel.
+        For a lasting force, put a `Push` into the world; the torque sensors feel that one too.
 
         Args:
             force: Shape (3,) in [N].
@@ -225,16 +226,16 @@ class Arm:
         self._touches.append(touch)
 
     def pull(self, torque: Any) -> None:
-        """Turn the joints from outside during the next physics step, as a hand on a link does.
+        """Apply external joint torques during the next physics step, as a hand on a link would.
 
         Args:
-            torque: Shape (n,) in [N m]; several add up.
+            torque: Shape (n,) in [N m]; torques of several calls add up.
         """
         torque = as_array(torque, self.robot.zeros.shape, "torque")
         self._pull = torque if self._pull is None else self._pull + torque
 
     def tip(self) -> tuple[Array, Array]:
-        """Place [m] and velocity [m/s] of the tip as they really are, each of shape (3,)."""
+        """True position [m] and velocity [m/s] of the tip, each of shape (3,)."""
         q, dq = self._read()
         return self.model.pose(q)[:3, 3], self.model.tip_jacobian(q)[:3] @ dq
 
@@ -246,19 +247,19 @@ class Arm:
             self.world.check_owner()
 
     def lost_ticks(self, ticks: int) -> list[bool]:
-        """Which of the next control ticks come too late to be used: drawn from the arm's seed."""
+        """Draw, from the arm's seed, which of the next control ticks come too late to be used."""
         if not self.plant.lost_ticks:
             return [False] * ticks
         late: list[bool] = (self._random.random(ticks) < self.plant.lost_ticks).tolist()
         return late
 
     def observe(self) -> tuple[State, State, Array]:
-        """What `run` writes down: the truth, the state as reported, and `torque`, read at once."""
+        """What `run` records: the true state, the reported state and `torque`, all read at once."""
         truth = self.truth()
         seen = self.state() if self._reports.every else truth
         return truth, seen, self._torque
 
-    # The machinery, once per physics step
+    # For the world, once per physics step
 
     def step(self) -> None:
         """Take a physics step; the world calls it."""
@@ -273,7 +274,7 @@ class Arm:
             motors, drive = self._springs.pull(q, dq, drive)
         outside = drive if self._pull is None else drive._replace(tau=drive.tau + self._pull)
         given = self._joints.solve(q, dq, outside, self._touches)
-        if self.world.things or self.plant.payload:  # else no torque comes from outside
+        if self.world.things or self.plant.payload:  # otherwise there is no external torque
             joint = drive.tau + given.held - self._viscous * dq
             self._sensors.begin(q, dq, joint, self.world.steps)
         gives = self._springs is not None or self._motors.kind is JointTorque
@@ -282,14 +283,14 @@ class Arm:
         self._known, self._touches, self._pull = None, [], None
 
     def release(self) -> None:
-        """Free what it holds; the world calls it."""
+        """Free the engine's resources; the world calls it."""
         self._engine.close()
 
     def _report(self) -> None:
         self._reports.send(self.truth(), self.world.steps)
 
     def _hold(self) -> None:
-        """The command ran out: stay at the place reached (Rethink's arm does so after 0.2 s)."""
+        """Hold the current position after a command timeout (Rethink's arm does so after 0.2 s)."""
         if self._motors.kind is JointPosition:
             self._deadline = self.world.steps + self._patience
             return
@@ -297,7 +298,7 @@ class Arm:
         self.apply(JointPosition(np.clip(q, self.robot.lower, self.robot.upper)))
 
     def _read(self) -> tuple[Array, Array]:
-        """Angles and speeds as they really are, read-only."""
+        """True joint angles and speeds, read-only."""
         self.check_open()
         if self._known is None:
             q, dq = self._engine.state()

@@ -1,4 +1,4 @@
-"""What `run` drives: the simulated arm, or a real one behind a protocol of four methods."""
+"""The arms that `run` can drive: a simulated one, or a real one that has four methods."""
 
 from __future__ import annotations
 
@@ -24,12 +24,12 @@ SILENCE = 0.2
 
 @runtime_checkable
 class RealArm(Protocol):
-    """What `run` asks of an arm that is not simulated; `WallClock` has a `wait` for it.
+    """The methods that `run` needs from a real arm; `WallClock` provides `wait`.
 
-    Each method returns within a control period, or raises what it likes: the run then stops the
-    arm, and the error `ArmLost` tells why and keeps the log.  A real arm must come to rest by
-    itself when commands stop coming.  Two more attributes are used where there are any: ``torque``,
-    what the motors give, shape (n,) in [N m], and ``plant``.
+    Each method returns within a control period, or raises any exception: the run then stops the
+    arm and raises `ArmLost`, which gives the reason and keeps the log.  A real arm must come to
+    rest by itself when commands stop coming.  Two more attributes are used if the arm has them:
+    ``torque``, the motor torque, shape (n,) in [N m], and ``plant``.
 
     Attributes:
         robot: Its joints and their limits.
@@ -38,28 +38,28 @@ class RealArm(Protocol):
     robot: Robot
 
     def state(self) -> State:
-        """The newest state that has come, its time on the arm's own clock; never a NaN."""
+        """The newest state received, with its time on the arm's own clock and without a NaN."""
 
     def apply(self, command: Command) -> None:
-        """Follow a command, which is within the limits, until the next."""
+        """Follow a command, which is within the limits, until the next one."""
 
     def stop(self) -> None:
-        """Come to rest and stay."""
+        """Come to rest and stay there."""
 
     def wait(self, t: float) -> float:
-        """Wait until ``t`` [s] after the run began, and return how long ago that was, in [s].
+        """Wait until ``t`` [s] after the start of the run; return the time since the start, in [s].
 
-        The run begins where t is 0.  Where the loop is late, the answer is later than t.
+        The call with t = 0 starts the run.  If the loop is late, the returned time exceeds ``t``.
         """
 
 
 class WallClock:
-    """The clock on the wall, for real arms."""
+    """Real time, for real arms."""
 
     _start = 0.0
 
     def wait(self, t: float) -> float:
-        """As `RealArm.wait`."""
+        """Wait as `RealArm.wait` describes."""
         if t == 0.0:
             self._start = time.monotonic()
         time.sleep(max(0.0, self._start + t - time.monotonic()))
@@ -67,7 +67,7 @@ class WallClock:
 
 
 class Simulated:
-    """A simulated arm, tick after tick."""
+    """A simulated arm, driven tick by tick."""
 
     def __init__(self, arm: Arm, rate: Any) -> None:
         """Drive ``arm`` at ``rate`` [Hz]."""
@@ -83,7 +83,7 @@ class Simulated:
         return 0.0
 
     def advance(self, k: int) -> tuple[int, float, bool]:
-        """Go on to the tick after ``k``: its number, its time, and whether a limit cut the last."""
+        """Go on to the next tick; its number and time, and whether a limit cut the last command."""
         self._arm.world.step(self._steps)
         return k + 1, (k + 1) * self.period, self._arm.saturated
 
@@ -94,7 +94,7 @@ class Simulated:
 
 
 class Real:
-    """A real arm, tick after tick: its limits are kept, and what it says is not trusted."""
+    """A real arm, driven tick by tick, with its limits enforced and its answers checked."""
 
     def __init__(self, arm: RealArm, rate: Any) -> None:
         """Drive ``arm`` at ``rate`` [Hz]."""
@@ -105,7 +105,7 @@ class Real:
         self._latest, self._since, self._now = -np.inf, 0.0, 0.0
 
     def lost_ticks(self, ticks: int) -> list[bool]:
-        """None that this side knows of."""
+        """No tick is known to be lost in advance."""
         return [False] * ticks
 
     def begin(self) -> float:
@@ -113,21 +113,21 @@ class Real:
         return self._at(0.0)
 
     def _at(self, t: float) -> float:
-        now = self._asked(self._arm.wait, t)
-        with self._useful():
+        now = self._call(self._arm.wait, t)
+        with self._checking_answer():
             self._now = as_number(now, "the time from its wait")
         return self._now
 
     def advance(self, k: int) -> tuple[int, float, bool]:
-        """Wait for the tick after ``k``, or for the next that is not yet over."""
+        """Wait for the tick after ``k``, or for a later one if that one has passed already."""
         now = self._at((k + 1) * self.period)
         return max(k + 1, int(now / self.period + 1e-6)), now, self._saturated
 
     def observe(self) -> tuple[State, State, Array]:
-        """The state twice, for nobody knows a truer one, and the torque."""
-        answer = self._asked(self._arm.state)
-        torque = self._asked(getattr, self._arm, "torque", self.robot.zeros)
-        with self._useful():
+        """The reported state twice, because the true state is unknown, and the torque."""
+        answer = self._call(self._arm.state)
+        torque = self._call(getattr, self._arm, "torque", self.robot.zeros)
+        with self._checking_answer():
             if not isinstance(answer, State):
                 raise TypeMismatch(f"its state is {shown(answer)}, expected lk.State(t, q, dq)")
             named = zip((*answer[1:], torque), ("q", "dq", "tau_ext", "torque"), strict=True)
@@ -137,14 +137,14 @@ class Real:
             self._latest, self._since = t, self._now
         elif self._now - self._since > SILENCE:
             raise ArmLost(
-                f"the arm's state has not changed since t = {self._since:.3f} s; {self._rest()}"
+                f"the arm's state has not changed since t = {self._since:.3f} s; {self._halt()}"
             )
         state = State(t, *numbers[:3])
         return state, state, numbers[3]
 
     def apply(self, command: Command) -> None:
-        """Send a command, cut to the robot's limits."""
-        x, robot = command.value, self.robot  # of one shape, as the loop has seen
+        """Send a command, clipped to the robot's limits."""
+        x, robot = command.value, self.robot  # the loop has checked its shape
         if type(command) is JointPosition:
             robot.check_range(x, "JointPosition")
         else:
@@ -152,37 +152,37 @@ class Real:
             kept = np.clip(x, -most, most)
             self._saturated = bool((kept != x).any())
             command = type(command)(kept) if self._saturated else command
-        self._asked(self._arm.apply, command)
+        self._call(self._arm.apply, command)
 
     def recover(self) -> None:
-        """Leave at rest an arm that ran away."""
+        """Bring an arm that ran away to rest."""
         self.stop()
 
     def stop(self) -> None:
-        """Leave the arm at rest; a lost arm has received the command already."""
+        """Leave the arm at rest; a lost arm has already been sent the command to stop."""
         if not self._lost:
-            self._asked(self._arm.stop)
+            self._call(self._arm.stop)
 
-    def _asked(self, ask: Any, *args: Any) -> Any:
+    def _call(self, ask: Any, *args: Any) -> Any:
         try:
             return ask(*args)
         except Exception as error:
             what = f"{type(error).__name__}: {error}"
             raise ArmLost(
-                f"the arm stopped answering at t = {self._now:.3f} s ({what}); {self._rest()}"
+                f"the arm stopped answering at t = {self._now:.3f} s ({what}); {self._halt()}"
             ) from error
 
     @contextmanager
-    def _useful(self) -> Iterator[None]:
-        """Where an answer is read: one that cannot be loses the arm."""
+    def _checking_answer(self) -> Iterator[None]:
+        """Raise `ArmLost` if the block cannot read an answer of the arm."""
         try:
             yield
         except LabkitError as error:
             what = f"the arm's answer at t = {self._now:.3f} s cannot be used: {error}"
-            raise ArmLost(f"{what}; {self._rest()}") from error
+            raise ArmLost(f"{what}; {self._halt()}") from error
 
-    def _rest(self) -> str:
-        """Stop it, if it hears; what became of it."""
+    def _halt(self) -> str:
+        """Try to stop the arm, and return a clause that says whether that worked."""
         self._lost = True
         with suppress(Exception):
             self._arm.stop()

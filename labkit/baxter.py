@@ -1,4 +1,4 @@
-"""Baxter's two arms.  Their numbers come from Rethink's URDF, see ``data/LICENSE-baxter``."""
+"""Baxter's two arms.  Their numbers come from Rethink's URDF; see ``data/LICENSE-baxter``."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ def robot(side: str) -> Robot:
 
 
 def as_robot(arm: Robot | str) -> Robot:
-    """A robot, or Baxter's arm of that name.
+    """Return a `Robot` unchanged, and Baxter's arm for a name.
 
     Raises:
         UnknownName: Baxter has no such arm.

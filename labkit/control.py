@@ -1,8 +1,8 @@
-"""Control: the state that a controller sees, the commands it answers with, and three given laws.
+"""Control: the state that a controller sees, the commands it returns, and three ready controllers.
 
-The type of a command carries its unit and its mode, so a torque cannot be taken for a speed.  A
-controller is any function ``controller(state, target) -> command``; `hold`, `feedforward` and
-`springs` are given, the others are the course.
+The type of a command determines its unit and its mode, so a torque cannot be mistaken for a speed.
+A controller is any function ``controller(state, target) -> command``; `hold`, `feedforward` and
+`springs` are provided, and students write the others in the course.
 """
 
 from __future__ import annotations
@@ -29,19 +29,19 @@ class State(_State):
     """The joints as the arm reports them.
 
     Attributes:
-        t: When it was measured, in [s] of the simulation's clock.
+        t: Time of the measurement, in [s] on the simulation's clock.
         q: Joint angles, shape (n,) in [rad], read-only.
         dq: Joint speeds, shape (n,) in [rad/s], read-only.
-        tau_ext: What the world outside puts on the joints, as the arm estimates it from its torque
-            sensors, shape (n,) in [N m], read-only; `Model.tip_wrench` makes it a wrench.
-            None means that the arm gives no estimate.
+        tau_ext: External joint torque, as the arm estimates it from its torque sensors, shape (n,)
+            in [N m], read-only; `Model.tip_wrench` converts it to a wrench.  None means that the
+            arm gives no estimate.
     """
 
     __slots__ = ()
-    __array_ufunc__ = None  # numpy would take it for an array
+    __array_ufunc__ = None  # otherwise NumPy would treat the tuple as an array
 
     def __new__(cls, t: float, q: Array, dq: Array, tau_ext: Array | None = None) -> State:
-        """A state; the arrays are taken as they are."""
+        """Make a state; the arrays are neither copied nor checked."""
         if tau_ext is None:
             tau_ext = locked(np.zeros(np.shape(q)))
         return super().__new__(cls, t, q, dq, tau_ext)
@@ -84,7 +84,7 @@ COMMANDS = (JointPosition, JointVelocity, JointTorque)
 
 
 def hold(q: Any) -> Callable[[State, Any], JointPosition]:
-    """A controller that asks for the joint angles ``q``, whatever the target: as stiff as it gets.
+    """A controller that always commands the joint angles ``q``, as stiffly as the arm allows.
 
     Args:
         q: Shape (n,) in [rad].
@@ -98,10 +98,10 @@ def hold(q: Any) -> Callable[[State, Any], JointPosition]:
 
 
 def feedforward(state: State, target: Sample) -> JointVelocity:
-    """The target's own speeds and nothing else: what errors there are stay, and grow.
+    """A controller that commands the target's own speeds, so any error remains, and may grow.
 
     Raises:
-        ControllerError: The target is not one of joint angles.
+        ControllerError: The target does not consist of joint angles.
     """
     if not isinstance(target, Sample) or target.velocity.shape != state.q.shape:
         raise ControllerError(
@@ -112,9 +112,9 @@ def feedforward(state: State, target: Sample) -> JointVelocity:
 
 
 def springs(kp: Any, kd: Any) -> Callable[[State, Sample], JointTorque]:
-    """A spring and a damper at each joint and no model behind them, as in Rethink's own example.
+    """A controller with a spring and a damper at each joint and no model, as in Rethink's example.
 
-    The arm must carry its own weight, or it sags.
+    The arm must compensate for gravity itself, or it sags.
 
     Args:
         kp: Stiffness, shape (n,) or one number, in [N m/rad].

@@ -1,8 +1,9 @@
-"""What went wrong, as a sentence: the value, the limit and what to do.
+"""Errors, whose messages give the value, the limit and what to do.
 
-Everything labkit raises derives from `LabkitError`, so a caller can catch one thing; each child is
-also the built-in exception that a Python programmer would expect, and keeps its evidence as
-attributes.  Their `args` are those of the constructor, so that they can be sent between processes.
+Everything that labkit raises derives from `LabkitError`, so a caller can catch a single class.
+Most subclasses are also the built-in exception that a Python programmer would expect, and some keep
+their details as attributes.  `args` are the arguments of the constructor, so that errors can be
+sent between processes.
 """
 
 from __future__ import annotations
@@ -15,14 +16,14 @@ class LabkitError(Exception):
 
 
 class LabkitWarning(UserWarning):
-    """Something worth a second look that does not stop the work."""
+    """A problem that deserves attention but does not stop the program."""
 
 
 class ShapeError(LabkitError, ValueError):
-    """An array does not have the shape that the mathematics asks for."""
+    """An array does not have the shape that the mathematics requires."""
 
     def __init__(self, name: str, expected: tuple[int, ...], actual: tuple[int, ...]) -> None:
-        """Say which array, what was expected and what came."""
+        """Name the array, the expected shape and the actual one."""
         super().__init__(name, expected, actual)
         self.name, self.expected, self.actual = name, expected, actual
 
@@ -47,7 +48,7 @@ def _hint(expected: tuple[int, ...], actual: tuple[int, ...]) -> str:
 
 
 class TypeMismatch(LabkitError, TypeError):
-    """A value cannot be read as the kind of thing that belongs there."""
+    """A value does not have the expected type and cannot be converted to it."""
 
 
 class NotFinite(LabkitError, ValueError):
@@ -55,11 +56,11 @@ class NotFinite(LabkitError, ValueError):
 
 
 class OutOfRange(LabkitError, ValueError):
-    """A number lies outside what it may be."""
+    """A number is outside its permitted range."""
 
 
 class JointLimitExceeded(OutOfRange):
-    """A joint angle lies outside the joint's range."""
+    """A joint angle is outside the joint's range."""
 
     def __init__(self, name: str, joint: str, value: float, lower: float, upper: float) -> None:
         """Name the joint, the value and the range, all in radians."""
@@ -75,7 +76,7 @@ class JointLimitExceeded(OutOfRange):
 
 
 class UnknownName(LabkitError, KeyError):
-    """Nothing of that name exists."""
+    """Nothing with that name exists."""
 
     def __init__(self, kind: str, name: str, known: Iterable[str]) -> None:
         """Name the thing that is missing, and those that exist."""
@@ -92,7 +93,7 @@ class Unreachable(LabkitError, ValueError):
 
 
 class ControllerError(LabkitError):
-    """A controller or a target gave the loop nothing to use; `log` keeps the run up to then."""
+    """A controller or a target returned nothing usable; `log` keeps the run up to that point."""
 
     log: object = None
 
@@ -102,7 +103,7 @@ class Diverged(ControllerError):
 
 
 class ArmLost(LabkitError, RuntimeError):
-    """A real arm gave no answer, or one that is not a state; `log` keeps the run up to then."""
+    """A real arm gave no answer or an unusable one; `log` keeps the run up to that point."""
 
     log: object = None
 
@@ -112,7 +113,7 @@ class ArmLost(LabkitError, RuntimeError):
 
 
 class NothingKept(LabkitError, LookupError):
-    """No run of a live arm was kept."""
+    """No run of a live arm has been kept."""
 
 
 class Closed(LabkitError, RuntimeError):

@@ -1,4 +1,4 @@
-"""Numbers that say which labkit can read a file, and with which physics it was made."""
+"""Version numbers of file formats and of the simulated physics."""
 
 from __future__ import annotations
 
@@ -8,13 +8,13 @@ from typing import Any
 from .errors import LabkitError
 
 FORMAT = 2
-"""Of checks.json, bundles, results and logs; files of version 0.1 have no number and count as 1."""
+"""Version of checks.json, bundles, results and logs; files of version 0.1 have none and mean 1."""
 PHYSICS = 2
-"""Of the plant and its engines; under another number the same run gives another log."""
+"""Version of the plant and its engines; the same run gives a different log in another version."""
 
 
 def stamp() -> dict[str, int]:
-    """What a file says about itself: its ``format`` and its ``physics``."""
+    """The version numbers to store in a file: its ``format`` and its ``physics``."""
     return {"format": FORMAT, "physics": PHYSICS}
 
 
@@ -22,12 +22,12 @@ def check_stamp(data: Mapping[str, Any], what: str, remedy: str) -> None:
     """Refuse a file that another version of labkit wrote.
 
     Args:
-        data: What the file holds.
-        what: What it is called, such as "checks.json".
-        remedy: What to do about an older one, an imperative.
+        data: The contents of the file.
+        what: The name of the file for the message, such as "checks.json".
+        remedy: What to do about an older file, in the imperative.
 
     Raises:
-        LabkitError: Its format or its physics has another number than this labkit's.
+        LabkitError: The file's format or physics differs from that of this labkit.
     """
     for name, mine in stamp().items():
         found = data.get(name, 1)

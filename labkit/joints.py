@@ -1,13 +1,13 @@
-r"""The joints: what motors, dry friction and stops give in one physics step.
+r"""The joints: the torques of motors, dry friction and stops in one physics step.
 
 A step of :math:`\Delta t` takes the speeds of joints with inertia M and rotors
 :math:`A = \mathrm{diag}(a)` from :math:`\dot q` to
 
 .. math:: \dot q^+ = u + G\,y, \qquad u = \dot q + G\,(\tau - h), \qquad G = \Delta t\,(M + A)^{-1}
 
-where :math:`\tau` is given whatever happens and y is what adapts: a motor that holds a speed as far
-as its torque goes, dry friction that holds the speed zero, the stops at the ends of the range.
-`joint_torques` finds y exactly, the same for every physics engine.
+where :math:`\tau` does not depend on the outcome of the step and y does: a motor holds its speed
+within its torque limit, dry friction holds the speed at zero, and the stops end the range.
+`joint_torques` finds y exactly, in the same manner for every physics engine.
 """
 
 from __future__ import annotations
@@ -24,17 +24,17 @@ from .model import Model
 from .shapes import Array
 
 LOW, SLIP_UP, STICK, SLIP_DOWN, HIGH = range(1, 6)
-"""Where a joint stands, from its lower stop to its upper one.
+"""The state of a joint, from its lower stop to its upper stop.
 
-Between the stops a joint that is slower than its target gets the whole bound as torque upwards
-(``SLIP_UP``), one that is quicker gets it downwards (``SLIP_DOWN``), and one at its target speed is
+Between the stops, a joint slower than its target receives the full bound as an upward torque
+(``SLIP_UP``), a faster one receives it downwards (``SLIP_DOWN``), and one at its target speed is
 held there (``STICK``)."""
 
 QUICK = 50.0
-"""A joint that could not reach a stop at this speed, in [rad/s], will not meet it in this step."""
+"""A joint too far from a stop to reach it at this speed, in [rad/s], ignores it in this step."""
 
 _ROUNDING = 1e-14  # of a speed, in [rad/s]
-_TOGETHER = 20  # rounds in which all joints move that are wrong; from then on one at a time
+_TOGETHER = 20  # rounds that change every wrong joint; later rounds change one each
 _ROUNDS = 200
 
 
@@ -47,26 +47,27 @@ def joint_torques(
     fastest: Array,
     guess: list[int],
 ) -> tuple[Array, list[int]]:
-    """Torques y for which the speeds ``u + G @ y`` are the target's, as far as the bounds allow.
+    """Torques y that bring the speeds ``u + G @ y`` to their targets, as far as the bounds allow.
 
-    A joint slower than its target is given ``bound``, a quicker one ``-bound``, one at its target
-    anything between; none ends slower than ``slowest`` or quicker than ``fastest``, whatever torque
-    that takes.  Torque over speed is thus a staircase, and it falls, so there is one solution.
+    A joint slower than its target receives ``bound``, a faster one ``-bound``, and one at its
+    target any torque between them.  No joint ends slower than ``slowest`` or faster than
+    ``fastest``, whatever torque that takes.  Torque is thus a falling staircase over speed, so
+    there is exactly one solution.
 
     Args:
-        G: What torques do to speeds, symmetric and positive definite, shape (n, n).
+        G: Change of the speeds per torque, symmetric and positive definite, shape (n, n).
         u: Speeds without y, shape (n,) in [rad/s].
         target: Speeds to hold, shape (n,) in [rad/s].
-        bound: The most torque for it, shape (n,) in [N m].
-        slowest: Speeds that end at the lower stops, shape (n,) in [rad/s].
-        fastest: Speeds that end at the upper stops, shape (n,) in [rad/s].
-        guess: Where each joint may stand, from `LOW` to `HIGH`; best is where it stood last.
+        bound: Largest torque to hold them, shape (n,) in [N m].
+        slowest: Speeds that end the step at the lower stops, shape (n,) in [rad/s].
+        fastest: Speeds that end the step at the upper stops, shape (n,) in [rad/s].
+        guess: First guess of each joint's state, from `LOW` to `HIGH`; best is its previous state.
 
     Returns:
-        The torques, shape (n,) in [N m], and where each joint stands.
+        The torques, shape (n,) in [N m], and the state of each joint.
 
     Raises:
-        LabkitError: They were not found; the inertias of an arm never came near to that.
+        LabkitError: No solution was found, which no arm's inertias have come close to causing.
     """
     end, unit = np.full(len(u), inf), np.eye(len(u))
     goal = np.minimum(np.maximum(target, slowest), fastest)
@@ -74,7 +75,7 @@ def joint_torques(
     stands = list(guess)
     for count in range(_ROUNDS):
         given = np.array([stair[k] for stair, k in zip(stairs, stands, strict=True)])
-        held = np.array([k % 2 == 1 for k in stands])  # the speed is given, else the torque
+        held = np.array([k % 2 == 1 for k in stands])  # speed prescribed, else torque
         rows = np.where(held[:, None], G, unit)
         y = _dgesv()(rows, np.where(held, given - u, given))[2]
         v, wrong = u + G @ y, False
@@ -99,19 +100,19 @@ def joint_torques(
 
 @cache
 def _dgesv() -> Any:
-    """LAPACK's solver: NumPy's own takes 6 us more; slow to import."""
+    """LAPACK's solver, slow to import but 6 us faster per call than NumPy's."""
     from scipy.linalg.lapack import dgesv
 
     return dgesv
 
 
 class Given(NamedTuple):
-    """What the joints give in a physics step, three vectors of shape (n,).
+    """The torques and accelerations of the joints in a physics step, vectors of shape (n,).
 
     Attributes:
         held: The torque within the drive's bound that holds its speeds, in [N m].
-        tau: All torque on the joints, friction, stops and touches included, in [N m].
-        ddq: The accelerations that it makes, in [rad/s^2]; None if nobody had to know them.
+        tau: Total torque on the joints, including friction, stops and touches, in [N m].
+        ddq: The accelerations that it causes, in [rad/s^2]; None if they were not computed.
     """
 
     held: Array
@@ -123,9 +124,9 @@ class Drive(NamedTuple):
     """What the motors do in a physics step.
 
     Attributes:
-        tau: Torque that they give whatever happens, shape (n,) in [N m].
-        speed: Speeds that are held beside it, shape (n,) in [rad/s].
-        bound: The most torque that holds them, of motors or dry friction, shape (n,) in [N m].
+        tau: Prescribed torque, shape (n,) in [N m].
+        speed: Speeds that are held in addition, shape (n,) in [rad/s].
+        bound: Largest torque of motors or dry friction that holds them, shape (n,) in [N m].
     """
 
     tau: Array
@@ -134,12 +135,12 @@ class Drive(NamedTuple):
 
 
 class Touch(NamedTuple):
-    r"""What acts on the tip in a physics step: :math:`f = f_0 - D v`, v at the end of the step.
+    r"""A force on the tip in a physics step, :math:`f = f_0 - D v`, v at the end of the step.
 
     Attributes:
         wrench: Force at the tip's origin in [N] and moment in [N m], world axes, shape (6,).
         damping: D, symmetric, shape (3, 3) in [N s/m].
-        outwards: The direction in which a face pushes and never pulls, shape (3,); None pulls too.
+        outwards: Direction in which a face pushes without ever pulling, shape (3,); None may pull.
     """
 
     wrench: Array
@@ -147,7 +148,7 @@ class Touch(NamedTuple):
     outwards: Array | None = None
 
     def pushes(self, v: Array) -> bool:
-        """Whether its force on a tip at ``v``, shape (3,) in [m/s], is one that it can exert."""
+        """Whether the force on a tip with velocity ``v``, shape (3,) in [m/s], is possible."""
         if self.outwards is None:
             return True
         return float(self.outwards @ (self.wrench[:3] - self.damping @ v)) >= 0.0
@@ -157,7 +158,7 @@ class Joints:
     """The joints of one arm, physics step by physics step."""
 
     def __init__(self, model: Model, dt: float) -> None:
-        """Joints as ``model`` and its plant have them, in steps of ``dt`` [s]."""
+        """Make the joints of ``model`` and its plant, with steps of ``dt`` [s]."""
         self._model, self._dt, robot = model, dt, model.robot
         viscous = model.plant.each("viscous", robot.n)
         self._viscous = viscous if viscous.any() else None
@@ -170,11 +171,11 @@ class Joints:
         self.reset()
 
     def reset(self) -> None:
-        """Forget where the joints stood."""
+        """Forget the states of the joints."""
         self._stand([STICK] * len(self._lower))
 
     def _stand(self, stands: list[int]) -> None:
-        """Keep where the joints stand: which are held, and which way the others are pushed."""
+        """Store the states: which are held, and in which direction the others are pushed."""
         self._stands = stands
         self._sticking = stands.count(STICK) == len(stands)
         signs = [float(STICK - k) for k in stands]
@@ -184,23 +185,23 @@ class Joints:
         self._beside = LOW not in stands and HIGH not in stands
 
     def solve(self, q: Array, dq: Array, drive: Drive, touches: list[Touch]) -> Given:
-        """What the joints give in this step.
+        """Compute the torques and accelerations of the joints in this step.
 
         Args:
             q: Joint angles, shape (n,) in [rad].
             dq: Joint speeds, shape (n,) in [rad/s].
             drive: What the motors do.
-            touches: What acts on the tip.
+            touches: The forces on the tip.
 
         Returns:
-            What they give.
+            The torques and accelerations.
         """
         tau = drive.tau if self._viscous is None else drive.tau - self._viscous * dq
         angles = q.tolist()
         if not touches and all(map(lt, self._low, angles)) and all(map(lt, angles, self._high)):
             if drive.bound is self._nothing:
                 return Given(drive.bound, tau, None)
-            if self._sticking:  # that motors hold is common, and cheap
+            if self._sticking:  # held by their motors: common, and cheap to compute
                 a = (drive.speed - dq) / self._dt
                 y = self._model.inverse_dynamics(q, dq, a) - tau
                 if all(map(le, map(abs, y.tolist()), drive.bound.tolist())):
@@ -210,7 +211,7 @@ class Joints:
         return self._solve(q, dq, drive, touches, tau)
 
     def _slide(self, q: Array, dq: Array, drive: Drive, tau: Array) -> Given:
-        """As `solve`, far from stops: first as if all joints stood where they stood last.
+        """Solve a step far from the stops, assuming first that all joints keep their states.
 
         That is right in 24 steps of 25, and takes 15 us where `_solve` takes 35.
         """
@@ -218,7 +219,7 @@ class Joints:
         wanted = (drive.speed - dq) / dt
         free, inverse = self._model.free_motion(q, dq, tau)
         given = np.where(self._held, wanted - free, self._sign * bound)
-        rows = np.where(self._columns, inverse, self._unit).T  # as LAPACK reads: 1 us less
+        rows = np.where(self._columns, inverse, self._unit).T  # LAPACK's order: 1 us faster
         y = _dgesv()(rows, given, 1, 1)[2]
         a = free + inverse @ y
         slack = _ROUNDING / dt
@@ -236,7 +237,7 @@ class Joints:
         return Given(y, tau + y, a)
 
     def _solve(self, q: Array, dq: Array, drive: Drive, touches: list[Touch], tau: Array) -> Given:
-        """As `solve`, with stops and touches."""
+        """Solve a step with stops and touches."""
         model, h = self._model, self._model.bias(q, dq)
         if touches:
             J = model.tip_jacobian(q)
@@ -252,7 +253,7 @@ class Joints:
             a = G @ (push - h + y)
             v, push = J[:3] @ (dq + a), push - D @ a
             kept = [touch for touch in touches if touch.pushes(v)]
-            if len(kept) < len(touches):  # it has left the others
+            if len(kept) < len(touches):  # the tip has left the other things
                 return self._solve(q, dq, drive, kept, tau)
         if stands != self._stands:
             self._stand(stands)

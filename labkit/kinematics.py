@@ -2,9 +2,9 @@ r"""Kinematics: where the tip is, how it moves with the joints, and which joints
 
 .. math:: T_{wt} = f(q), \qquad V = J(q)\,\dot q
 
-Three Jacobians exist and none is "the Jacobian": each is named for the twist it returns.
-References: Murray, Li & Sastry (MLS) chapter 3; Lynch & Park chapters 4 to 6.  The computing is
-Pinocchio's.
+There are three Jacobians, each named for the twist that it returns, so none is "the Jacobian".
+References: Murray, Li & Sastry (MLS) chapter 3; Lynch & Park chapters 4 to 6.  Pinocchio does the
+computing.
 """
 
 from __future__ import annotations
@@ -32,21 +32,21 @@ _SLACK = 1e-9
 
 
 class _WorkSpace(threading.local):
-    """Where Pinocchio computes: each thread, such as that of `live`, has its own."""
+    """Pinocchio's working memory, of which each thread, such as that of `live`, has its own."""
 
     def __init__(self, model: Any) -> None:
         self.data = model.createData()
 
 
 class Kinematics:
-    """The arm as mere geometry.
+    """The geometry of an arm.
 
     Attributes:
         robot: Names and limits.
     """
 
     def __init__(self, robot: Robot, urdf: str) -> None:
-        """Read the bodies from ``urdf``; joint names and limits are those of ``robot``."""
+        """Read the bodies from ``urdf``; joint names and limits come from ``robot``."""
         self.robot = robot
         self._pin = pin.buildModelFromXML(urdf)
         self._tip = self._pin.addFrame(
@@ -60,7 +60,7 @@ class Kinematics:
         return self._work.data
 
     def pose(self, q: Any) -> Array:
-        """Pose of the gripper's tip in the world, `T_wt` (Lynch & Park, chapter 4).
+        """Pose of the tip in the world, `T_wt` (Lynch & Park, chapter 4).
 
         Args:
             q: Joint angles, shape (n,) in [rad].
@@ -95,7 +95,7 @@ class Kinematics:
             point: In the body's frame, shape (3,) in [m].
 
         Returns:
-            The place in the world, shape (3,) in [m], and the Jacobian, shape (3, n) in [m/rad].
+            The position in the world, shape (3,) in [m], and the Jacobian, shape (3, n) in [m/rad].
         """
         n = self.robot.n
         q, point = as_array(q, self._joints, "q"), as_array(point, (3,), "point")
@@ -170,7 +170,7 @@ class Kinematics:
         return float(np.prod(np.linalg.svd(self.tip_jacobian(q), compute_uv=False)))
 
     def nearness_to_singularity(self, q: Any) -> float:
-        """The smallest singular value of `tip_jacobian`: how slowly the arm can be made to move.
+        """The smallest singular value of `tip_jacobian`: least tip speed per unit of joint speed.
 
         Args:
             q: Joint angles, shape (n,) in [rad].
@@ -183,14 +183,14 @@ class Kinematics:
     # Inverse kinematics
 
     def within_limits(self, q: Any, name: str = "q") -> Array:
-        """Read joint angles that the arm can take.
+        """Read joint angles and check that they are within the joints' range.
 
         Args:
             q: Joint angles, shape (n,) in [rad].
-            name: What to call them in the sentence, if they are out of range.
+            name: What to call them in the message if they are out of range.
 
         Returns:
-            The same.
+            The same angles.
 
         Raises:
             JointLimitExceeded: A joint is outside its range.
@@ -200,22 +200,22 @@ class Kinematics:
         return angles
 
     def inverse_kinematics(self, T_wt: Any, q0: Any, *, posture: Any = None) -> Array:
-        """Joint angles that put the tip at a pose; of all those, the nearest to a posture.
+        """The joint angles nearest to a posture among those that put the tip at a pose.
 
-        Gauss-Newton on the pose error, with the freedom that a seventh joint leaves spent on coming
-        close to ``posture``, so the answer depends on the pose and the posture alone and a
-        closed path gives closed joint angles.
+        Gauss-Newton iteration on the pose error.  The freedom that a seventh joint leaves is used
+        to come close to ``posture``, so the answer depends only on the pose and the posture, and
+        closed paths give closed joint paths.
 
         Args:
-            T_wt: Pose wanted, shape (4, 4).
-            q0: Where to start the search, shape (n,) in [rad].
-            posture: What to stay close to, shape (n,) in [rad]; None takes ``q0``.
+            T_wt: Desired pose, shape (4, 4).
+            q0: Start of the search, shape (n,) in [rad].
+            posture: Joint angles to stay close to, shape (n,) in [rad]; None means ``q0``.
 
         Returns:
             Shape (n,) in [rad], within the joint limits, exact to 1e-9 m and rad.
 
         Raises:
-            Unreachable: No such angles were found; the sentence says how near it came and why.
+            Unreachable: No such angles were found; the message says how close it came and why.
         """
         if self.robot.n < 6:
             raise Unreachable(
@@ -244,7 +244,7 @@ class Kinematics:
         if e @ e < 1e-18:
             return q
         place = ", ".join(f"{x:.3f}" for x in T_wt[:3, 3])
-        raise Unreachable(f"the pose at ({place}) m {self._why(T_wt, q, e)}")
+        raise Unreachable(f"the pose at ({place}) m {self._reason(T_wt, q, e)}")
 
     def pose_error(self, T_wd: Any, q: Any) -> Array:
         """Target minus actual: how far the tip at ``q`` is from a pose.
@@ -261,21 +261,21 @@ class Kinematics:
     def joint_trajectory(self, target: Any, q0: Any, *, samples: int = 101) -> Any:
         """The joint motion that takes the tip along a workspace target.
 
-        Inverse kinematics runs once along s, each solution seeding the next and all staying close
-        to ``q0``; a quintic spline joins them, and the schedule stays the target's.
+        Inverse kinematics runs once along s.  Each solution starts the search for the next one,
+        and all stay close to ``q0``.  A quintic spline joins them on the target's own schedule.
 
         Args:
-            target: A `Trajectory` or a `Chain` of them, of poses; of points, then the tip keeps the
-                orientation that it has at ``q0``; or a `Hold`.
+            target: A `Trajectory`, a `Chain` of trajectories or a `Hold`, of poses or points; for
+                points, the tip keeps the orientation that it has at ``q0``.
             q0: Joint angles at the start, shape (n,) in [rad].
             samples: How many poses to solve along each path.
 
         Returns:
-            A target of the same make whose samples are joint angles, shape (n,) in [rad].
+            A target of the same type whose samples are joint angles, shape (n,) in [rad].
 
         Raises:
-            Unreachable: A pose along the path cannot be reached; names s, the pose and the reason.
-            TypeMismatch: It is something else, such as a target that has joint angles already.
+            Unreachable: A pose along the path cannot be reached; gives s, the pose and the reason.
+            TypeMismatch: ``target`` is something else, such as a target of joint angles.
 
         Warns:
             LabkitWarning: A joint would exceed its speed limit, or the path comes near a
@@ -325,8 +325,8 @@ class Kinematics:
         _warn_of_speed(joints, self.robot)
         return joints
 
-    def _why(self, T_wt: Array, q: Array, e: Array) -> str:
-        """Why a search ended at q with error e: too far, a joint at its limit, or just stuck."""
+    def _reason(self, T_wt: Array, q: Array, e: Array) -> str:
+        """Why a search failed at q with error e: too far away, a joint at its limit, or stuck."""
         off = f"(nearest found: {1e3 * np.linalg.norm(e[:3]):.3g} mm and " + (
             f"{np.degrees(np.linalg.norm(e[3:])):.3g} degrees off)"
         )
@@ -337,7 +337,7 @@ class Kinematics:
             places.pop()  # the last joint turns about a line through the one before
         shoulder, wrist = places[1], places[-1]
         reach = sum(float(np.linalg.norm(b - a)) for a, b in pairwise(places[1:]))
-        hand = T[:3, :3].T @ (T[:3, 3] - wrist)  # from the wrist to the tip: always the same
+        hand = T[:3, :3].T @ (T[:3, 3] - wrist)  # from the wrist to the tip, constant
         distance = np.linalg.norm(T_wt[:3, 3] - T_wt[:3, :3] @ hand - shoulder)
         if distance > reach:
             return (
@@ -355,14 +355,14 @@ class Kinematics:
 
 
 def _warn_of_speed(trajectory: Any, robot: Robot) -> None:
-    """Warn if a joint motion is quicker than the arm.
+    """Warn if a joint motion is faster than the arm.
 
     Args:
         trajectory: A target of joint angles with a duration.
-        robot: Whose limits.
+        robot: The arm with its speed limits.
 
     Warns:
-        LabkitWarning: Names the joint, the time, both speeds and the duration that would do.
+        LabkitWarning: Gives the joint, the time, both speeds and a sufficient duration.
     """
     t = np.linspace(0.0, trajectory.duration, 201)
     share = np.abs([trajectory(x).velocity for x in t]) / robot.speed
@@ -385,7 +385,7 @@ def _warn_of_singularity(s: Array, jacobians: Array) -> None:
         jacobians: The tip Jacobian at each, shape (k, 6, n).
 
     Warns:
-        LabkitWarning: Names the place and the manipulability there.
+        LabkitWarning: Gives s and the manipulability there.
     """
     sigma = np.linalg.svd(jacobians, compute_uv=False)
     k = int(sigma[:, -1].argmin())

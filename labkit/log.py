@@ -24,24 +24,24 @@ from .trajectory import AnySample, PoseSample, Sample
 
 @dataclass(frozen=True, eq=False)
 class Log:
-    """What happened, one row for each control tick, the last one at the end of the run.
+    """The record of a run, with one row for each control tick, the last one at its end.
 
     Attributes:
         t: Time since the run began, shape (N,) in [s].
-        q: Joint angles as they were, shape (N, n) in [rad].
-        dq: Joint speeds as they were, shape (N, n) in [rad/s].
-        tau: Motor torque in the last physics step before the next tick, gravity compensation
-            included, shape (N, n) in [N m]; the last row repeats the one before.
-        command: What the controller asked for, shape (N, n), in the unit of `command_type`.
+        q: True joint angles, shape (N, n) in [rad].
+        dq: True joint speeds, shape (N, n) in [rad/s].
+        tau: Motor torque in the last physics step before the next tick, including gravity
+            compensation, shape (N, n) in [N m]; the last row repeats the one before it.
+        command: The controller's command, shape (N, n), in the unit of `command_type`.
         target: A `Sample` or `PoseSample` of stacked arrays, (N, ...).
         measured: The `State` that the controller saw, stacked: t (N,), q (N, n), dq (N, n),
             tau_ext (N, n).
-        saturated: Whether a limit of speed or torque cut what the arm did until the next tick,
-            shape (N,).
+        saturated: Whether a limit of speed or torque cut the command before the next tick, shape
+            (N,).
         command_type: `JointPosition`, `JointVelocity` or `JointTorque`.
         controller: The controller's name.
         plant: The plant that was driven.
-        robot: Which arm.
+        robot: The arm.
     """
 
     t: Array
@@ -67,11 +67,11 @@ class Log:
         )
 
     def save(self, path: Any, *, single: bool = False) -> None:
-        """Write the log, its robot and its plant to a file, which `load` reads.
+        """Write the log, its robot and its plant to a file that `load` can read.
 
         Args:
-            path: Where to; a name without ".npz" at its end gets it.
-            single: Keep the numbers in single precision: half the size, good to a micrometre.
+            path: The file; ".npz" is appended to a name without it.
+            single: Store the numbers in single precision: half the size, accurate to a micrometre.
 
         Raises:
             LabkitError: The file cannot be written.
@@ -101,14 +101,14 @@ class Log:
 
     @classmethod
     def load(cls, path: Any) -> Log:
-        """The log that `save` wrote.
+        """Read a log that `save` wrote.
 
         Raises:
-            LabkitError: The file cannot be read, holds no log, or holds that of another labkit.
+            LabkitError: The file cannot be read, is not a log, or needs another labkit version.
         """
         path = Path(path)
         if not path.exists() and path.suffix != ".npz":
-            path = path.with_name(f"{path.name}.npz")  # as `save` called it
+            path = path.with_name(f"{path.name}.npz")  # the name that `save` used
         if not path.exists():
             raise LabkitError(f"there is no file {path}; log.save(...) writes one")
         try:
@@ -117,7 +117,7 @@ class Log:
             with np.load(path) as file:
                 about = json.loads(str(file["about"]))
                 columns: dict[str, Any] = {x: file[x] for x in file.files if x != "about"}
-            check_stamp(stamp() | about, str(path), "run it again")  # the first ones have no number
+            check_stamp(stamp() | about, str(path), "run it again")  # the first logs lack numbers
             return cls(**_read(about, columns))
         except _UNREADABLE as error:
             raise LabkitError(
@@ -133,7 +133,7 @@ _ROWS = ("t", "q", "dq", "tau", "command", "saturated")
 
 
 def _is_baxters(robot: Robot) -> bool:
-    """Whether it is one of Baxter's arms, with nothing replaced."""
+    """Whether ``robot`` is one of Baxter's arms, unmodified."""
     return robot.name in SIDES and robot.data() == as_robot(robot.name).data()
 
 
@@ -154,16 +154,16 @@ def _read(about: dict[str, Any], columns: dict[str, Any]) -> dict[str, Any]:
 
 
 class Recorder:
-    """A log while it is being written: each tick is kept as the bytes of its numbers.
+    """Records a log while a run goes on, each tick as the bytes of its numbers.
 
-    Joining ten short arrays takes 0.4 us, and copying them into a table of NumPy's takes 5.
+    Joining ten short arrays takes 0.4 us; copying them into a NumPy array takes 5 us.
     """
 
     kind: type = type(None)
-    """Of the run's commands."""
+    """The type of the run's commands."""
 
     def __init__(self, robot: Robot, plant: Plant, controller: str, first: AnySample) -> None:
-        """Write down what a ``controller`` has an arm do, with samples like ``first``."""
+        """Record a run of ``controller`` whose target returns samples like ``first``."""
         self._robot, self._plant, self._controller = robot, plant, controller
         self._sample = type(first)
         joints = (robot.n,)
@@ -180,21 +180,21 @@ class Recorder:
     def keep(
         self, t: float, seen: tuple[State, State, Array], command: Command, sample: AnySample
     ) -> None:
-        """Write down the tick at ``t`` [s]: truth, report, torque of the tick before; and more."""
+        """Record the tick at ``t`` [s]; ``seen`` is what the arm's `observe` returned."""
         truth, report, torque = seen
         x, dx, ddx = sample
-        given = x.tobytes(), dx.tobytes(), ddx.tobytes()  # however they lie in memory
+        given = x.tobytes(), dx.tobytes(), ddx.tobytes()  # whatever their memory layout
         row: Any = (truth.q, truth.dq, torque, command.value, *given, *report[1:])
         self._times.append(t)
         self._reported.append(report.t)
         self._rows.append(b"".join(row))  # last: an interrupted tick does not count
 
     def cut(self, saturated: bool) -> None:
-        """Write down whether a limit cut what the arm did since the latest tick."""
+        """Record whether a limit cut the command after the latest tick."""
         self._cut.append(saturated)
 
     def log(self) -> Log:
-        """What was written so far, frozen."""
+        """The log of the ticks recorded so far, read-only."""
         n = len(self)
         ends = np.cumsum([prod(shape) for shape in self._shapes])
         table = np.frombuffer(b"".join(self._rows)).reshape(n, ends[-1])

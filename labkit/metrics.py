@@ -1,4 +1,4 @@
-r"""Numbers from a log: how well the arm followed, and at what price.
+r"""Numbers from a log: how well the arm followed its target, and at what cost.
 
 An error is always target minus actual.
 """
@@ -24,7 +24,7 @@ def model_of(log: Log) -> Model:
 
 
 def joint_error(log: Log) -> Array:
-    """Target minus actual joint angles of a run after joint angles, shape (N, n) in [rad].
+    """Target minus actual joint angles, for a target of joint angles, shape (N, n) in [rad].
 
     Raises:
         TypeMismatch: The run followed something else.
@@ -47,13 +47,13 @@ def _joint_target(log: Log) -> Sample:
 
 
 def tip_poses(log: Log, model: Model | None = None) -> Array:
-    """Where the tip was, `T_wt` at each tick, shape (N, 4, 4)."""
+    """Actual pose of the tip, `T_wt`, at each tick, shape (N, 4, 4)."""
     model = model or model_of(log)
     return np.array([model.pose(q) for q in log.q])
 
 
 def target_poses(log: Log, model: Model | None = None) -> Array:
-    """Where the tip should have been, `T_wd` at each tick, shape (N, 4, 4)."""
+    """Desired pose of the tip, `T_wd`, at each tick, shape (N, 4, 4)."""
     if isinstance(log.target, PoseSample):
         return log.target.pose
     model = model or model_of(log)
@@ -61,14 +61,14 @@ def target_poses(log: Log, model: Model | None = None) -> Array:
 
 
 def tip_error(log: Log, model: Model | None = None) -> Array:
-    """Target minus actual of the tip, world axes, shape (N, 6): [m], then [rad]."""
+    """Pose error of the tip, target minus actual, world axes, shape (N, 6) in [m], then [rad]."""
     model = model or model_of(log)
     pairs = zip(target_poses(log, model), tip_poses(log, model), strict=True)
     return np.array([se3.pose_error(T_wd, T_wt) for T_wd, T_wt in pairs])
 
 
 def felt_wrench(log: Log, model: Model | None = None) -> Array:
-    """The wrench on the tip as the arm's torque sensors told it, world axes, shape (N, 6).
+    """The wrench on the tip as estimated by the torque sensors, world axes, shape (N, 6).
 
     Force [N], then moment about the tip's origin [N m]; see `Model.tip_wrench` and `State.tau_ext`.
     """
@@ -78,7 +78,7 @@ def felt_wrench(log: Log, model: Model | None = None) -> Array:
 
 
 def rms(error: Any) -> float:
-    """Root mean square of the length of a vector error, rows being instants.
+    """Root mean square of the length of a vector error, with one row for each instant.
 
     Args:
         error: Shape (N, n), or (N,).
@@ -87,7 +87,7 @@ def rms(error: Any) -> float:
         ``sqrt(mean(|e|^2))``, in the error's unit.
 
     Raises:
-        OutOfRange: There is no instant.
+        OutOfRange: The error is empty.
     """
     return float(np.sqrt(np.mean(np.sum(_rows(error) ** 2, axis=1))))
 
@@ -101,11 +101,11 @@ def settling_time(t: Any, error: Any, tolerance: float) -> float:
         tolerance: Largest length of a settled error, in the error's unit.
 
     Returns:
-        In [s] since the first row; infinite if it is still outside at the end.
+        The time since the first row, in [s]; infinite if the error is still outside at the end.
 
     Raises:
-        OutOfRange: There is no instant.
-        ShapeError: Times and errors differ in number.
+        OutOfRange: The error is empty.
+        ShapeError: The numbers of times and errors differ.
     """
     e = _rows(error)
     t = as_array(t, (len(e),), "t")
@@ -123,14 +123,14 @@ def _rows(error: Any) -> Array:
 
 
 SETTLED = 5e-3
-"""The tip has settled when it is no further than this from its target, in [m]."""
+"""The tip has settled when its distance from the target is at most this, in [m]."""
 
 
 def since(log: Log, t: float) -> Log:
-    """The rows of a run from a time ``t`` [s] on; its clock runs on.
+    """The rows of a run from time ``t`` [s] on, with their times unchanged.
 
     Raises:
-        OutOfRange: The run has ended by then.
+        OutOfRange: The run ends before ``t``.
     """
     first = int(np.searchsorted(log.t, as_number(t, "t") - 1e-9))
     if first == len(log):
@@ -146,19 +146,19 @@ def since(log: Log, t: float) -> Log:
 
 @dataclass(frozen=True)
 class Summary:
-    """A run in a few numbers.
+    """A run summarized in a few numbers.
 
     Attributes:
         rms_mm: RMS position error of the tip, in [mm].
         max_mm: Largest position error of the tip, in [mm].
         rms_deg: RMS orientation error of the tip, in [degrees].
-        max_deg: Largest orientation error, in [degrees].
+        max_deg: Largest orientation error of the tip, in [degrees].
         rms_velocity_mm_s: RMS error of the tip's velocity, in [mm/s].
         settling: The time after which the tip stays within `SETTLED` of its target, in [s];
-            infinite if it is outside at the end.
+            infinite if the tip is outside at the end.
         effort: RMS length of the motor torque, in [N m].
         saturated: Share of the ticks in which a limit cut the command.
-        duration: In [s].
+        duration: Time of the last tick, in [s].
     """
 
     rms_mm: float
@@ -203,7 +203,7 @@ def tip_velocities(log: Log, model: Model | None = None) -> Array:
 
 
 def target_velocities(log: Log, model: Model | None = None) -> Array:
-    """Velocity that the tip's origin should have had, world axes, shape (N, 3) in [m/s]."""
+    """Desired velocity of the tip's origin at each tick, world axes, shape (N, 3) in [m/s]."""
     if isinstance(log.target, PoseSample):
         return log.target.twist[:, :3]
     target = _joint_target(log)

@@ -1,9 +1,9 @@
-r"""The model: what the equations know of the arm.  It answers questions and moves nothing.
+r"""The model: an arm's equations of motion, which answer questions but move nothing.
 
 .. math:: M(q)\,\ddot q + C(q, \dot q)\,\dot q + g(q) = \tau + J^T F_{ext}
 
-References: Murray, Li & Sastry (MLS) chapter 4; Lynch & Park chapter 8.  The computing is
-Pinocchio's.
+References: Murray, Li & Sastry (MLS) chapter 4; Lynch & Park chapter 8.  Pinocchio does
+the computing.
 """
 
 from __future__ import annotations
@@ -25,11 +25,11 @@ from .shapes import Array, as_array, shown
 
 @dataclass(frozen=True, eq=False)
 class Link:
-    """One body of the arm at a moment, as the equations of motion need it.
+    """One body of the arm at given joint angles, as the equations of motion need it.
 
     Attributes:
-        mass: In [kg].
-        inertia: About the centre of mass, in the link's own axes, shape (3, 3) in [kg m^2].
+        mass: Mass, in [kg].
+        inertia: Inertia about the centre of mass, in the link's own axes, shape (3, 3) in [kg m^2].
         T_wl: Pose of the link in the world, shape (4, 4).
         com: Centre of mass in the world, shape (3,) in [m].
         com_jacobian: Velocity of the centre and angular velocity, world axes, shape (6, n).
@@ -47,20 +47,20 @@ class Model(Kinematics):
 
     Attributes:
         robot: Names and limits.
-        plant: The plant whose armature and payload it knows of.
+        plant: The plant whose armature and payload the model includes.
     """
 
     def __init__(self, robot: Robot | str = "left", plant: Plant = IDEAL) -> None:
-        """Model of an arm, as heavy as ``plant``.
+        """Make the model of an arm with the payload and the rotors of ``plant``.
 
         Args:
             robot: A `Robot`, or "left" or "right" for Baxter's.
-            plant: What it carries, and its rotors.
+            plant: Its payload and armature are included.
 
         Raises:
             UnknownName: Baxter has no such arm.
             TypeMismatch: The plant is not a `Plant`.
-            ShapeError: The plant is that of an arm with another number of joints.
+            ShapeError: The plant belongs to an arm with a different number of joints.
         """
         if not isinstance(plant, Plant):
             raise TypeMismatch(
@@ -89,7 +89,7 @@ class Model(Kinematics):
         return M
 
     def inverse_mass(self, q: Any) -> Array:
-        """The inverse of M(q), quicker than inverting it.
+        """The inverse of M(q), computed faster than by inverting it.
 
         Args:
             q: Joint angles, shape (n,) in [rad].
@@ -128,7 +128,7 @@ class Model(Kinematics):
         return made
 
     def bias(self, q: Any, dq: Any) -> Array:
-        """All that is not inertia: ``C(q, dq) @ dq + g(q)``.
+        """All torque that is not due to inertia, ``C(q, dq) @ dq + g(q)``.
 
         Args:
             q: Joint angles, shape (n,) in [rad].
@@ -142,7 +142,7 @@ class Model(Kinematics):
         return made
 
     def inverse_dynamics(self, q: Any, dq: Any, ddq: Any) -> Array:
-        """The torque that a motion takes, ``M @ ddq + C @ dq + g`` (recursive Newton-Euler).
+        """The torque that a motion requires, ``M @ ddq + C @ dq + g`` (recursive Newton-Euler).
 
         Args:
             q: Joint angles, shape (n,) in [rad].
@@ -158,7 +158,7 @@ class Model(Kinematics):
         return made
 
     def forward_dynamics(self, q: Any, dq: Any, tau: Any) -> Array:
-        """The accelerations that torques make, ``M @ ddq = tau - C @ dq - g``.
+        """The accelerations that torques cause, ``M @ ddq = tau - C @ dq - g``.
 
         Args:
             q: Joint angles, shape (n,) in [rad].
@@ -177,13 +177,13 @@ class Model(Kinematics):
         """`forward_dynamics` and `inverse_mass` in one sweep over the arm, 6 µs instead of 12.
 
         Args:
-            q: Joint angles, shape (n,) in [rad]; like the others taken as it is, unchecked.
+            q: Joint angles, shape (n,) in [rad]; no argument is checked.
             dq: Joint speeds, shape (n,) in [rad/s].
             tau: Joint torques, shape (n,) in [N m].
 
         Returns:
             The accelerations, shape (n,) in [rad/s^2], and the inverse of M, shape (n, n) in
-            [1/(kg m^2)]; use both before you ask the model again.
+            [1/(kg m^2)]; the next call to the model may overwrite both.
         """
         a: Array = pin.aba(self._pin, self._data, q, dq, tau, pin.Convention.WORLD)
         return a, pin.computeMinverse(self._pin, self._data)
@@ -191,12 +191,12 @@ class Model(Kinematics):
     def tip_wrench(self, q: Any, tau_ext: Any) -> Array:
         r"""The wrench on the arm's tip that explains external joint torques, :math:`J^{-T}\tau`.
 
-        The least squares solution of :math:`J^T F = \tau_{ext}`: n torques, six numbers.
+        The least squares solution of :math:`J^T F = \tau_{ext}`, six numbers from n torques.
         Near a singularity a small torque error becomes a large force.
 
         Args:
             q: Joint angles, shape (n,) in [rad].
-            tau_ext: External torque, as `State.tau_ext` has it, shape (n,) in [N m].
+            tau_ext: External torque, such as `State.tau_ext`, shape (n,) in [N m].
 
         Returns:
             Force [N] and moment [N m] about the tip's origin, world axes, shape (6,).
@@ -225,15 +225,15 @@ class Model(Kinematics):
         return float(pin.computeKineticEnergy(self._pin, self._data, q, dq))
 
     def potential_energy(self, q: Any) -> float:
-        """Energy in the field of gravity, zero at the height of the world's origin, in [J]."""
+        """Gravitational energy, zero at the height of the world's origin, in [J]."""
         return float(
             pin.computePotentialEnergy(self._pin, self._data, as_array(q, self._joints, "q"))
         )
 
     def links(self, q: Any) -> tuple[Link, ...]:
-        """The n bodies at ``q``, shape (n,) in [rad]: what M and g are summed from.
+        """The n bodies at ``q``, shape (n,) in [rad], from which M and g are summed.
 
-        The rotors, diag(A) of M, are not among them.
+        The rotors, which add a diagonal matrix to M, are not included.
         """
         m, d = self._pin, self._data
         pin.computeJointJacobians(m, d, as_array(q, self._joints, "q"))

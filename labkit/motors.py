@@ -1,4 +1,4 @@
-"""The motors: what each kind of command makes them do, physics step by physics step."""
+"""The motors: what they do for each type of command, in each physics step."""
 
 from __future__ import annotations
 
@@ -13,27 +13,27 @@ from .plant import Plant
 from .shapes import Array
 
 BRAKING = 0.5
-"""Share of the torque left by gravity that the position mode plans to brake with."""
+"""Share of the torque left after gravity with which the position mode plans to brake."""
 
 
 class Motors:
     """The motors of one arm, with limits of speed and torque.
 
     Attributes:
-        kind: Type of the command that they follow: their mode.
-        saturated: Whether a limit cut the command, at any time since it came.
+        kind: Type of the current command, which is the mode of the motors.
+        saturated: Whether a limit has cut the current command at any time.
     """
 
     kind: type = type(None)
     saturated = False
 
     def __init__(self, dt: float, plant: Plant, own: Model) -> None:
-        """Motors of an arm.
+        """Make the motors of an arm.
 
         Args:
             dt: The physics step, in [s].
             plant: Lag, dry friction and gravity compensation.
-            own: What the arm knows of itself: its own weight, not what it carries.
+            own: The arm's model of itself, which includes its own weight but not its payload.
         """
         self._dt, self._plant, self._own = dt, plant, own
         self._effort, self._speed = own.robot.effort.tolist(), own.robot.speed.tolist()
@@ -42,7 +42,7 @@ class Motors:
         self._stiction = stiction if stiction.any() else self._nothing
 
     def follow(self, command: Command) -> None:
-        """Follow a command from the next physics step on, cut to the limits."""
+        """Follow a command, clipped to the limits, from the next physics step on."""
         self._wanted, self.saturated = command.value, False
         if type(command) is JointTorque:
             self._wanted, self.saturated = _cut(command.value, self._effort)
@@ -54,7 +54,7 @@ class Motors:
         self._fresh = True
 
     def drive(self, q: Array, dq: Array) -> Drive:
-        """What they do in the next physics step.
+        """What the motors do in the next physics step.
 
         Args:
             q: Joint angles, shape (n,) in [rad].
@@ -62,7 +62,7 @@ class Motors:
         """
         if self.kind is JointTorque:
             total = self._wanted
-            if self._plant.gravity_compensation:  # it carries its own weight
+            if self._plant.gravity_compensation:  # the arm carries its own weight
                 total, cut = _cut(total + self._own.gravity(q), self._effort)
                 self.saturated |= cut
             return Drive(total, self._nothing, self._stiction)
@@ -78,13 +78,13 @@ class Motors:
         return Drive(self._nothing, speed, self._own.robot.effort)
 
     def _approach(self, q: Array) -> Array:
-        """Speeds towards the wanted angles, from which the motors can still brake before them.
+        """Speeds towards the commanded angles from which the motors can still brake in time.
 
         Braking evenly from v takes v^2 / 2a (Lynch & Park, section 9.2.2).
         """
         if self._fresh:
             M, g = self._own.mass_matrix(q), self._own.gravity(q)
-            spare = np.maximum(self._own.robot.effort - np.abs(g), 0.0)  # too weak: none
+            spare = np.maximum(self._own.robot.effort - np.abs(g), 0.0)  # too weak: zero
             self._braking = BRAKING * spare / M.diagonal()
         gain = min(self._plant.position_gain or np.inf, 1.0 / self._dt)
         gap = self._wanted - q
@@ -96,6 +96,6 @@ class Motors:
 
 def _cut(x: Array, limit: list[float]) -> tuple[Array, bool]:
     """``x`` within ±limit, and whether that changed it."""
-    if all(map(le, map(abs, x.tolist()), limit)):  # a fifth of the time that NumPy takes for seven
+    if all(map(le, map(abs, x.tolist()), limit)):  # five times as fast as NumPy for 7 joints
         return x, False
     return np.clip(x, np.negative(limit), limit), True

@@ -1,9 +1,9 @@
 r"""Paths and time scalings: where to go, and when.
 
-A path is geometry alone, a curve in s from 0 to 1 with its exact derivatives.  A time scaling s(t)
-says how fast to go along it (Lynch & Park, section 9.2): it rises from 0 at t = 0 to 1 at
-t = duration.  Before the start its answer is the start at rest, from the end on the end at rest.  A
-duration of zero is allowed: already there.
+A path is pure geometry, a curve in s from 0 to 1 with its exact derivatives.  A time scaling s(t)
+says how fast to follow it (Lynch & Park, section 9.2): it rises from 0 at t = 0 to 1 at
+t = duration.  It returns the start at rest before the start, and the end at rest from the end on.
+A duration of zero is allowed and means that the end has been reached already.
 """
 
 from __future__ import annotations
@@ -27,7 +27,7 @@ class Line:
 
     Attributes:
         start: Point or joint angles, shape (n,) in [m] or [rad].
-        goal: The same at the other end.
+        goal: The same for the end.
     """
 
     start: Array
@@ -58,12 +58,12 @@ class Line:
 class Circle:
     """The level circle through ``start`` about the vertical axis through ``centre``.
 
-    It keeps the start's height, so its radius is the distance in the plane, and it returns exactly.
+    It keeps the start's height, so its radius is the horizontal distance, and it closes exactly.
 
     Attributes:
         start: Where it begins and ends, shape (3,) in [m].
         centre: A point on its axis, shape (3,) in [m]; its height does not matter.
-        turns: How many times round, counter-clockwise seen from above; negative is clockwise.
+        turns: Number of turns, counter-clockwise seen from above; negative is clockwise.
     """
 
     start: Array
@@ -110,10 +110,10 @@ class Circle:
 
 @dataclass(frozen=True, eq=False)
 class Polyline:
-    """Straight segments from point to point, s proportional to the distance covered.
+    """Straight segments from point to point, with s proportional to the distance covered.
 
-    The corners are sharp: followed on one time scaling, the velocity jumps there.  To stop at each
-    corner, give every one of `lines` a schedule of its own and join them with a `Chain`.
+    The corners are sharp, so the velocity jumps there under a single time scaling.  To stop at
+    each corner, give each of `lines` its own time scaling and join the trajectories in a `Chain`.
 
     Attributes:
         points: The corners, shape (k, n), at least two.
@@ -136,7 +136,7 @@ class Polyline:
 
     @cached_property
     def _pieces(self) -> tuple[list[Line], Array]:
-        """The segments that have a length, and where they end, as shares of the whole length."""
+        """The segments with a length, and their ends as shares of the whole length."""
         distance = np.cumsum([0.0, *(line.length for line in self.lines)])
         ends = distance / distance[-1]
         lines = [line for line, share in zip(self.lines, np.diff(ends), strict=True) if share > 0.0]
@@ -157,21 +157,21 @@ class Polyline:
 
 
 class Spline:
-    """The smooth curve through given values: a quintic spline, four times differentiable.
+    """The smooth curve through given values, a quintic spline with four continuous derivatives.
 
     Attributes:
-        s: Where the values stand, rising from 0 to 1, shape (k,).
-        values: The values there, shape (k, n).
+        s: Rising from 0 to 1, shape (k,).
+        values: The values at each s, shape (k, n).
     """
 
     def __init__(self, s: Any, values: Any) -> None:
-        """Interpolate ``values`` at ``s``; needs at least six of them.
+        """Interpolate at least six ``values`` at ``s``.
 
         Raises:
-            OutOfRange: There are fewer, or ``s`` does not rise.
-            ShapeError: Values and places differ in number.
+            OutOfRange: There are fewer than six, or ``s`` does not rise.
+            ShapeError: The numbers of ``s`` and ``values`` differ.
         """
-        from scipy.interpolate import make_interp_spline  # a slow import, seldom needed
+        from scipy.interpolate import make_interp_spline  # slow to import and seldom needed
 
         self.s = locked(as_numbers(s, "s"))
         self.values = locked(as_numbers(values, "values"))
@@ -182,8 +182,8 @@ class Spline:
             raise ShapeError("values", (self.s.size, n), self.values.shape)
         spline = make_interp_spline(self.s, self.values, k=5)
         self._knots = np.unique(spline.t)[:-1]
-        # Each piece as a polynomial, highest power first: SciPy's own evaluation takes twice as
-        # long, and a closed loop asks at each tick
+        # Each piece is a polynomial, highest power first: SciPy's own evaluation takes twice as
+        # long, and a closed loop evaluates the spline at each tick.
         taylor = [spline(self._knots, nu=k) / factorial(k) for k in range(5, -1, -1)]
         self._pieces = np.ascontiguousarray(np.stack(taylor, axis=1))  # (pieces, 6, n)
 
@@ -210,7 +210,7 @@ START, END = (0.0, 0.0, 0.0), (1.0, 0.0, 0.0)
 
 @dataclass(frozen=True)
 class _Profile(ABC):
-    """A fixed shape, stretched over a duration.
+    """A time scaling of fixed shape, stretched over a duration.
 
     Attributes:
         duration: How long it lasts, in [s], at least 0.
@@ -219,16 +219,16 @@ class _Profile(ABC):
     duration: float
 
     PEAK_SPEED: ClassVar[float]
-    """max ds/dt times the duration."""
+    """Largest ds/dt times the duration."""
     PEAK_ACCELERATION: ClassVar[float]
-    """max d2s/dt2 times the duration squared."""
+    """Largest d2s/dt2 times the duration squared."""
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "duration", as_number(self.duration, "duration", least=0.0))
 
     @classmethod
     def within(cls, distance: float, v_max: float, a_max: float) -> Self:
-        """The quickest one for which a path of this length keeps both limits.
+        """The fastest one that keeps both limits on a path of this length.
 
         Args:
             distance: Length of the path, in [m] or [rad].
@@ -236,7 +236,7 @@ class _Profile(ABC):
             a_max: Largest acceleration, in [m/s^2] or [rad/s^2].
 
         Returns:
-            A time scaling; of zero duration where the distance is zero.
+            A time scaling, with zero duration if the distance is zero.
         """
         d = as_number(distance, "distance", least=0.0)
         v = as_number(v_max, "v_max", above=0.0)
@@ -260,7 +260,7 @@ class _Profile(ABC):
 
 @dataclass(frozen=True)
 class BangBang(_Profile):
-    """Constant acceleration, then as much deceleration: the report's equations, corrected.
+    """Constant acceleration, then equal deceleration, by the report's equations, corrected.
 
     Attributes:
         duration: How long it lasts, in [s], at least 0.
@@ -294,7 +294,7 @@ class Cubic(_Profile):
 
 @dataclass(frozen=True)
 class Quintic(_Profile):
-    """The fifth-order polynomial whose acceleration is zero at both ends too.
+    """The fifth-order polynomial that also has zero acceleration at both ends.
 
     Attributes:
         duration: How long it lasts, in [s], at least 0.
@@ -312,7 +312,7 @@ class Quintic(_Profile):
 
 @dataclass(frozen=True)
 class Trapezoid:
-    """Accelerate, cruise, brake; a triangle where the path is too short to reach v_max.
+    """Accelerate, cruise and brake, without cruising if the path is too short to reach v_max.
 
     Lynch & Park, section 9.2.2.  The limits hold along the path, in metres, not in s.
 
@@ -333,7 +333,7 @@ class Trapezoid:
 
     @property
     def peak_speed(self) -> float:
-        """The speed it reaches, in [m/s]: v_max, or the tip of the triangle."""
+        """The highest speed reached, in [m/s] or [rad/s], v_max or less."""
         return min(self.v_max, sqrt(self.distance * self.a_max))
 
     @property

@@ -1,9 +1,9 @@
 """The plant: how the simulated arm differs from the textbook's, as one frozen value.
 
-`IDEAL` is the textbook: exact state, no friction, commands obeyed at once, and gravity left to the
-controller.  `BAXTER` has the effects of the real arm, in sizes of which some are published and the
-others assumed: nobody identified them on a machine.  `EVIDENCE` says which is which, and how far
-each may be off.
+`IDEAL` is the textbook arm: exact state, no friction, commands obeyed at once, and gravity left to
+the controller.  `BAXTER` has the effects of the real arm.  Some of its numbers are published; the
+others are assumed, because nobody has identified them on a machine.  `EVIDENCE` says which is
+which, and how far off each may be.
 """
 
 from __future__ import annotations
@@ -19,37 +19,37 @@ from .shapes import Array, as_each, as_number
 
 @dataclass(frozen=True)
 class Plant:
-    """What the arm is like; every effect is off by default.
+    """The properties of an arm; every effect is off by default.
 
-    What belongs to each joint is one number, or as many as the arm has joints: shape (n,).  Here it
-    is kept as a tuple, of one number where all are equal; `each` gives all n.
+    A property of shape (n,) takes one number for all joints, or one for each joint.  It is stored
+    as a tuple, which has a single number if all are equal; `each` returns all n numbers.
 
     Attributes:
-        name: What figures and tables call it.
-        gravity_compensation: The arm itself adds the torque that holds it against gravity, in every
-            mode, as Baxter does; a torque controller then adds none.
-        armature: Inertia of each motor's rotor as its joint feels it, which is that of the rotor
+        name: Its name in figures and tables.
+        gravity_compensation: Whether the arm itself adds the torque that holds it against gravity,
+            in every mode, as Baxter does; a torque controller then adds none.
+        armature: Inertia of each motor's rotor as felt at its joint, which is the rotor's inertia
             times the gear ratio squared, shape (n,) in [kg m^2]; it adds to the diagonal of M.
         viscous: Viscous friction, shape (n,) in [N m s/rad].
         stiction: Dry friction that a joint must overcome, shape (n,) in [N m].
         payload: A point mass held at the tip, unknown to the arm's gravity compensation, in [kg].
-        joint_stiffness: Of the spring between each motor and its joint, shape (n,) in [N m/rad];
-            0 is a stiff shaft.  Motor friction and rotor are then before the spring.
-        joint_damping: Of the same spring, shape (n,) in [N m s/rad].
+        joint_stiffness: Stiffness of the spring between each motor and its joint, shape (n,) in
+            [N m/rad]; 0 is a rigid shaft.  Friction and rotor are on the motor side of a spring.
+        joint_damping: Damping of the same spring, shape (n,) in [N m s/rad].
         velocity_lag: Time constant with which the velocity mode follows its command, in [s].
         position_gain: How fast the position mode closes a gap, in [1/s]; 0 closes it as fast as
-            speed and torque allow, the torque to brake before it included.
+            the limits of speed and torque, braking included, allow.
         state_rate: How often the arm publishes its state, in [Hz]; 0 is every physics step.
         state_delay: Age of a state when it arrives, in [s].
-        encoder_offset: What each joint's encoder reads too much, shape (n,) in [rad]: the error of
-            calibration that no controller sees.
+        encoder_offset: Amount by which each joint's encoder reads too high, shape (n,) in [rad], a
+            calibration error that no controller can see.
         encoder_step: Resolution of the encoders, shape (n,) in [rad]; 0 is exact.
         velocity_noise: Standard deviation of the measured joint speeds, shape (n,) in [rad/s].
         torque_noise: Standard deviation of the external torque that the arm estimates, shape (n,)
             in [N m].
-        torque_lag: Time constant of that estimate, in [s]; 0 is that of the last physics step.
+        torque_lag: Time constant of that estimate, in [s]; with 0 it follows every physics step.
         lost_ticks: Share of the control ticks whose command comes too late to be used.
-        command_timeout: After this long without a command the arm holds its place, in [s].
+        command_timeout: Time without a command after which the arm holds its position, in [s].
     """
 
     name: str = "custom"
@@ -91,10 +91,10 @@ class Plant:
             )
 
     def each(self, name: str, n: int) -> Array:
-        """What belongs to each of ``n`` joints, such as "stiction", shape (n,).
+        """A property of each of ``n`` joints, such as "stiction", shape (n,).
 
         Raises:
-            ShapeError: This plant has another number of joints.
+            ShapeError: This plant has a different number of joints.
         """
         numbers = getattr(self, name)
         return as_each(numbers if len(numbers) > 1 else numbers[0], n, f"the plant's {name}")
@@ -131,18 +131,18 @@ BAXTER = Plant(
     torque_lag=0.01,
     lost_ticks=0.02,
 )
-"""Baxter's arm as far as it is known; see `EVIDENCE`."""
+"""Baxter's arm as far as its properties are known; see `EVIDENCE`."""
 
 
 class Evidence(NamedTuple):
-    """What one number of `BAXTER` rests on.
+    """The evidence for one number of `BAXTER`.
 
     Attributes:
-        unit: Of the number.
-        source: Where it comes from; of a number that nobody measured, why it was assumed.
-        assumed: Whether nobody measured it, here or in print.
-        least: The least that is plausible, for each joint or one number for all.
-        most: The most.
+        unit: Unit of the number.
+        source: Where the number comes from or, if nobody measured it, why it was assumed.
+        assumed: Whether the number is assumed, because no measurement of it is published.
+        least: Smallest plausible value, for each joint or one for all.
+        most: Largest plausible value.
     """
 
     unit: str
@@ -231,8 +231,8 @@ EVIDENCE = {
         "s", "Rethink's joint command timeout, 0.2 s by default", False, 0.2, 0.2
     ),
 }
-"""What each number of `BAXTER` rests on, by the name of the field.
+"""The evidence for each number of `BAXTER`, by the name of its field.
 
-Left out of the plant altogether: the counter-springs at s1 and their hysteresis, the bandwidth of
-the motors' own torque loops, backlash, and gravity compensation that is wrong about the arm itself.
+The plant does not model the counter-springs at s1 and their hysteresis, the bandwidth of the
+motors' own torque loops, backlash, or errors in the gravity compensation of the arm itself.
 """

@@ -1,8 +1,8 @@
-"""Figures from a log: each takes it, and axes to draw on or None, and returns what it drew on.
+"""Figures from a log; most functions take axes to draw on, or None, and return the axes.
 
-`show`, `dials` and `progress` are for notebooks: what they are given appears below the cell.
+`show`, `dials` and `progress` are for notebooks: their output appears below the cell.
 
-Curves differ by line style as well as by colour, and `describe` gives each figure words.
+Curves differ by line style as well as by colour, and `describe` puts a run into words.
 """
 
 from __future__ import annotations
@@ -26,21 +26,21 @@ STYLES = ("-", "--", "-.", ":")
 AXES = ("x", "y", "z")
 
 drawn_by: Callable[[], Iterable[str]] = tuple
-"""What captions are to name, such as "a stand-in for circle"; a course may set another."""
+"""Returns what captions must name, such as "a stand-in for circle"; a course may replace it."""
 
 
 def as_drawn(caption: str) -> str:
-    """A caption that says, where it is so, that a stand-in or a wrong answer drew the figure."""
+    """A caption that says so if a stand-in or a wrong answer drew the figure."""
     names = " and ".join(drawn_by())
     return f"With {names}: {caption}" if names else caption
 
 
 def tracking(log: Log, model: Model | None = None, *, axes: Any = None) -> Any:
-    """The tip against its target above, the length of its position error below.
+    """Plot the tip and its target above, and the length of the position error below.
 
     Args:
         log: The run.
-        model: The arm's model; None makes the log's own.
+        model: The arm's model; None makes one from the log.
         axes: Two axes to draw on; None makes a figure.
 
     Returns:
@@ -61,7 +61,7 @@ def tracking(log: Log, model: Model | None = None, *, axes: Any = None) -> Any:
 
 
 def scaling(*scalings: Any, axes: Any = None) -> Any:
-    """s, its speed and its acceleration over time, one line style for each time scaling.
+    """Plot s, ds/dt and d2s/dt2 over time, with one line style for each time scaling.
 
     Args:
         scalings: Time scalings, or pairs (name, scaling).
@@ -86,7 +86,7 @@ def scaling(*scalings: Any, axes: Any = None) -> Any:
 
 
 def curves(ax: Any, log: Log, actual: Any, target: Any, label: str) -> None:
-    """Three coordinates over time, each over its target, which is a broad grey line."""
+    """Plot three coordinates over time, each on top of its target, a broad grey line."""
     for k, name in enumerate(AXES):
         ax.plot(log.t, target[:, k], "0.6", linewidth=4, label="target" if k == 0 else None)
         ax.plot(log.t, actual[:, k], f"C{k}{STYLES[k]}", label=name)
@@ -94,15 +94,15 @@ def curves(ax: Any, log: Log, actual: Any, target: Any, label: str) -> None:
 
 
 def _legend_beside(ax: Any) -> None:
-    """Outside, where no curve can run through it."""
+    """Put the legend beside the axes, where no curve can cross it."""
     ax.legend(loc="center left", bbox_to_anchor=(1.0, 0.5), frameon=False)
 
 
 def show(caption: str) -> None:
-    """Show the current figure with a caption, which is its alternative text too.
+    """Show the current figure with a caption, which is also its alternative text.
 
     Args:
-        caption: What is to be seen, with its numbers; a line under the figure.
+        caption: What the figure shows, with its numbers; printed under the figure.
     """
     figure, caption = plt.gcf(), as_drawn(caption)
     if get_ipython() is not None:
@@ -112,20 +112,20 @@ def show(caption: str) -> None:
 
 
 def _folded(caption: str) -> str:
-    """A caption in lines, where a browser would break it within words."""
+    """A caption broken into lines between words; a browser would break it within them."""
     return fill(caption.replace(" %", "\N{NO-BREAK SPACE}%"), 79)
 
 
 def answers(call: str, expected: Any, given: Any) -> Any:
-    """The numbers of an answer beside those expected.
+    """Plot the numbers of an answer beside the expected ones.
 
     Args:
-        call: What was asked, as a title.
-        expected: Shape (n,).
-        given: Shape (n,).
+        call: The call that was made, used as the title.
+        expected: Expected numbers, shape (n,).
+        given: Numbers of the answer, shape (n,).
 
     Returns:
-        A figure of its own, not shown.
+        A new figure, which is not shown.
     """
     figure = Figure(figsize=(6.4, 2.2), layout="constrained")
     ax = figure.add_subplot()
@@ -142,7 +142,7 @@ def answers(call: str, expected: Any, given: Any) -> Any:
 
 
 def describe(log: Log, model: Model | None = None) -> str:
-    """A figure of this run in words, for readers who do not see it."""
+    """Describe a figure of this run in words, for readers who cannot see it."""
     numbers = metrics.summary(log, model)
     return (
         f"Tracking by {log.controller} on the {log.plant.name} {log.robot.name} arm over "
@@ -156,12 +156,12 @@ def dials(
 ) -> dict[str, Any]:
     """Show a figure under sliders that change it.
 
-    Without a page to move them in, the figure of the starting values is all there is, so a notebook
-    runs the same with nobody looking.
+    Where nobody can move the sliders, only the figure of their starting values appears, so a
+    notebook runs the same without a browser.
 
     Args:
-        draw: A function of a number for each slider, by name; returns a figure and its caption.
-        ranges: For each slider its least value, its largest one, where it starts, and its unit.
+        draw: A function of the sliders' values, by name, that returns a figure and its caption.
+        ranges: For each slider its least, largest and starting values, and perhaps a unit.
 
     Returns:
         The sliders by name; setting a slider's `value` redraws.
@@ -202,14 +202,14 @@ def dials(
 
 
 def progress(doing: str, total: float) -> Callable[[float], None]:
-    """A bar for what takes more than a moment.
+    """Show a progress bar for a task that takes more than a moment.
 
     Args:
         doing: What is being done, such as "following the tag".
-        total: How much there is to do: runs, seconds, anything.
+        total: The amount of work, such as a number of runs or of seconds.
 
     Returns:
-        A function to call with how much is done; cheap enough for every tick of a control loop.
+        A function to call with the amount done; cheap enough for every tick of a control loop.
     """
     import ipywidgets
 
@@ -225,12 +225,12 @@ def progress(doing: str, total: float) -> Callable[[float], None]:
         latest, bar.value = now, done
         left = (now - began) * (total - done) / done if done else 0.0
         words.value = f"{doing}: about {left:.0f} s left"
-        if done >= total and place is not None:  # a saved notebook keeps words, but no bar
+        if done >= total and place is not None:  # a saved notebook keeps the text, but not the bar
             place.update({"text/plain": f"{doing}: done"}, raw=True)
 
     return tell
 
 
 def _display(box: Any, words: str, **options: Any) -> Any:
-    """Show a widget, and words where no widget can be shown."""
+    """Show a widget, or words where widgets cannot be shown."""
     return display(box._repr_mimebundle_() | {"text/plain": words}, raw=True, **options)

@@ -1,4 +1,4 @@
-"""Keep C libraries from talking: PyBullet writes to the process's streams, past Python's own."""
+"""Silence C libraries such as PyBullet, which write past Python's own output streams."""
 
 from __future__ import annotations
 
@@ -10,16 +10,16 @@ from contextlib import contextmanager, suppress
 
 @contextmanager
 def quiet() -> Iterator[None]:
-    """Send file descriptors 1 and 2 to nowhere while the block runs."""
+    """Discard what is written to file descriptors 1 and 2 while the block runs."""
     with open(os.devnull, "wb") as nowhere, diverted(nowhere.fileno()):
         yield
 
 
 @contextmanager
 def diverted(file: int) -> Iterator[None]:
-    """Send file descriptors 1 and 2 to an open file, by its own, while the block runs."""
+    """Redirect file descriptors 1 and 2 to the file descriptor ``file`` while the block runs."""
     for stream in (sys.stdout, sys.stderr):
-        with suppress(Exception):  # whatever somebody put in their place
+        with suppress(Exception):  # a user may have replaced the stream by anything
             stream.flush()
     saved = os.dup(1), os.dup(2)
     try:

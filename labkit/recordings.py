@@ -1,6 +1,6 @@
-"""Runs and trials that come with labkit, recorded for those without the planner or the time.
+"""Runs and trials that come with labkit, for those who lack the planner or the time to run them.
 
-They are made by ``solutions/study``: `baseline`, `campaign`, `maps` and `trials`.
+They were recorded by ``solutions/study``: `baseline`, `campaign`, `maps` and `trials`.
 """
 
 from __future__ import annotations
@@ -19,16 +19,16 @@ from .shapes import Array, as_number
 
 DATA = Path(__file__).parent / "data"
 LINE = DATA / "trials_line.json"
-"""Trials of the joint velocity PD along the line on Baxter's plant, five seeds."""
+"""Trials of the joint velocity PD along the line on Baxter's plant with five seeds."""
 
 
 def names(folder: str = "recorded") -> tuple[str, ...]:
-    """The recorded runs; of the folder "maps", the error maps."""
+    """The names of the recorded runs or, with the folder "maps", of the error maps."""
     return tuple(sorted(path.stem for path in (DATA / folder).iterdir()))
 
 
 def load(name: str) -> Log:
-    """A recorded run, one of `names`; its numbers are good to a micrometre.
+    """Load a recorded run, one of `names`, whose numbers are accurate to a micrometre.
 
     Raises:
         UnknownName: There is no such recording.
@@ -39,7 +39,7 @@ def load(name: str) -> Log:
 
 
 def campaign() -> Any:
-    """Every controller on every task over five seeds, one row for each run.
+    """Results of every controller on every task with five seeds, one row for each run.
 
     Returns:
         Dicts with the run's "controller", "task", "plant" and "seed", and its errors.
@@ -59,7 +59,7 @@ def error_map(name: str) -> Trials:
 
 
 def read_trials(path: Path) -> Trials:
-    """The trials of a file that `solutions.study.trials` or `solutions.study.maps` wrote."""
+    """Read the trials in a file that `solutions.study.trials` or `solutions.study.maps` wrote."""
     return Trials(**{key: tuple(value) for key, value in json.loads(path.read_text()).items()})
 
 
@@ -71,7 +71,7 @@ class Trials:
         cases: Names of the cases, such as "line, seed 0".
         Kp: Proportional gains, ascending, m of them.
         Kd: Derivative gains, ascending, n of them.
-        rms_mm: For each case m rows of n RMS errors in [mm]; None where the arm was lost.
+        rms_mm: For each case, m rows of n RMS errors in [mm], with None where the arm was lost.
     """
 
     cases: tuple[str, ...]
@@ -80,7 +80,7 @@ class Trials:
     rms_mm: tuple[Any, ...]
 
     def __post_init__(self) -> None:
-        """Make rows that nobody can write to, for a student is given them."""
+        """Make the rows immutable, because students receive them."""
         rows = tuple(tuple(map(tuple, table)) for table in self.rms_mm)
         object.__setattr__(self, "rms_mm", rows)
 
@@ -91,15 +91,15 @@ class Trials:
     def error(self, case: int, Kp: float, Kd: float) -> float:
         """The error of one case, in [mm], infinite where the arm is lost.
 
-        Between the recorded gains it is interpolated, evenly in Kd and in the logarithm of Kp.
+        Between the recorded gains, it is interpolated linearly in Kd and in the logarithm of Kp.
 
         Args:
-            case: Which.
-            Kp: Within the recorded range.
-            Kd: Within the recorded range.
+            case: Index of the case.
+            Kp: Proportional gain, within the recorded range.
+            Kd: Derivative gain, within the recorded range.
 
         Raises:
-            OutOfRange: There is no such case, or the gains lie outside what was recorded.
+            OutOfRange: There is no such case, or the gains are outside the recorded range.
         """
         if not isinstance(case, int | np.integer) or not 0 <= case < len(self.cases):
             raise OutOfRange(f"there are cases 0 to {len(self.cases) - 1}, not {case!r}")
@@ -115,7 +115,7 @@ class Trials:
         return max(self.error(case, Kp, Kd) for case in range(len(self.cases)))
 
     def describe(self) -> str:
-        """The first case in words, for readers who do not see its figure."""
+        """Describe the first case in words, for readers who cannot see its figure."""
         e, Kp, Kd = self.array(), self.Kp, self.Kd
         i, j = np.unravel_index(int(np.nanargmin(e)), e.shape)
         return (
@@ -128,11 +128,11 @@ class Trials:
 
 @dataclass(frozen=True)
 class Runner:
-    """Tries gains, a limited number of times.
+    """Tries gains a limited number of times.
 
     Attributes:
-        trials: What was recorded.
-        budget: How many tries there are.
+        trials: The recorded trials.
+        budget: How many tries are allowed.
     """
 
     trials: Trials
@@ -144,11 +144,11 @@ class Runner:
 
         Args:
             Kp: Proportional gain, in [1/s].
-            Kd: Derivative gain.
-            seed: Which noise and which start; 0 to 4.
+            Kd: Derivative gain, without unit.
+            seed: Seed of the noise and the start, from 0 to 4.
 
         Raises:
-            OutOfRange: The tries are used up, or the gains lie outside what was recorded.
+            OutOfRange: The tries are used up, or the gains are outside the recorded range.
         """
         if len(self._tried) >= self.budget:
             raise OutOfRange(f"all {self.budget} tries are used up; choose with what you have seen")
@@ -162,7 +162,7 @@ class Runner:
 
 
 def _place(value: float, grid: tuple[float, ...], name: str, scale: Any) -> tuple[int, float]:
-    """The cell of a grid that a value falls in, and where in it, from 0 to 1."""
+    """The cell of a grid that contains a value, and the position in that cell, from 0 to 1."""
     if not grid[0] <= value <= grid[-1]:
         raise OutOfRange(f"{name} = {value:g} was not recorded; take {grid[0]:g} to {grid[-1]:g}")
     i = min(int(np.searchsorted(grid, value, side="right")) - 1, len(grid) - 2)

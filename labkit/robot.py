@@ -1,6 +1,6 @@
-"""A robot arm as a value: names, limits, bodies, and the URDF text made from them.
+"""A robot arm as a value, with its names, limits, bodies, and the URDF text made from them.
 
-Plant and model are both built from the text that `Robot.urdf` writes, so they agree.
+The physics engine and the model both read the text that `Robot.urdf` returns, so they agree.
 """
 
 from __future__ import annotations
@@ -18,25 +18,25 @@ from .plant import IDEAL, Plant
 from .shapes import Array, locked
 
 SIDES = ("left", "right")
-"""Names of Baxter's arms, which no other robot may have."""
+"""Names of Baxter's arms, reserved for them."""
 
 
 @dataclass(frozen=True, eq=False, repr=False)
 class Robot:
-    """An arm of n joints that turn, one after another, on a base that stands still.
+    """A serial arm of n revolute joints on a fixed base.
 
     `lk.robot("left")` and `lk.robot("right")` are Baxter's arms; `from_urdf` reads any other.
 
     Attributes:
-        name: What a log and a world of several arms call it.
+        name: The name of the arm in logs and in worlds with several arms.
         bodies: The n bodies from the base to the tip, each with its "joint", its pose in the body
             before it at angle zero ("T_parent", the joint turns about its z axis), "mass", "com",
             "inertia" about the centre of mass, and the joint's limits.
-        T_hand_tip: The tip in the last body, shape (4, 4).
-        ready: Where exercises start, with room all around, shape (n,) in [rad].
-        neutral: Where an arm is put if nothing else is said, shape (n,) in [rad].
-        T_hand_camera: The hand camera (z forward, x right of the image) in the last body, shape
-            (4, 4); None for a hand without one.
+        T_hand_tip: Pose of the tip in the last body, shape (4, 4).
+        ready: Joint angles at which exercises start, with free space around, shape (n,) in [rad].
+        neutral: Default initial joint angles, shape (n,) in [rad].
+        T_hand_camera: Pose of the hand camera (z forward, x right in the image) in the last body,
+            shape (4, 4); None for a hand without a camera.
     """
 
     name: str
@@ -57,11 +57,11 @@ class Robot:
 
     @classmethod
     def from_urdf(cls, file: Any, *, tip: str, ready: Any, name: str | None = None) -> Robot:
-        """Read an arm from a URDF file, by Pinocchio.
+        """Read an arm from a URDF file with Pinocchio.
 
-        The joints between the root of the file and the tip are the arm's.  All other joints, such
-        as those of a gripper, stand still at zero, and each link is lumped with what it carries.
-        A continuous joint gets a range of one turn either way.
+        The arm consists of the joints between the root of the file and the tip.  All other joints,
+        such as those of a gripper, are fixed at zero, and each link is lumped with the links fixed
+        to it.  A continuous joint is limited to one turn in each direction.
 
         Args:
             file: The URDF file; its meshes are not needed.
@@ -75,9 +75,9 @@ class Robot:
 
         Raises:
             UnknownName: The file has no link ``tip``.
-            LabkitError: There is no such file, it is not a URDF, or it has what an arm here cannot
-                have, such as a joint that slides; says what to do.
-            ShapeError: ``ready`` has another number of joints.
+            LabkitError: There is no such file, it is not a URDF, or the arm has a feature that is
+                not supported, such as a prismatic joint; the message says what to do.
+            ShapeError: ``ready`` has a different number of joints.
             JointLimitExceeded: ``ready`` is outside the joints' range.
         """
         from .urdf import read_urdf
@@ -90,18 +90,18 @@ class Robot:
         return robot
 
     def data(self) -> dict[str, Any]:
-        """What it is made of, as plain data: ``Robot(**robot.data())`` is the same robot."""
+        """The robot as plain data, such that ``Robot(**robot.data())`` is the same robot."""
         made = {field.name: getattr(self, field.name) for field in fields(self)}
         return {k: v.tolist() if isinstance(v, np.ndarray) else v for k, v in made.items()}
 
     @property
     def n(self) -> int:
-        """How many joints it has."""
+        """The number of joints."""
         return len(self.bodies)
 
     @cached_property
     def joint_names(self) -> tuple[str, ...]:
-        """From the base to the tip."""
+        """Names of the joints, from the base to the tip."""
         return tuple(body["joint"] for body in self.bodies)
 
     @cached_property
@@ -126,16 +126,16 @@ class Robot:
 
     @cached_property
     def zeros(self) -> Array:
-        """No speed, or no torque, at any joint, shape (n,)."""
+        """A zero for each joint, shape (n,), read-only."""
         return locked(np.zeros(self.n))
 
     def check_range(self, q: Array, name: str, slack: float = 0.0) -> None:
-        """Raise `JointLimitExceeded` where a joint is out of its range.
+        """Raise `JointLimitExceeded` if a joint is outside its range.
 
         Args:
             q: Joint angles, shape (n,) in [rad].
-            name: What to call them in the sentence.
-            slack: How far out of it is near enough, in [rad].
+            name: What to call them in the message.
+            slack: Tolerance beyond either limit, in [rad].
         """
         outside = (q < self.lower - slack) | (q > self.upper + slack)
         if outside.any():
@@ -147,13 +147,13 @@ class Robot:
         return locked(np.array([body[limit] for body in self.bodies]))
 
     def urdf(self, plant: Plant = IDEAL) -> str:
-        """The arm as n bodies without fixed links, with the plant's payload.
+        """The arm as URDF text, with n bodies and the plant's payload but no fixed links.
 
         Args:
-            plant: Its payload is built in.
+            plant: Its payload is included.
 
         Returns:
-            URDF text; rotors, damping and friction are not in it, they belong to the joints.
+            URDF text without rotors, damping and friction, which `joints` handles.
         """
         parts = [f'<robot name="{escape(self.name)}">', '<link name="base"/>']
         parent = "base"
@@ -163,11 +163,11 @@ class Robot:
                 mass, com, inertia = _with_point_mass(
                     mass, com, inertia, plant.payload, self.T_hand_tip[:3, 3]
                 )
-            moments, axes = np.linalg.eigh(inertia)  # principal axes: PyBullet keeps only those
+            moments, axes = np.linalg.eigh(inertia)  # principal axes, all that PyBullet keeps
             if np.linalg.det(axes) < 0.0:
                 axes[:, 0] = -axes[:, 0]
             xx, yy, zz = moments.tolist()
-            zz = min(zz, (xx + yy) * (1.0 - 1e-12))  # MuJoCo refuses a plate's, if it is rounded up
+            zz = min(zz, (xx + yy) * (1.0 - 1e-12))  # MuJoCo refuses a plate rounded up
             name, T = escape(body["joint"]), np.array(body["T_parent"])
             lower, upper, speed, effort = (body[k] for k in ("lower", "upper", "speed", "effort"))
             parts.append(
@@ -187,7 +187,7 @@ class Robot:
 
 
 def _with_point_mass(m: float, c: Array, I: Array, extra: float, p: Array) -> tuple[Any, ...]:
-    """Mass, centre and inertia about the centre, after a point mass at p joins the body."""
+    """Mass, centre and inertia about the centre of a body with an extra point mass at p."""
     total = m + extra
     centre = (m * c + extra * p) / total
     for mass, at in ((m, c), (extra, p)):
@@ -199,8 +199,8 @@ def _with_point_mass(m: float, c: Array, I: Array, extra: float, p: Array) -> tu
 def _rpy(R: Array) -> Array:
     """URDF's roll, pitch, yaw: R = Rz(yaw) Ry(pitch) Rx(roll).
 
-    Two of Baxter's joints have a pitch of a quarter turn, where roll and yaw turn about one axis:
-    whatever roll is read there, the yaw is read from what it leaves.
+    Two of Baxter's joints have a pitch of a quarter turn, where roll and yaw share one axis.  There
+    any roll will do, because the yaw is computed from what remains after it.
     """
     roll = atan2(R[2, 1], R[2, 2])
     pitch = atan2(-R[2, 0], hypot(R[2, 1], R[2, 2]))

@@ -1,4 +1,4 @@
-"""Run: close the loop between an arm, a target and a controller, and write down what happens."""
+"""Run: close the loop between an arm, a target and a controller, and log what happens."""
 
 from __future__ import annotations
 
@@ -26,10 +26,10 @@ from .shapes import Array, as_array, as_number, shown
 from .trajectory import AnySample, PoseSample, Sample, Target
 
 Controller = Callable[[State, Any], Command]
-"""A function of the state and of the target's sample; nothing to inherit, nothing to register."""
+"""Any function of the state and the target's sample; it need not inherit or register anything."""
 
 RUNAWAY = 50.0
-"""Joints faster than this, in [rad/s], are out of control; the quickest's limit is 4."""
+"""Joints faster than this, in [rad/s], are out of control; Baxter's fastest are limited to 4."""
 
 
 def run(
@@ -39,30 +39,30 @@ def run(
     rate: float = 200.0,
     duration: float | None = None,
 ) -> Log:
-    """Let ``controller`` drive ``arm`` after ``target``.
+    """Let ``controller`` drive ``arm`` along ``target``.
 
-    The arm starts where it is.  Whatever happens, it is left stopped and usable; one that ran away
-    is brought to rest at once.
+    The arm starts where it is.  Whatever happens, it is left stopped and usable; an arm that ran
+    away is brought to rest at once.
 
     Args:
         arm: The arm: simulated, or a real one behind the methods of `RealArm`.
         target: A function of the time since the start, in [s], that returns a `Sample` or a
             `PoseSample`.
         controller: A function of a `State` and the target's sample that returns a command.
-        rate: How often the controller is asked, in [Hz]; its period is a whole number of physics
-            steps.  A real arm's loop leaves out the ticks for which it is late.
-        duration: How long, in [s]; None takes the target's own duration.
+        rate: How often the controller is called, in [Hz]; its period is a whole number of physics
+            steps.  With a real arm, the loop skips the ticks for which it is late.
+        duration: Length of the run, in [s]; None means the target's own duration.
 
     Returns:
-        The log.  A keyboard interrupt ends the run early and returns what there is.
+        The log.  A keyboard interrupt ends the run early and returns the log up to that point.
 
     Raises:
         ControllerError: The controller or the target raised, or returned something that is not a
-            command or not a sample; it says which and when, and keeps the `log` up to then.
-        Diverged: The arm ran away; likewise.
-        ArmLost: A real arm stopped answering, or answered with NaN; likewise.
+            command or not a sample; the error says which and when, and keeps the `log` up to then.
+        Diverged: The arm ran away; the error keeps the log too.
+        ArmLost: A real arm stopped answering, or answered with NaN; the error keeps the log too.
         OutOfRange: The rate does not fit the physics step, or no duration is known.
-        TypeMismatch: One of the three is not what it should be.
+        TypeMismatch: The arm, the target or the controller has the wrong type.
         Closed: The arm's world is closed.
     """
     for name, given in (("target", target), ("controller", controller)):
@@ -76,7 +76,7 @@ def run(
 def run_driven(
     driven: Simulated | Real, target: Target, controller: Controller, duration: float | None
 ) -> Log:
-    """`run`, of what is driven already; `live` has a clock of its own."""
+    """Do the same as `run` for an adapted arm; `live` brings an adapter with its own clock."""
     last = _ticks(target, duration, driven.period) - 1
     samples = _Samples(target, f"the target {name_of(target)}")
     recorder = Recorder(driven.robot, driven.plant, name_of(controller), samples.first)
@@ -97,11 +97,11 @@ def _loop(
     samples: _Samples,
     recorder: Recorder,
 ) -> None:
-    """Go from tick to tick, up to the ``last``, and leave the arm at rest."""
+    """Go through the ticks up to the ``last`` one, and leave the arm at rest."""
     robot, who, whom, target = driven.robot, name_of(controller), samples.name, samples.target
     lost = driven.lost_ticks(last + 1)
     kind, k, asked = None, 0, who
-    often = max(1, round(0.005 / driven.period))  # every 5 ms: nothing runs far in so short a time
+    often = max(1, round(0.005 / driven.period))  # every 5 ms, in which no arm gets far
     t = driven.begin()
     try:
         while True:
@@ -111,7 +111,7 @@ def _loop(
             asked = who
             command = controller(seen[1], sample)
             if type(command) is not kind:
-                recorder.kind = kind = _settled(command, kind, who, t)
+                recorder.kind = kind = _command_type(command, kind, who, t)
             if command.value.shape != robot.zeros.shape:
                 raise ShapeError(kind.__name__, robot.zeros.shape, command.value.shape)
             recorder.keep(t, seen, command, sample)
@@ -119,7 +119,7 @@ def _loop(
             if not k % often and not dq.dot(dq) <= RUNAWAY**2:  # a NaN runs away too
                 raise Diverged(_runaway(robot, dq, who, t))
             if k >= last:
-                driven.stop()  # here an arm that gets lost still leaves its log
+                driven.stop()  # an arm lost in this call still leaves its log
                 break
             if not lost[k]:
                 driven.apply(command)
@@ -136,14 +136,14 @@ def _loop(
     except Exception as error:
         samples.read(samples.latest, t)  # was it the target that broke the controller?
         raise ControllerError(
-            f"{asked} failed at t = {t:.3f} s, tick {k}: {_what(error, samples.latest, robot.n)}"
+            f"{asked} failed at t = {t:.3f} s, tick {k}: {_reason(error, samples.latest, robot.n)}"
         ) from error
     finally:
         driven.stop()
 
 
 def _driven(arm: object, rate: Any) -> Simulated | Real:
-    """The arm as the loop drives it."""
+    """Wrap an arm in the adapter through which the loop drives it."""
     if isinstance(arm, Arm):
         return Simulated(arm, rate)
     if isinstance(arm, RealArm):
@@ -157,10 +157,10 @@ _FLOAT = np.dtype(np.float64)
 
 
 class _Samples:
-    """Guards what the target returns: of one kind and shape at all times, and read-only."""
+    """Checks that the target's samples keep one type and shape, and makes them read-only."""
 
     def __init__(self, target: Target, name: str) -> None:
-        """Take the first sample, which settles what the others must be."""
+        """Take the first sample, which determines the type and shape of the others."""
         self.target, self.name = target, name
         try:
             sample: Any = target(0.0)
@@ -174,7 +174,7 @@ class _Samples:
         self.latest = self.first = self.read(sample, 0.0)
 
     def checked(self, sample: Any, t: float) -> Any:
-        """The sample of time ``t``, if it is as it should be."""
+        """Return the sample of time ``t``, read-only, after a quick check."""
         try:
             x, dx, ddx = sample
             good = (
@@ -182,7 +182,7 @@ class _Samples:
                 and x.dtype is dx.dtype is ddx.dtype is _FLOAT
                 and (x.shape, dx.shape, ddx.shape) == self.shapes
             )
-        except (AttributeError, TypeError, ValueError):  # lists, or no sample at all
+        except (AttributeError, TypeError, ValueError):  # lists, or not a sample
             good = False
         if not good:
             sample = x, dx, ddx = self.read(sample, t)
@@ -192,7 +192,7 @@ class _Samples:
         return sample
 
     def read(self, sample: Any, t: float) -> AnySample:
-        """Read a sample with care, or say what is wrong with it; a copy."""
+        """Check a sample thoroughly, and return a copy or say what is wrong with it."""
         if type(sample) is not self.kind or not isinstance(sample, Sample | PoseSample):
             raise ControllerError(
                 f"{self.name} returned {str(sample)[:80]} ({type(sample).__name__}) at "
@@ -206,7 +206,7 @@ class _Samples:
             raise ControllerError(f"{self.name} at t = {t:.3f} s: {error}") from error
 
     def check_all(self, log: Log) -> None:
-        """Raise if one held a NaN that did no harm; harmful ones were blamed at once."""
+        """Raise if a sample held a NaN that had no effect; other NaNs have been reported by now."""
         samples = log.target
         good = [np.isfinite(x).reshape(len(x), -1).all(axis=1) for x in samples]
         if not (whole := np.logical_and.reduce(good)).all():
@@ -215,7 +215,7 @@ class _Samples:
 
 
 def _ticks(target: Target, duration: float | None, period: float) -> int:
-    """How many ticks the run has, its two ends included."""
+    """The number of ticks of the run, including both ends."""
     if duration is None:
         duration = getattr(target, "duration", None)
         if duration is None:
@@ -226,8 +226,8 @@ def _ticks(target: Target, duration: float | None, period: float) -> int:
     return round(as_number(duration, "duration", least=0.0) / period + 1e-9) + 1
 
 
-def _what(error: Exception, sample: AnySample, joints: int) -> str:
-    """What a controller's error says; where the sample is not one of joint angles, what it is."""
+def _reason(error: Exception, sample: AnySample, joints: int) -> str:
+    """A controller's error in words, with a hint if the target does not give joint angles."""
     if isinstance(error, LabkitError):
         return str(error)
     what, makes = f"{type(error).__name__}: {error}", "model.joint_trajectory(target, q0) makes"
@@ -243,8 +243,8 @@ def _what(error: Exception, sample: AnySample, joints: int) -> str:
     return what
 
 
-def _settled(command: object, kind: type | None, who: str, t: float) -> type:
-    """The type of this run's commands, or what is wrong with this one."""
+def _command_type(command: object, kind: type | None, who: str, t: float) -> type:
+    """The type of this run's commands; raises if the command does not fit."""
     names = ", ".join(f"lk.{c.__name__}(...)" for c in COMMANDS)
     if not isinstance(command, COMMANDS):
         hint = "; is a return missing?" if command is None else ""
@@ -269,5 +269,5 @@ def _runaway(robot: Robot, dq: Array, who: str, t: float) -> str:
 
 
 def name_of(f: object) -> str:
-    """What a controller or a target is called in logs and sentences; a lambda has no name."""
+    """The name of a controller or a target in logs and messages; a lambda has none."""
     return getattr(f, "__name__", type(f).__name__).replace("<lambda>", "unnamed function")

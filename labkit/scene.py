@@ -1,8 +1,8 @@
-r"""The scene: what an arm can meet in its world, as frozen values.
+r"""The scene: the things that can act on an arm in its world, as frozen values.
 
-A `Table` and a `Wall` are solid; the tip, a small ball, is all of the arm that they meet, and only
-with their face, not with its rim.  A `Spring` and a `Push` act on the tip without touching it.  A
-contact is as stiff as the two stiffnesses in series and as damped as both dampings together:
+A `Table` and a `Wall` are solid.  Only the tip of the arm, a small ball, collides with them, and
+only with their face, not with its rim.  A `Spring` and a `Push` act on the tip without contact.  A
+contact has the two stiffnesses in series and the sum of the two dampings:
 
 .. math:: 1/k = 1/k_{thing} + 1/k_{tip}, \qquad d = d_{thing} + d_{tip}
 """
@@ -22,23 +22,23 @@ from .shapes import Array, as_number, lock_vectors, locked
 from .world import Standing, World
 
 TIP_RADIUS = 0.01
-"""Radius of the ball about the tip's origin, in [m]; contact begins this far from it."""
+"""Radius of the ball about the tip's origin, in [m]; contact begins at this distance."""
 
 TIP_STIFFNESS = 10_000.0
-"""Of the finger's rubber pad, in [N/m]."""
+"""Stiffness of the finger's rubber pad, in [N/m]."""
 
 TIP_DAMPING = 20.0
-"""Of the finger's rubber pad, in [N s/m]."""
+"""Damping of the finger's rubber pad, in [N s/m]."""
 
 FACE = 0.02
 """Thickness of a wall or a table top, in [m]."""
 
 CREEP = 1e-4
-"""Speed up to which dry friction grows, in [m/s]; what is held by it creeps, slower than this."""
+"""Speed up to which dry friction grows, in [m/s]; a tip that it holds creeps more slowly."""
 
 
 def contact_stiffness(thing: _Slab) -> float:
-    """What the tip feels when it presses on a thing, the two stiffnesses in series, in [N/m]."""
+    """Stiffness of the contact of the tip with a thing, both in series, in [N/m]."""
     return 1.0 / (1.0 / thing.stiffness + 1.0 / TIP_STIFFNESS)
 
 
@@ -52,12 +52,12 @@ class _Slab:
     friction: float
 
     def act(self, world: World) -> None:
-        """Push back the tips that are in it."""
+        """Push back the tips that are in the slab."""
         for arm in world.arms:
             self._meet(arm, world.dt, *arm.tip())
 
     def _meet(self, arm: Standing, dt: float, p: Array, v: Array) -> None:
-        """Push back a tip that is in it, as a spring and a damper of its own and the pad's."""
+        """Push back a tip in the slab with the springs and the dampers of slab and pad."""
         n = self.T_wf[:3, 2]
         x, y, z = self.T_wf[:3, :3].T @ (p - self.T_wf[:3, 3])
         k, d, depth = contact_stiffness(self), self.damping + TIP_DAMPING, TIP_RADIUS - z
@@ -74,14 +74,14 @@ class _Slab:
 
 @dataclass(frozen=True, eq=False)
 class Wall(_Slab):
-    """A flat solid face; with a low stiffness, a compliant surface.
+    """A flat solid face, or a compliant surface if its stiffness is low.
 
     Attributes:
         point: The middle of the face, shape (3,) in [m], world axes.
-        normal: Out of the face, shape (3,), of any length.
+        normal: Vector out of the face, shape (3,), of any length.
         size: Width and height of the face, shape (2,) in [m].
-        stiffness: Of the wall alone, in [N/m]; see `contact_stiffness`.
-        damping: Of the wall alone, in [N s/m].
+        stiffness: Stiffness of the wall alone, in [N/m]; see `contact_stiffness`.
+        damping: Damping of the wall alone, in [N s/m].
         friction: Coefficient of dry friction; 0 keeps the force along the normal.
         colour: Red, green, blue and opacity, from 0 to 1.
     """
@@ -116,12 +116,12 @@ class Table(_Slab):
     """A level table top.
 
     Attributes:
-        height: Of its upper face, in [m] of the world; the default is out of the way of motions
+        height: Height of its upper face in the world, in [m]; the default is clear of motions
             that stay within 0.25 m of `Robot.ready`.
-        centre: Of its upper face, seen from above, shape (2,) in [m].
-        size: Along x and y, shape (2,) in [m].
-        stiffness: Of the table alone, in [N/m]; see `contact_stiffness`.
-        damping: Of the table alone, in [N s/m].
+        centre: Centre of its upper face, x and y in the world, shape (2,) in [m].
+        size: Size along x and y, shape (2,) in [m].
+        stiffness: Stiffness of the table alone, in [N/m]; see `contact_stiffness`.
+        damping: Damping of the table alone, in [N s/m].
         friction: Coefficient of dry friction.
         colour: Red, green, blue and opacity, from 0 to 1.
     """
@@ -150,9 +150,9 @@ class Push:
     """A scripted hand: a constant wrench on the tip during a window of time.
 
     Attributes:
-        force: On the arm, at the tip's origin, world axes, shape (3,) in [N].
-        moment: On the arm, world axes, shape (3,) in [N m].
-        start: When it begins, in [s] of the world's clock.
+        force: Force on the arm at the tip's origin, world axes, shape (3,) in [N].
+        moment: Moment on the arm, world axes, shape (3,) in [N m].
+        start: When it begins, in [s] on the world's clock.
         duration: How long it lasts, in [s].
         side: Whose tip, by the name of its robot; None where the world has only one arm.
     """
@@ -177,10 +177,10 @@ class Push:
 
 @dataclass(frozen=True, eq=False)
 class Spring:
-    r"""A spring of no length of its own between the tip and an anchor: :math:`f = k(a - p) - d v`.
+    r"""A spring of zero rest length from the tip to an anchor, :math:`f = k(a - p) - d v`.
 
     Attributes:
-        anchor: Where it pulls the tip to, world axes, shape (3,) in [m].
+        anchor: Point to which it pulls the tip, world axes, shape (3,) in [m].
         stiffness: k in [N/m].
         damping: d in [N s/m].
         side: Whose tip, by the name of its robot; None where the world has only one arm.
@@ -197,11 +197,11 @@ class Spring:
         as_number(self.damping, "damping", least=0.0)
 
     def force(self, p: Array, v: Array) -> Array:
-        """On the arm, for a tip at ``p`` [m] moving at ``v`` [m/s], shape (3,) in [N]."""
+        """Force on the arm, for a tip at ``p`` [m] moving at ``v`` [m/s], shape (3,) in [N]."""
         return np.asarray(self.stiffness * (self.anchor - p) - self.damping * v)
 
     def act(self, world: World) -> None:
-        """Pull as it will at the end of the step."""
+        """Pull with the force of the end of the step."""
         arm = _arm_of(world, self.side)
         give = self.damping + self.stiffness * world.dt
         pull = self.stiffness * (self.anchor - arm.tip()[0])
@@ -221,7 +221,7 @@ def _arm_of(world: World, side: str | None) -> Standing:
 
 
 def _check_slab(thing: Any) -> None:
-    """Size and material of a wall or a table top."""
+    """Check the size and the material of a wall or a table top."""
     lock_vectors(thing, 2, "size")
     lock_vectors(thing, 4, "colour")
     for side in thing.size:

@@ -1,6 +1,6 @@
 r"""Rigid motion: rotations, poses, twists, and the maps between them.
 
-A pose is a 4 x 4 matrix `T_ab` that turns coordinates in b into a, ``p_a = T_ab @ p_b``;
+A pose is a 4 x 4 matrix `T_ab` that converts coordinates in b to a, ``p_a = T_ab @ p_b``;
 the subscripts cancel.  A twist is (v, w), linear part first, as in Murray, Li & Sastry (MLS) and
 Pinocchio, which computes exponentials and logarithms.  Formulas: MLS chapter 2; Lynch & Park,
 *Modern Robotics*, chapter 3.
@@ -62,7 +62,7 @@ def rotation_log(R: Any) -> Array:
     r"""The rotation vector of R, the inverse of `rotation`: :math:`\log(R)^\vee`.
 
     Near half a turn the axis is read from the symmetric part, where it is well conditioned; its
-    sign at exactly half a turn is arbitrary, as it must be.
+    sign at exactly half a turn is necessarily arbitrary.
 
     Args:
         R: Rotation matrix, shape (3, 3).
@@ -78,7 +78,7 @@ def rotation_log(R: Any) -> Array:
 
 
 def orientation_error(R_wd: Any, R_wt: Any) -> Array:
-    r"""The turn, in world axes, that takes the actual orientation to the desired one.
+    r"""The rotation, in world axes, from the actual orientation to the desired one.
 
     :math:`e_o = \log(R_{wd} R_{wt}^T)^\vee`, target minus actual in the only sense that rotations
     allow (Lynch & Park, section 11.3.3; Siciliano, section 3.7.3 with the logarithm).
@@ -95,7 +95,7 @@ def orientation_error(R_wd: Any, R_wt: Any) -> Array:
 
 
 def pose_error(T_wd: Any, T_wt: Any) -> Array:
-    """Target minus actual of two poses, world axes: how far to go and how to turn.
+    """Pose error, target minus actual, in world axes.
 
     Args:
         T_wd: Desired pose, shape (4, 4).
@@ -166,7 +166,7 @@ def log(T: Any) -> Array:
 
 
 def angle_between(R_a: Any, R_b: Any) -> float:
-    """The angle of the turn from one orientation to the other, in [rad], from 0 to pi."""
+    """The angle of the rotation from one orientation to the other, in [rad], from 0 to pi."""
     return float(np.linalg.norm(orientation_error(R_a, R_b)))
 
 
@@ -194,7 +194,7 @@ def as_rotation(x: Any, name: str) -> Array:
         Shape (3, 3).
 
     Raises:
-        OutOfRange: Its columns are not orthonormal, or it mirrors.
+        OutOfRange: Its columns are not orthonormal, or its determinant is -1.
     """
     R: Array = as_array(x, (3, 3), name)
     off = abs(R.T @ R - _IDENTITY).max()
@@ -220,7 +220,7 @@ def as_pose(x: Any, name: str) -> Array:
         Shape (4, 4).
 
     Raises:
-        OutOfRange: It is not a rigid motion.
+        OutOfRange: ``x`` is not a rigid motion.
     """
     T: Array = as_array(x, (4, 4), name)
     if np.abs(T[3] - (0.0, 0.0, 0.0, 1.0)).max() > 1e-9:

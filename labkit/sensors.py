@@ -1,4 +1,4 @@
-"""What an arm can know of itself: its joints as they are published, and torque from outside."""
+"""The sensors of an arm, which publish its joint states and estimate external torque."""
 
 from __future__ import annotations
 
@@ -14,14 +14,14 @@ from .world import whole_steps
 
 
 class Reports:
-    """States on their way from the joints to the controller: seldom, late and noisy.
+    """States on their way from the joints to the controller: infrequent, late and noisy.
 
     Attributes:
-        every: Physics steps between two reports; 0 for an arm whose state is always at hand.
+        every: Physics steps between two reports; 0 for an arm whose state is always available.
     """
 
     def __init__(self, plant: Plant, n: int, dt: float, random: np.random.Generator) -> None:
-        """Report ``n`` joints as ``plant`` says, in a world of steps of ``dt`` [s]."""
+        """Report ``n`` joints with the imperfections of ``plant``, in steps of ``dt`` [s]."""
         self._delay, self._random = plant.state_delay, random
         self._noise, self._torque_noise = (
             plant.each(name, n) for name in ("velocity_noise", "torque_noise")
@@ -36,7 +36,7 @@ class Reports:
             self.every = 1
 
     def read(self, q: Array) -> Array:
-        """What the encoders make of the joints' angles ``q``, shape (n,) in [rad]."""
+        """The encoder readings at the joint angles ``q``, shape (n,) in [rad]."""
         if not self._off:
             return q
         read: Array = q + self._offset
@@ -45,7 +45,7 @@ class Reports:
         return read
 
     def reset(self, state: State) -> None:
-        """Forget what came before ``state``."""
+        """Forget all reports before ``state``."""
         self._mail, self._last = deque([state]), -1
 
     def due(self, steps: int) -> bool:
@@ -53,14 +53,14 @@ class Reports:
         return self.every > 0 and steps % self.every == 0 and steps != self._last
 
     def send(self, truth: State, steps: int) -> None:
-        """Send a report of the joints as they are."""
+        """Send a report of the true state, with offset, resolution and noise applied."""
         self._last = steps
         t, q, dq, felt = truth
         q = locked(self.read(q))
         if self._noisy:
             dq = locked(dq + self._noise * self._random.standard_normal(dq.size))
             felt = locked(felt + self._torque_noise * self._random.standard_normal(dq.size))
-        self.newest(t)  # forgets those that nobody asked for
+        self.newest(t)  # drops the reports that nobody asked for
         self._mail.append(State(t, q, dq, felt))
 
     def newest(self, t: float) -> State:
@@ -71,35 +71,35 @@ class Reports:
 
 
 class TorqueSensors:
-    r"""Torque sensors behind the gears, and what they tell of the world outside.
+    r"""Torque sensors on the output side of the gears, with their estimate of external torque.
 
     .. math:: \tau_{ext} = M(q)\,\ddot q + C(q, \dot q)\,\dot q + g(q) - \tau_{joint}
 
-    The sensors feel motor and friction together, so the estimate is free of friction; gravity,
-    inertia and Coriolis terms are taken off with the model that the arm has of itself, which knows
-    of its rotors and not of what it carries.  The acceleration is that of the last physics step.
+    The sensors measure motor torque and friction together, so the estimate is free of friction.
+    Gravity, inertia and Coriolis terms are subtracted with the arm's model of itself, which
+    includes its rotors but not its payload.  The acceleration is that of the last physics step.
     """
 
     def __init__(self, own: Model, plant: Plant, dt: float) -> None:
-        """Sense with the model ``own``, in a world of steps of ``dt`` [s]."""
+        """Estimate with the arm's model of itself, ``own``, in physics steps of ``dt`` [s]."""
         self._own, self._dt, self._lag = own, dt, plant.torque_lag
         self.reset()
 
     def reset(self) -> None:
-        """Forget what was felt."""
+        """Forget all measurements."""
         self._felt, self._at = self._own.robot.zeros, -1
         self._begun: tuple[Array, Array, Array] | None = None
 
     def begin(self, q: Array, dq: Array, joint: Array, steps: int) -> None:
-        """Take note of how a physics step begins.
+        """Store the state at the start of a physics step.
 
         Args:
             q: Joint angles, shape (n,) in [rad].
             dq: Joint speeds, shape (n,) in [rad/s].
-            joint: What motors and friction give in it, shape (n,) in [N m].
-            steps: Which step.
+            joint: Torque of motors and friction in this step, shape (n,) in [N m].
+            steps: Number of the step.
         """
-        if self._lag:  # it averages over all steps, not only over those that someone asks about
+        if self._lag:  # the average covers every step, not only those asked for
             self.felt(dq, steps)
         self._begun = q, dq, joint
 
@@ -108,7 +108,7 @@ class TorqueSensors:
 
         Args:
             now: Joint speeds, shape (n,) in [rad/s].
-            steps: Which step.
+            steps: Number of the step.
         """
         if self._begun is not None and self._at != steps:
             (q, dq, joint), dt = self._begun, self._dt

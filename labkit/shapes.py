@@ -1,4 +1,4 @@
-"""Turn what came in into the array that the mathematics means, or say why not."""
+"""Convert arguments to the arrays that the mathematics needs, or say why that is impossible."""
 
 from __future__ import annotations
 
@@ -24,10 +24,10 @@ def as_array(x: Any, shape: tuple[int, ...], name: str) -> Array:
         name: What to call it in the sentence, if it does not fit.
 
     Returns:
-        ``x`` itself where it already fits, else a float64 copy; shape ``shape``.
+        ``x`` itself if it already fits, otherwise a float64 copy; shape ``shape``.
 
     Raises:
-        TypeMismatch: It is not made of real numbers.
+        TypeMismatch: ``x`` does not consist of real numbers.
         ShapeError: The shape differs.
         NotFinite: An entry is NaN or infinite.
     """
@@ -36,8 +36,8 @@ def as_array(x: Any, shape: tuple[int, ...], name: str) -> Array:
         a = _converted(x, shape, name)
     if a.shape != shape:
         raise ShapeError(name, shape, a.shape)
-    # A NaN or an infinity survives a sum.  This takes 0.3 us, np.isfinite(a).all() takes 1.7, and
-    # every control tick asks ten times.
+    # A NaN or an infinity survives a sum.  This takes 0.3 us, np.isfinite(a).all() takes 1.7 us,
+    # and every control tick makes ten such checks.
     if not isfinite(sum(a.ravel().tolist())) and not np.isfinite(a).all():
         at = tuple(np.argwhere(~np.isfinite(a))[0].tolist())
         what = f"holds {a[at]} at index {at if len(at) > 1 else at[0]}" if at else f"is {a}"
@@ -48,7 +48,7 @@ def as_array(x: Any, shape: tuple[int, ...], name: str) -> Array:
 
 
 def as_vector(x: Any, n: int | None, name: str) -> Array:
-    """A read-only float vector of ``n`` numbers; a copy, so that the owner may go on writing.
+    """Read ``x`` as ``n`` floats, in a read-only copy, so that the caller may change the original.
 
     Args:
         x: Anything NumPy reads as a vector.
@@ -67,13 +67,13 @@ def as_vector(x: Any, n: int | None, name: str) -> Array:
 
 
 def lock_vectors(owner: Any, n: int, *names: str) -> None:
-    """Make fields of a frozen dataclass what `as_vector` makes of them: ``n`` numbers each."""
+    """Apply `as_vector` to fields of a frozen dataclass, with ``n`` numbers each."""
     for name in names:
         object.__setattr__(owner, name, as_vector(getattr(owner, name), n, name))
 
 
 def as_numbers(x: Any, name: str) -> Array:
-    """Read ``x`` as finite floats of whatever shape it has; a copy.
+    """Read ``x`` as finite floats of any shape, in a copy.
 
     Args:
         x: Anything NumPy reads as an array of numbers.
@@ -87,7 +87,7 @@ def as_numbers(x: Any, name: str) -> Array:
 
 
 def as_each(x: Any, n: int | None, name: str) -> Array:
-    """Read ``x`` as ``n`` numbers; one number serves all.
+    """Read ``x`` as ``n`` numbers; a single number is repeated.
 
     Args:
         x: A number, or a vector of ``n``.
@@ -95,18 +95,18 @@ def as_each(x: Any, n: int | None, name: str) -> Array:
         name: What to call them in the sentence, if they do not fit.
 
     Returns:
-        Shape (n,), read-only; of one number, shape (1,) if n is None.
+        Shape (n,), read-only; for a single number, shape (1,) if n is None.
     """
     numbers = as_numbers(x, name)
     return as_vector(np.full(n or 1, numbers) if numbers.ndim == 0 else numbers, n, name)
 
 
 def as_gains(x: Any, n: int | None, name: str) -> Array:
-    """Read ``x`` as ``n`` gains: `as_each`, of which none is negative.
+    """Read ``x`` as ``n`` gains, as `as_each` does, and check that none is negative.
 
     Raises:
         ShapeError: There are too few or too many.
-        OutOfRange: One is negative: with e = target - actual every gain is at least 0.
+        OutOfRange: A gain is negative; with e = target - actual, every gain is at least 0.
     """
     gains = as_each(x, n, name)
     if gains.min(initial=0.0) < 0.0:
@@ -147,13 +147,13 @@ def as_number(
 
 
 def as_random(seed: Any) -> np.random.Generator:
-    """The random numbers of a seed.
+    """The random number generator of a seed.
 
     Args:
-        seed: A whole number from 0 up, or a generator that was made already.
+        seed: A whole number from 0 up, or an existing generator.
 
     Raises:
-        TypeMismatch: It is neither.
+        TypeMismatch: ``seed`` is neither.
     """
     try:
         return np.random.default_rng(seed)
@@ -183,6 +183,6 @@ def _converted(x: Any, shape: tuple[int, ...] | None, name: str) -> Array:
 
 
 def shown(x: Any) -> str:
-    """A value and its type, short enough for a sentence."""
+    """A value and its type, short enough for a message."""
     text = repr(x)
     return f"{text if len(text) < 40 else text[:37] + '...'} ({type(x).__name__})"

@@ -1,4 +1,4 @@
-r"""Series elasticity: the motor pulls at one end of a spring, the joint hangs at the other.
+r"""Series elasticity, with the motor at one end of a spring and the joint at the other.
 
 A rotor of inertia a, at the angle :math:`\theta`, moves under motor and friction
 :math:`\tau_m` and under its spring,
@@ -6,8 +6,8 @@ A rotor of inertia a, at the angle :math:`\theta`, moves under motor and frictio
 .. math:: a\,\ddot\theta = \tau_m - \tau_s, \qquad
    \tau_s = k\,(\theta - q) + d\,(\dot\theta - \dot q)
 
-and the joint feels :math:`\tau_s` alone (Spong 1987; Siciliano, section 9.1 on elastic joints does
-the same).  k and d are `Plant.joint_stiffness` and `Plant.joint_damping`.
+and only :math:`\tau_s` acts on the joint (Spong 1987; Siciliano, section 9.1 on elastic joints,
+does the same).  k and d are `Plant.joint_stiffness` and `Plant.joint_damping`.
 """
 
 from __future__ import annotations
@@ -23,7 +23,7 @@ class Springs:
     """The rotors and springs of one arm, physics step by physics step."""
 
     def __init__(self, plant: Plant, n: int, dt: float) -> None:
-        """``n`` joints as ``plant`` has them, in steps of ``dt`` [s]."""
+        """Make the rotors and springs of ``n`` joints, with steps of ``dt`` [s]."""
         self._k, self._d, self._a, self._viscous = (
             plant.each(name, n)
             for name in ("joint_stiffness", "joint_damping", "armature", "viscous")
@@ -32,19 +32,19 @@ class Springs:
         self._dt = dt
 
     def reset(self, q: Array, tau: Array) -> None:
-        """Rest at ``q`` (n,) [rad], the springs wound up to carry ``tau`` (n,) [N m]."""
+        """Rest at ``q`` (n,) [rad], with the springs loaded by ``tau`` (n,) [N m]."""
         self._theta, self._speed = q + tau / self._k, np.zeros(len(q))
 
     def pull(self, q: Array, dq: Array, drive: Drive) -> tuple[Array, Drive]:
-        """Take a step of the rotors, the springs taken at its end, so that it is stable.
+        """Advance the rotors by a step that is implicit in the springs, hence stable.
 
         Args:
             q: Joint angles, shape (n,) in [rad].
             dq: Joint speeds, shape (n,) in [rad/s].
-            drive: What the motors do to the rotors.
+            drive: The motors' action on the rotors.
 
         Returns:
-            The torque of the motors, shape (n,) in [N m], and what the springs do to the joints.
+            The torque of the motors, shape (n,) in [N m], and the springs' action on the joints.
         """
         dt = self._dt
         push = drive.tau - self._k * (self._theta - q) + self._d * dq

@@ -1,6 +1,6 @@
-r"""One joint's loop on paper: margins and ultimate gain, by python-control.
+r"""Analysis of one joint's loop: margins and ultimate gain, computed by python-control.
 
-A joint is a transfer function from its command to its angle, and a delay.  In velocity mode
+A joint is a transfer function from its command to its angle, with a delay.  In velocity mode
 
 .. math:: G(s) = \frac{e^{-sd}}{s\,(\tau s + 1)}, \qquad u = \dot q_d + K_p e + K_d \dot e,
 
@@ -24,11 +24,11 @@ from .shapes import as_number
 
 @dataclass(frozen=True)
 class VelocityJoint:
-    """A joint in velocity mode as its controller meets it: first-order lag, integrator, delay.
+    """A joint in velocity mode as its controller sees it: first-order lag, integrator, delay.
 
     Attributes:
         lag: Time constant with which its speed follows a command, in [s].
-        delay: Between command and effect, measuring included, in [s].
+        delay: Delay between command and effect, including the measurement, in [s].
     """
 
     lag: float
@@ -40,20 +40,20 @@ class VelocityJoint:
 
 
 def velocity_joint_of(plant: Plant, rate: float = 200.0) -> VelocityJoint:
-    """What a plant's velocity mode is to a controller asked ``rate`` times a second.
+    """The joint that a controller called ``rate`` times a second sees in a plant's velocity mode.
 
-    The delay is the mean age of the state that the controller sees plus half a period, for which a
-    command is on average already out of date.
+    The delay is the mean age of the state that the controller sees, plus half a period, the mean
+    age of a command.
     """
     return VelocityJoint(plant.velocity_lag, mean_age(plant, rate) + 0.5 / rate)
 
 
 def mean_age(plant: Plant, rate: float) -> float:
-    """How old, on average, the state is that a controller sees, in [s].
+    """The mean age of the state that a controller sees, in [s].
 
     Args:
-        plant: Its state rate and delay.
-        rate: How often the controller is asked, in [Hz].
+        plant: The plant, with its state rate and delay.
+        rate: How often the controller is called, in [Hz].
     """
     ticks = 1.0 + np.arange(2000) / as_number(rate, "rate", above=0.0)
     if plant.state_rate == 0.0:
@@ -66,10 +66,10 @@ class Margins(NamedTuple):
     """How far a loop is from instability.
 
     Attributes:
-        gain: Factor by which the gain may grow; infinite if by any.
+        gain: Factor by which the gain may grow; infinite if there is no limit.
         phase: Phase that may be lost at the crossover, in [degrees].
-        crossover: Where the loop's gain is 1, in [rad/s]; infinite if it is so nowhere.
-        delay: Further delay that may come in, in [s].
+        crossover: Frequency at which the loop's gain is 1, in [rad/s]; infinite if there is none.
+        delay: Additional delay that is tolerated, in [s].
         stable: Whether the closed loop is stable.
     """
 
@@ -81,10 +81,10 @@ class Margins(NamedTuple):
 
 
 def margins(joint: VelocityJoint, Kp: float, Kd: float = 0.0) -> Margins:
-    """Gain, phase and delay margins of a joint under feedback, by its exact frequency response.
+    """Gain, phase and delay margins of a joint under feedback, from its exact frequency response.
 
     Args:
-        joint: What is controlled.
+        joint: The controlled joint.
         Kp: Proportional gain, at least 0, in [1/s].
         Kd: Derivative gain, at least 0, without unit.
 
@@ -102,7 +102,7 @@ def margins(joint: VelocityJoint, Kp: float, Kd: float = 0.0) -> Margins:
         inf if x is None or np.isnan(x) else float(x) for x in control.stability_margins(data)
     )
     room = radians(phase) / crossover if crossover < inf else inf
-    # An integrator and falling gain: stable exactly when both margins are on the right side.
+    # With an integrator and falling gain, this condition is exact.
     return Margins(gain, phase, crossover, room, stable=gain > 1.0 and phase > 0.0)
 
 

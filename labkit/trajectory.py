@@ -1,7 +1,7 @@
-r"""Motion: what a path, a time scaling and their composition say at one moment.
+r"""Motion: paths, time scalings and their composition, as functions that return samples.
 
-A *path* is geometry, a curve in s from 0 to 1.  A *time scaling* is s(t).  A *trajectory* is the
-path on that schedule, by the chain rule (Lynch & Park, *Modern Robotics*, section 9.1).
+A *path* is geometry, a curve in s from 0 to 1.  A *time scaling* is s(t).  A *trajectory* is
+their composition, differentiated by the chain rule (Lynch & Park, *Modern Robotics*, section 9.1).
 """
 
 from __future__ import annotations
@@ -21,7 +21,7 @@ from .shapes import Array, as_array, as_number, as_numbers, locked, shown
 
 
 class Sample(NamedTuple):
-    """A curve of points (or of joint angles) at one place: its value and two derivatives.
+    """The value and two derivatives of a curve of points, or of joint angles, at one place.
 
     Attributes:
         position: Value, shape (n,) in [m] or [rad].
@@ -39,7 +39,7 @@ class Sample(NamedTuple):
 
 
 class PoseSample(NamedTuple):
-    """A curve of tip poses at one place: its value and two derivatives, in world axes.
+    """The value and two derivatives of a curve of tip poses at one place, in world axes.
 
     Attributes:
         pose: Pose of the tip in the world, `T_wt`, shape (4, 4).
@@ -60,11 +60,11 @@ AnySample = Sample | PoseSample
 
 _S = TypeVar("_S", bound=AnySample)
 Path = Callable[[float], _S]
-"""A curve in s, from 0 to 1, by its value and derivatives with respect to s."""
+"""A curve in s from 0 to 1, whose samples have derivatives with respect to s."""
 
 
 class TimeScaling(Protocol):
-    """s(t), rising from 0 to 1 over `duration` seconds and at rest outside."""
+    """A function s(t) that rises from 0 to 1 over `duration` seconds and is at rest outside."""
 
     @property
     def duration(self) -> float:
@@ -75,7 +75,7 @@ class TimeScaling(Protocol):
 
 
 Target = Callable[[float], AnySample]
-"""What `run` follows, any function of time, in [s] since the run began."""
+"""Any function that `run` can follow, of the time since the run began, in [s]."""
 
 
 @dataclass(frozen=True)
@@ -104,7 +104,7 @@ class Trajectory:
         return self.scaling.duration
 
     def __call__(self, t: float) -> Any:
-        """The motion at time ``t`` [s], by the chain rule; of the path's kind of sample.
+        """The motion at time ``t`` [s], by the chain rule, as a sample of the path's type.
 
         Raises:
             TypeMismatch: The scaling or the path returned something unexpected.
@@ -140,20 +140,20 @@ def _check_path(path: Any) -> None:
 class Chain:
     """Trajectories one after another.
 
-    At a joint the later trajectory speaks; each one starts and ends at rest, so the chain is smooth
-    in position and velocity.
+    Where two trajectories meet, the later one counts.  Each starts and ends at rest, so the chain
+    is smooth in position and velocity.
 
     Attributes:
-        parts: The trajectories, in order; those of a chain among them one by one.
-        starts: When each begins, in [s].
+        parts: The trajectories, in order; a chain among them is replaced by its own parts.
+        starts: Starting time of each, in [s].
     """
 
     def __init__(self, parts: Iterable[Any]) -> None:
         """Join ``parts``, each with a `duration`, end to end.
 
         Raises:
-            OutOfRange: There is none.
-            TypeMismatch: One has no duration.
+            OutOfRange: There are no parts.
+            TypeMismatch: A part has no duration.
         """
         self.parts: tuple[Any, ...] = ()
         for part in parts:
@@ -172,9 +172,9 @@ class Chain:
 
 @dataclass(frozen=True, eq=False)
 class PosePath:
-    """A path of points with an orientation along it: fixed, or turned evenly from R_wt to R_goal.
+    """A path of points with an orientation, either fixed or turning evenly from R_wt to R_goal.
 
-    The turn is the shortest one, at a constant rate in s (the geodesic of SO(3), Lynch & Park
+    The rotation is the shortest one, at a constant rate in s (the geodesic of SO(3), Lynch & Park,
     section 9.2.1).
 
     Attributes:
@@ -196,7 +196,7 @@ class PosePath:
 
     @cached_property
     def _turn(self) -> Array:
-        """The whole turn as a rotation vector, world axes, [rad]."""
+        """The whole rotation as a rotation vector, world axes, [rad]."""
         if self.R_goal is None:
             return locked(np.zeros(3))
         return locked(se3.orientation_error(self.R_goal, self.R_wt))
@@ -212,7 +212,7 @@ class PosePath:
 
 
 class Hold:
-    """Stay where you are: a target that never moves.
+    """A target that never moves.
 
     Attributes:
         duration: How long, in [s].

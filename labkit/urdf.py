@@ -1,4 +1,4 @@
-"""Reading an arm from a URDF file: what is fixed is lumped, and each joint turns about its z."""
+"""Reading an arm from a URDF file, lumping fixed links and turning each joint about its z axis."""
 
 from __future__ import annotations
 
@@ -17,20 +17,21 @@ from .shapes import as_vector, shown
 
 _Element = ElementTree.Element
 ROUNDED = 0.98
-"""What share of the largest moment of inertia the two smaller ones must have together, where it is
-1 for any body.  Files round theirs, by 0.2 % for an arm of Romeo; the largest is then taken for the
-sum of the others."""
+"""Least accepted ratio of the two smaller moments of inertia, added up, to the largest one.
+
+It is at least 1 for any real body, but files round their numbers, by 0.2 % for an arm of Romeo; the
+largest moment is then replaced by the sum of the others."""
 
 
 def read_urdf(file: Any, tip: str, ready: Any, name: str | None) -> dict[str, Any]:
-    """What a `Robot` is made of; see `Robot.from_urdf`."""
+    """The arguments of `Robot`, read from a URDF file; see `Robot.from_urdf`."""
     try:
         path = Path(file)
     except TypeError:
         raise TypeMismatch(f"file is {shown(file)}, expected the path of a URDF file") from None
     root = _parsed(path)
     name = str(name or root.get("name") or path.stem)
-    root.set("name", name)  # Pinocchio asks for one
+    root.set("name", name)  # Pinocchio requires a name
     chain = [joint for joint in _chain(root, tip, path.name) if joint.get("type") != "fixed"]
     limits = [_limits(joint, path.name) for joint in chain]
     if len(chain) < 2:
@@ -98,7 +99,7 @@ def _ends(root: _Element, which: str) -> Iterator[tuple[_Element, _Element]]:
 
 
 def _limits(joint: _Element, file: str) -> dict[str, Any]:
-    """Name and limits of a joint of the arm; a continuous one is made revolute."""
+    """Name and limits of a joint of the arm; a continuous joint is made revolute."""
     what, kind = f"joint {joint.get('name')} of {file}", joint.get("type")
     if kind not in ("revolute", "continuous"):
         raise LabkitError(
@@ -135,7 +136,7 @@ def _limits(joint: _Element, file: str) -> dict[str, Any]:
 def _bodies(
     model: Any, limits: list[dict[str, Any]], file: str
 ) -> tuple[list[dict[str, Any]], pin.SE3]:
-    """The bodies in frames whose z axis is the joint's; and the last frame in Pinocchio's."""
+    """The bodies, in frames with the joint axis as z, and the last such frame in Pinocchio's."""
     data = model.createData()
     pin.computeJointJacobians(model, data, pin.neutral(model))
     bodies, before = [], pin.SE3.Identity()

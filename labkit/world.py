@@ -1,4 +1,4 @@
-"""The world: a clock, the arms and all other things."""
+"""The world: a clock, the arms and everything else around them."""
 
 from __future__ import annotations
 
@@ -16,21 +16,21 @@ class Thing(Protocol):
     """Something to put into a world, where it acts on the arms."""
 
     def act(self, world: World) -> None:
-        """Do to its arms what it does in the next physics step."""
+        """Act on the arms of ``world`` for the next physics step."""
 
 
 class Standing(Protocol):
-    """An arm, as far as its world and the things around it need to know it."""
+    """The part of an arm's interface that its world and the things around it use."""
 
     @property
     def robot(self) -> Any:
-        """Its names."""
+        """The robot, with its names."""
 
     def truth(self) -> Any:
-        """The joints as they really are."""
+        """The true state of the joints."""
 
     def tip(self) -> tuple[Array, Array]:
-        """Place [m] and velocity [m/s] of the tip, world axes, each of shape (3,)."""
+        """Position [m] and velocity [m/s] of the tip, world axes, each of shape (3,)."""
 
     def push(self, force: Array, moment: Array) -> None:
         """Push the tip during the next physics step: (3,) [N] and (3,) [N m], world axes."""
@@ -42,14 +42,14 @@ class Standing(Protocol):
         """Take a physics step."""
 
     def release(self) -> None:
-        """Free what it holds."""
+        """Free the engine's resources."""
 
 
 class Shown(Protocol):
-    """Something that cameras see and the physics does not."""
+    """Something that is visible to cameras but has no part in the physics."""
 
     def surface(self) -> Any:
-        """Its triangles where it is now, a `labkit.tags.surface.Surface`."""
+        """Its triangles at its present pose, a `labkit.tags.surface.Surface`."""
 
 
 class World:
@@ -57,13 +57,13 @@ class World:
 
     Attributes:
         dt: The physics step, in [s].
-        steps: How many physics steps were taken.
+        steps: Number of physics steps taken so far.
         engine: The physics engine that moves its arms, "pybullet" or "mujoco".
-        closed: Whether it was closed.
-        things: What was put into it, the arms apart.
+        closed: Whether the world has been closed.
+        things: The things that were put into it, without the arms.
         arms: The arms that were put into it.
-        shown: What only cameras see.
-        owner: The number of the one thread that may move it, such as that of `live`; None is any.
+        shown: Things that are visible only to cameras.
+        owner: Identifier of the only thread that may step it, such as that of `live`; None is any.
     """
 
     closed = True
@@ -77,8 +77,8 @@ class World:
         Args:
             dt: The physics step, in [s].
             things: What to put into it: `Table`, `Wall`, `Spring`, `Push` …
-            engine: "pybullet" or "mujoco"; None is what the environment variable LABKIT_ENGINE
-                says, else PyBullet where it is installed, else MuJoCo.
+            engine: "pybullet" or "mujoco"; None means the environment variable LABKIT_ENGINE if it
+                is set, otherwise PyBullet if it is installed, otherwise MuJoCo.
 
         Raises:
             UnknownName: There is no such engine.
@@ -104,7 +104,7 @@ class World:
 
         Raises:
             Closed: The world is closed.
-            TypeMismatch: It cannot be put into a world.
+            TypeMismatch: ``thing`` cannot be put into a world.
         """
         if self.closed:
             raise Closed("this world was closed; make a new World")
@@ -165,7 +165,7 @@ def whole_steps(rate: float, dt: float, name: str) -> int:
     if rate == 0.0:
         return 0
     steps = 1.0 / (rate * dt)
-    if steps < 0.999 or abs(steps - round(steps)) > 1e-5 * steps:  # as exact as it is shown
+    if steps < 0.999 or abs(steps - round(steps)) > 1e-5 * steps:  # as precise as the message
         raise OutOfRange(
             f"{name} is {rate:g} Hz: its period is {steps:.6g} physics steps of {dt:g} s, it must "
             f"be a whole number; try {1.0 / (max(1, round(steps)) * dt):g} Hz"

@@ -1,4 +1,4 @@
-"""A run made visible, in a notebook and in a page, by one viewer."""
+"""Replays of runs, in a notebook or on a page, with one viewer."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The dials of a live session: what they turn, and the laws that read them."""
+"""The dials of a live session, and the controllers that read them."""
 
 from __future__ import annotations
 
@@ -17,14 +17,14 @@ _UNITS = {name: source.unit for name, source in EVIDENCE.items()}
 
 @dataclass(frozen=True)
 class Dial:
-    """One number to turn.
+    """A number that the user can change.
 
     Attributes:
-        name: A number of `Plant`, or an argument of a law.
-        min: Its least.
-        max: Its most.
-        value: Where it starts.
-        unit: Of it.
+        name: Name of a number of `Plant`, or of an argument of a controller.
+        min: Least value.
+        max: Largest value.
+        value: Starting value.
+        unit: Unit of the values.
     """
 
     name: str
@@ -35,7 +35,7 @@ class Dial:
 
     @property
     def of_plant(self) -> bool:
-        """Whether it turns the plant, not a law."""
+        """Whether the dial belongs to the plant and not to a controller."""
         return self.name in _OF_PLANT
 
 
@@ -45,14 +45,14 @@ def read_dials(
     """The dials by name.
 
     Args:
-        given: For each a range (low, high) or (low, high, start), and perhaps a unit after it.
-        plant: What they start from.
-        laws: What reads those that are not the plant's.
+        given: For each dial, a range (low, high) or (low, high, start), and perhaps a unit.
+        plant: The plant with the starting values of its dials.
+        laws: The controllers that read the other dials, by name.
 
     Raises:
-        TypeMismatch: A dial is not given a range.
+        TypeMismatch: A dial has no range.
         OutOfRange: A start is outside its range.
-        UnknownName: No law has such an argument, and neither has the plant.
+        UnknownName: A dial is neither a number of the plant nor an argument of a controller.
     """
     dials = {}
     for name, span in given.items():
@@ -80,7 +80,7 @@ def read_dials(
 
 
 def arguments(law: Callable[..., Any]) -> tuple[str, ...]:
-    """The names of a law's arguments."""
+    """The names of a controller's arguments."""
     try:
         return tuple(inspect.signature(law).parameters)
     except (TypeError, ValueError):
@@ -88,18 +88,18 @@ def arguments(law: Callable[..., Any]) -> tuple[str, ...]:
 
 
 class Dialled:
-    """The chosen one of some laws, given the dials that it has arguments for.
+    """The selected controller, called with the values of the dials that are among its arguments.
 
     Attributes:
-        name: Which law.
-        values: Where the dials stand.
-        asked: What the law returned last.
+        name: Name of the selected controller.
+        values: Present values of the dials.
+        asked: Latest command of the controller.
     """
 
     asked: Any = None
 
     def __init__(self, laws: Mapping[str, Callable[..., Any]], dials: Mapping[str, Dial]) -> None:
-        """Begin with the first law and the dials at their start."""
+        """Select the first controller, and set the dials to their starting values."""
         self._laws, self._dials = laws, dials
         self._takes = {
             law: [d for d in dials if d in arguments(f) and not dials[d].of_plant]
@@ -110,22 +110,22 @@ class Dialled:
 
     @property
     def __name__(self) -> str:
-        """The law and its dials, for logs and sentences."""
+        """The controller and its dials, for logs and messages."""
         told = [f"{d} {self.values[d]:g}" for d in self._takes[self.name]]
         return ", ".join([self.name, *told])
 
     def turn(self, name: str, value: float) -> bool:
-        """Turn a dial; whether it is one of the plant."""
+        """Set a dial, and return whether it belongs to the plant."""
         self.values[name] = value
         return self._dials[name].of_plant
 
     def dialled(self, usual: Plant) -> Plant:
-        """The usual plant with the numbers of its dials."""
+        """The usual plant with the values of its dials."""
         numbers: Any = {n: v for n, v in self.values.items() if self._dials[n].of_plant}
         return replace(usual, **numbers, name=f"{usual.name}, dialled")
 
     def __call__(self, state: Any, target: Any) -> Any:
-        """The law's command."""
+        """The selected controller's command."""
         dials = {d: self.values[d] for d in self._takes[self.name]}
         self.asked = self._laws[self.name](state, target, **dials)
         return self.asked

@@ -1,4 +1,4 @@
-"""A motion as a figure of a page: HTML without inline code, for feedback and for the book."""
+"""A motion as a figure on a page, in HTML without inline code, for feedback and for the book."""
 
 from __future__ import annotations
 
@@ -14,12 +14,12 @@ VIEWER = Path(__file__).parents[1] / "data" / "viewer"
 
 
 def recorded_html(data: Mapping[str, Any], description: str, caption: str) -> str:
-    """A replay from the data of `Motion.data`, for a page that brings the viewer with it.
+    """Make a replay from the data of `Motion.data`, for a page that includes the viewer.
 
     Args:
-        data: What the viewer reads.
+        data: The data that the viewer reads.
         description: The motion in words.
-        caption: Text under it.
+        caption: Text under the figure.
 
     Returns:
         HTML; see `viewer_scripts`.
@@ -28,14 +28,14 @@ def recorded_html(data: Mapping[str, Any], description: str, caption: str) -> st
 
 
 def filled(page: str, **values: str) -> str:
-    """A page of `data/replay` with its values, which are HTML."""
+    """A template of `data/replay` with its values, which are HTML, filled in."""
     text = (VIEWER.parent / "replay" / page).read_text(encoding="utf-8")
     return Template(text).substitute(values)
 
 
 @cache
 def viewer_scripts() -> tuple[str, ...]:
-    """The viewer and the robot as scripts to put into a page that must be one file, 1.4 MB."""
+    """The scripts of viewer and robot, 1.4 MB, for a page that must be a single file."""
     return tuple((VIEWER / name).read_text(encoding="utf-8") for name in ("viewer.js", "robot.js"))
 
 
@@ -47,17 +47,17 @@ def figure_html(
     poster: str | None = None,
     root: str | None = None,
 ) -> str:
-    """The figure around some data.
+    """Make the figure for the data of a viewer.
 
     Args:
-        data: What the viewer reads, as JSON.
-        description: A paragraph, opened on demand.
-        caption: Text under it.
-        alt: One or two sentences for readers who cannot see it.
+        data: The data that the viewer reads, as JSON.
+        description: A paragraph that readers can open.
+        caption: Text under the figure.
+        alt: One or two sentences for readers who cannot see the figure.
         poster: Address of a picture for print, for phones before the tap and for browsers without
             WebGL.
         root: Address of the folder with the viewer's files, ending in "/"; None if the page loads
-            boot.js already, or brings the viewer with it.
+            boot.js already, or includes the viewer.
     """
     picture = f'<p class="lk-alt">{escape(alt)}</p>'
     if poster:

@@ -1,4 +1,4 @@
-"""The notebook's widgets.  Only who shows one imports this: it brings anywidget with it."""
+"""The notebook's widgets, imported only when one is shown, because they need anywidget."""
 
 from __future__ import annotations
 
@@ -18,13 +18,13 @@ from .session import Session
 
 
 class Widget(Saved, anywidget.AnyWidget):
-    """Shows some data; viewer and robot go to the page once, not into the notebook."""
+    """Shows data in the viewer, whose files go to the page once and not into the notebook."""
 
     _esm = (VIEWER / "widget.js").read_text(encoding="utf-8")
     data = traitlets.Unicode().tag(sync=True)
 
     def __init__(self, **traits: Any) -> None:
-        """Answer the page that asks for the shared files."""
+        """Make a widget that sends the shared files to a page that asks for them."""
         super().__init__(**traits)
         self.on_msg(self._answer)
 
@@ -41,10 +41,10 @@ class Replay(Widget):
     """Shows one motion."""
 
     def save(self, path: Any) -> None:
-        """Write a page that plays anywhere, without network and kernel, 1.4 MB.
+        """Write a page of 1.4 MB that plays the motion without a network or a kernel.
 
         Args:
-            path: Where to; its name should end in ".html".
+            path: The file, with a name that should end in ".html".
         """
         title, words = escape(str(json.loads(self.data)["title"])), self.words
         scripts = "".join(f"<script>{text}</script>\n" for text in viewer_scripts())
@@ -54,16 +54,16 @@ class Replay(Widget):
 
 
 class Live(Widget):
-    """Shows one session and passes on what the hand does."""
+    """Shows a session and passes the user's actions on to it."""
 
     session: Session
 
     @property
     def log(self) -> Log:
-        """The run that was kept last.
+        """The last run that was kept.
 
         Raises:
-            NothingKept: None was.
+            NothingKept: No run has been kept.
         """
         if not self.session.logs:
             raise NothingKept("no run was kept: press Start, then Keep this run in the view")
@@ -71,10 +71,10 @@ class Live(Widget):
 
     @property
     def logs(self) -> tuple[Log, ...]:
-        """All runs that were kept."""
+        """All runs that have been kept."""
         return tuple(self.session.logs)
 
     def close(self) -> None:
-        """End it; the arm is at rest and free."""
+        """End the session, which leaves the arm at rest and free for other cells."""
         self.session.close()
         super().close()

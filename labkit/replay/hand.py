@@ -1,7 +1,7 @@
-r"""A hand that takes hold of the arm anywhere: what pointer and keys of the live arm pull with.
+r"""A hand that can hold the arm anywhere, moved by the pointer and the keys of the live view.
 
-It is a spring and a damper between a point of a link and a place in the world, no stronger than a
-person's arm,
+It is a spring and a damper between a point of a link and a place in the world, as strong as a
+person's arm at most,
 
 .. math:: f = k\,(x - p) - d\,\dot p, \qquad |f| \le f_{max}, \qquad \tau = J_p^T f ,
 
@@ -20,31 +20,33 @@ from ..shapes import Array, as_array
 from ..world import World
 
 STIFFNESS = 400.0
-"""Of the spring, in [N/m]."""
+"""Stiffness of the spring, in [N/m]."""
 
 DAMPING = 12.0
-"""Of the damper, in [N s/m]."""
+"""Damping of the damper, in [N s/m]."""
 
 STRONGEST = 60.0
-"""The most that it pulls, in [N]."""
+"""Largest force of the hand, in [N]."""
 
 FRESH, SLOW_PAGE = 0.2, 1.0
-"""A pull ends when nothing was heard of the pointer for the first of these times, in [s]. If the
-page says that it is slow, it ends after three of its longest recent turns, at most after the
-second."""
+"""Times without a message about the pointer after which a pull ends, in [s].
+
+The first is the usual one.  For a page that reports itself as slow, the time is three of its
+longest recent update periods, but at most the second."""
 
 STEADY = 5.0
-"""A push by a button goes on for this long, in [s], after the last word of it."""
+"""Time for which a push by a button continues after the last message about it, in [s]."""
 
 
 class Hand:
     """A hand beside an arm; it pulls from `take` or `push` until `let_go`.
 
     Attributes:
-        at: Where it holds the arm, world axes, shape (3,) in [m]; None while it holds nothing.
-        force: What it did in the last physics step, world axes, shape (3,) in [N].
-        move: The page's number of the last move, with which the picture answers.
-        patience: How long it holds on after the last word of a page, in [s].
+        at: Point at which it holds the arm, world axes, shape (3,) in [m]; None while it holds
+            nothing.
+        force: Its force in the last physics step, world axes, shape (3,) in [N].
+        move: The page's number of the last move, which the next picture returns.
+        patience: How long it keeps hold after the last message of a page, in [s].
     """
 
     at: Array | None
@@ -53,7 +55,7 @@ class Hand:
     _to: Array | None
 
     def __init__(self, arm: Arm) -> None:
-        """A hand that holds nothing yet; ``arm.world.put(hand)`` puts it beside the arm."""
+        """Make a hand that holds nothing yet; ``arm.world.put(hand)`` puts it beside the arm."""
         self._arm, self.move, self.patience, self.heard = arm, 0, FRESH, 0.0
         self.let_go()
 
@@ -61,9 +63,9 @@ class Hand:
         """Pull a point towards a place.
 
         Args:
-            body: What to hold, by the number of the joint that turns it; n is the tip's frame.
-            point: Where on it, in its own frame, shape (3,) in [m].
-            to: Towards where, world axes, shape (3,) in [m].
+            body: The body to hold, by the number of its joint; n is the tip's frame.
+            point: Point of the body, in the body's frame, shape (3,) in [m].
+            to: Place to pull the point to, world axes, shape (3,) in [m].
         """
         self._point, self._to = (body, as_array(point, (3,), "point")), as_array(to, (3,), "to")
 
@@ -73,18 +75,18 @@ class Hand:
         Args:
             body: As for `take`.
             point: As for `take`.
-            force: World axes, shape (3,) in [N].
+            force: Force, world axes, shape (3,) in [N].
         """
         self._point, self._to = (body, as_array(point, (3,), "point")), None
         self._force = _bounded(as_array(force, (3,), "force"))
 
     def let_go(self) -> None:
-        """Do nothing."""
+        """Let go of the arm."""
         self._point, self._to, self.at = None, None, None
         self.force = np.zeros(3)
 
     def follow(self, message: dict[str, Any]) -> None:
-        """Do what the page says: pull a point to a place, push it, or let go."""
+        """Carry out a message of the page: pull a point to a place, push it, or let go."""
         slow = min(SLOW_PAGE, max(FRESH, 3.0 * message.get("every", 0.0)))
         self.heard, self.patience = message["heard"], STEADY if "force" in message else slow
         self.move = message.get("move", self.move)
@@ -97,12 +99,12 @@ class Hand:
             self.let_go()
 
     def tire(self) -> None:
-        """Let go if nothing was heard for too long."""
+        """Let go if the last message is too old."""
         if time.monotonic() - self.heard > self.patience:
             self.let_go()
 
     def seen(self) -> dict[str, Any]:
-        """What it does, in plain numbers for who draws it."""
+        """The hand's action as plain numbers, for the page to draw."""
         if self.at is None or self._point is None:
             return {"at": None, "force": None, "link": None}
         at, force = self.at.round(4).tolist(), self.force.round(3).tolist()

@@ -1,4 +1,4 @@
-"""A motion of one arm as data: small enough for a page, described in words from its numbers."""
+"""A motion of one arm as data, small enough for a page, with a description from its numbers."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from ..robot import SIDES, Robot
 from ..shapes import Array, as_array
 from .figure import compact
 
-STEPS = {  # how fine each channel is kept
+STEPS = {  # resolution of each channel
     "q": 1e-4,  # rad
     "target": 1e-4,  # m
     "target_quaternion": 1e-4,
@@ -28,29 +28,29 @@ STEPS = {  # how fine each channel is kept
 }
 
 STILL = 0.005
-"""A joint that travels less than this, in [rad], is told to be at rest."""
+"""A joint that travels less than this, in [rad], is described as being at rest."""
 
 
 @dataclass(frozen=True, eq=False)
 class Motion:
-    """What one arm did, to be seen again.
+    """A recorded motion of one arm, to be replayed.
 
     Attributes:
-        robot: Whose arm: a `Robot`, or "left" or "right" for Baxter's.
+        robot: The arm, as a `Robot`, or "left" or "right" for Baxter's.
         t: Times, shape (N,), increasing, in [s].
         q: Joint angles, shape (N, n), in [rad].
-        title: A few words; the heading and the name for assistive technology.
-        label: Name of this arm in legend and plots.
-        target_position: Where the target was, shape (N, 3), in [m], in the robot's base.
-        target_rotation: How it was turned, shape (N, 3, 3).
-        board_position: Where the tag's board was, shape (N, 3), in [m].
-        board_rotation: How it was turned, shape (N, 3, 3), the tag facing its own +z.
+        title: A few words for the heading and for assistive technology.
+        label: Name of this arm in the legend and in plots.
+        target_position: Position of the target, shape (N, 3), in [m], in the robot's base.
+        target_rotation: Orientation of the target, shape (N, 3, 3).
+        board_position: Position of the tag's board, shape (N, 3), in [m].
+        board_rotation: Orientation of the board, shape (N, 3, 3), the tag facing its own +z.
         path: Points of the desired path, shape (K, 3), in [m].
-        error: How far the tip was from its target, shape (N,), in [m].
+        error: Distance of the tip from its target, shape (N,), in [m].
         tau: Joint torques, shape (N, n), in [N m].
-        force: What acts on the tip, shape (N, 3), in [N], in the robot's base; zero where unknown.
-        ghosts: Other arms' angles by name, each of shape (N, n), in [rad].
-        things: What stands around the arm, by name, as `surroundings.drawn_thing` has it.
+        force: Force on the tip, shape (N, 3), in [N], in the robot's base; zero where unknown.
+        ghosts: Joint angles of other arms by name, each of shape (N, n), in [rad].
+        things: Things around the arm, by name, as `surroundings.drawn_thing` returns them.
     """
 
     robot: Any
@@ -77,13 +77,13 @@ class Motion:
         as_array(self.q, (len(self.t), robot.n), "q")  # an arm that ran away may end at NaN
 
     def data(self, rate: float = 25.0) -> dict[str, Any]:
-        """The motion as the viewer reads it: resampled evenly, whole numbers, differences in time.
+        """The motion as the viewer reads it: resampled evenly and differenced as whole numbers.
 
         Args:
             rate: Samples per second.
 
         Returns:
-            What `to_json` writes.
+            The data that `to_json` writes.
         """
         count = max(2, round((self.t[-1] - self.t[0]) * rate) + 1)
         times = np.linspace(self.t[0], self.t[-1], count)
@@ -114,7 +114,7 @@ class Motion:
         }
 
     def to_json(self, rate: float = 25.0) -> str:
-        """Compact JSON of `data(rate)`; ten seconds with torques and two ghosts fit 40 kB."""
+        """`data(rate)` as compact JSON; ten seconds with torques and two ghosts fit in 40 kB."""
         return compact(self.data(rate))
 
     @cached_property
@@ -136,7 +136,7 @@ class Motion:
 
     @cached_property
     def description(self) -> str:
-        """A paragraph: duration, joint travel, error over time, torques, all from the arrays."""
+        """A paragraph about duration, joint travel, errors and torques, all from the arrays."""
         names = [name.removeprefix(f"{self.robot.name}_") for name in self.robot.joint_names]
         travel = np.ptp(self.q, axis=0)
         most = int(travel.argmax())
@@ -169,10 +169,10 @@ class Motion:
 
 
 def pack(x: Array, step: float) -> dict[str, Any]:
-    """One channel as whole numbers of `step`, differenced down its rows, column after column.
+    """Convert a channel to multiples of `step`, differenced along its rows, column after column.
 
-    Rounding comes before differencing, so the error never exceeds step / 2, however long it is.
-    Smooth channels are shortest differenced twice, noisy ones once.
+    Rounding precedes differencing, so the error never exceeds step / 2, however long the channel.
+    Smooth channels are shortest when differenced twice, noisy ones when differenced once.
 
     Args:
         x: Shape (N, k).
@@ -198,7 +198,7 @@ def unpack(channel: Mapping[str, Any]) -> Array:
 
 
 def resampled(x: Array, t: Array, times: Array) -> Array:
-    """Rows that belong to times ``t``, read at other times; beyond either end they stay.
+    """Interpolate rows at times ``t`` to other times; beyond either end they stay constant.
 
     Args:
         x: Shape (N,) or (N, k).
@@ -212,7 +212,7 @@ def resampled(x: Array, t: Array, times: Array) -> Array:
 
 
 def drawn(robot: Robot) -> dict[str, Any]:
-    """The joints of an arm that the viewer has no meshes of, in the form of Baxter's file."""
+    """The joints of an arm for which the viewer has no meshes, in the form of Baxter's file."""
     names = ("base", *robot.joint_names)
     poses = np.array([*(body["T_parent"] for body in robot.bodies), robot.T_hand_tip])
     turns = np.round(_turns(poses[:, :3, :3]), 9).tolist()
@@ -226,7 +226,7 @@ def drawn(robot: Robot) -> dict[str, Any]:
 
 
 def _quaternions(R: Array | None) -> Array | None:
-    """Rotations (N, 3, 3) to unit quaternions x y z w (N, 4) without jumps of sign."""
+    """Convert rotations (N, 3, 3) to unit quaternions x y z w (N, 4) without jumps of sign."""
     if R is None:
         return None
     q = _turns(R)
@@ -235,7 +235,7 @@ def _quaternions(R: Array | None) -> Array | None:
 
 
 def _turns(R: Array) -> Array:
-    from scipy.spatial.transform import Rotation  # a slow import, for who shows a motion
+    from scipy.spatial.transform import Rotation  # slow to import
 
     return np.asarray(Rotation.from_matrix(R).as_quat(), dtype=np.float64)
 

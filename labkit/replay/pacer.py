@@ -1,4 +1,4 @@
-"""The pacer: a live run keeps the time of the wall."""
+"""The pacer, which keeps a live run in step with real time."""
 
 from __future__ import annotations
 
@@ -9,22 +9,22 @@ FRAME = 1 / 30
 """Time between two pictures, in [s]."""
 
 LATE = 0.1
-"""A loop that is late by more than this, in [s], does not catch up; it goes on from there."""
+"""A loop that is late by more than this, in [s], continues from there without catching up."""
 
 
 class Pacer:
-    """Keeps a run in step with the wall, and tells how well it does."""
+    """Keeps a run in step with real time, and measures how well."""
 
     def __init__(self) -> None:
-        """A clock at zero."""
+        """Make a clock at zero."""
         self._began, self._pictures, self._move = 0.0, deque([(0.0, 0.0)], maxlen=30), 0
 
     def set(self, t: float) -> None:
-        """It is ``t`` now, in [s] of the run."""
+        """Set the time of the run to ``t``, in [s]."""
         self._began = time.monotonic() - t
 
     def ahead(self, t: float) -> float:
-        """How far a run at time ``t`` is ahead of the wall, in [s]; below zero if it is late."""
+        """How far a run at time ``t`` is ahead of real time, in [s]; negative if it is late."""
         ahead = self._began + t - time.monotonic()
         if ahead < -LATE:
             self.set(t)
@@ -39,12 +39,12 @@ class Pacer:
         return move != self._move or time.monotonic() - self._pictures[-1][0] > FRAME
 
     def shown(self, t: float, move: int) -> None:
-        """A picture was shown with the simulator at ``t`` and the hand at ``move``."""
+        """Note that a picture was shown with the simulator at ``t`` and the hand at ``move``."""
         self._move = move
         self._pictures.append((time.monotonic(), t))
 
     @property
     def pace(self) -> float | None:
-        """Simulated seconds in a second of the wall, over the last pictures; None at the start."""
+        """Simulated seconds per real second, over the last pictures; None at the start."""
         (a, x), (b, y) = self._pictures[0], self._pictures[-1]
         return round((y - x) / (b - a), 3) if b > a else None

@@ -1,4 +1,4 @@
-"""Where a live law pulls the tip while nobody else does, and what a wrong direction says of it."""
+"""The direction in which a live controller pulls the tip, and what a wrong direction indicates."""
 
 from __future__ import annotations
 
@@ -13,13 +13,13 @@ from ..model import Model
 from ..shapes import Array
 
 FAR = 0.05
-"""A law that keeps its tip nearer to the target than this, in [m], is not judged."""
+"""Distance of the tip from the target up to which a controller is not judged, in [m]."""
 
 LOOKS = 10
-"""This number of looks in a row, of which there are 30 a second, is judged together."""
+"""Number of consecutive checks, made 30 times a second, that are judged together."""
 
 WEAK = 2.0
-"""A pull smaller than this, in [N], has no direction."""
+"""A pull smaller than this, in [N], has no usable direction."""
 
 _SAYS = {
     1: "pulls the arm away from its target; check the signs of its spring and its damper",
@@ -31,25 +31,25 @@ _RIGHT, _CLEAR = 0.7, 0.85  # cosines
 
 
 class Pull:
-    """The direction of a law's pull, look after look."""
+    """Checks the direction of a controller's pull repeatedly."""
 
     def __init__(self, arm: Arm) -> None:
-        """Nothing was seen yet of what pulls ``arm``."""
+        """Prepare to check the controller that drives ``arm``."""
         self._arm = arm
         self.begin()
 
     def begin(self) -> None:
-        """Another law, or another start."""
+        """Start again, for another controller or another run."""
         self._looks: deque[list[float]] = deque(maxlen=LOOKS)
         self._said = ""
 
     def look(self, asked: Any, T_wd: Array | None, alone: bool) -> str:
-        """What is wrong with the law, once that is clear; else nothing.
+        """Say what is wrong with the controller once that is clear, otherwise nothing.
 
         Args:
-            asked: The law's latest command; only torques have a pull.
-            T_wd: Where the tip should be, shape (4, 4), if that is known.
-            alone: Whether no hand pulls beside the law.
+            asked: The controller's latest command; only torques have a pull.
+            T_wd: Desired pose of the tip, shape (4, 4), if it is known.
+            alone: Whether no hand is pulling as well.
         """
         if T_wd is None or not alone or not isinstance(asked, JointTorque):
             self._looks.clear()
@@ -72,7 +72,7 @@ class Pull:
 
 
 def tip_force(model: Model, q: Array, torque: Array) -> Array:
-    """The force at the tip that joint torques amount to, world axes, shape (3,) in [N]."""
+    """The force at the tip that is equivalent to joint torques, world axes, shape (3,) in [N]."""
     return np.asarray(np.linalg.lstsq(model.tip_jacobian(q).T, torque, rcond=1e-3)[0][:3])
 
 

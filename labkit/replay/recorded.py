@@ -1,4 +1,4 @@
-"""From a log to a motion: a run beside others, drawn as see-through arms."""
+"""Conversion of a log to a motion, with other runs as see-through arms."""
 
 from __future__ import annotations
 
@@ -14,8 +14,8 @@ from .motion import Motion, resampled
 from .surroundings import drawn_thing
 
 STOP, AFTER = 0.02, 0.1
-"""A joint nearer than this to its limit, in [rad], may have met its stop; torque sensors feel that
-for as long as this, in [s]."""
+"""Distance from a limit at which a joint may have met its stop, in [rad], and how long the torque
+sensors feel that, in [s]."""
 
 
 def motion_of(
@@ -29,22 +29,22 @@ def motion_of(
     force: bool = False,
     things: Iterable[Any] = (),
 ) -> Motion:
-    """A run as the viewer shows it.
+    """Convert a run to the form that the viewer shows.
 
     Args:
         log: The run.
-        title: A few words.
-        label: Name of the arm; the controller's by default.
-        ghosts: Other runs by name; where one is shorter, its arm waits at the end.
-        reference: Draw the arm that follows perfectly as a ghost too, where the target is one of
-            joint angles.
-        torque: Keep the torques, which take the most room.
-        force: Draw the force on the tip, as the arm's torque sensors told it; none while a joint
-            is at its stop, which its sensor feels too.
-        things: What stood around the arm: the `Wall`, `Table` and `Spring` of its world.
+        title: A title of a few words.
+        label: Name of the arm; by default the name of the controller.
+        ghosts: Other runs by name; the arm of a shorter run waits at its end.
+        reference: Whether to draw an arm that follows perfectly as a ghost, if the target consists
+            of joint angles.
+        torque: Whether to include the torques, which take the most space.
+        force: Whether to draw the force on the tip as the torque sensors estimated it, except
+            while a joint is at its stop, which its sensor also feels.
+        things: The `Wall`, `Table` and `Spring` objects of the arm's world.
 
     Returns:
-        The motion, the position error of the tip included.
+        The motion, including the position error of the tip.
     """
     T_wd = metrics.target_poses(log)
     arms = {name: resampled(other.q, other.t, log.t) for name, other in (ghosts or {}).items()}
@@ -72,7 +72,7 @@ def motion_of(
 
 
 def _felt(log: Log) -> Any:
-    """The force on the tip, shape (N, 3) in [N]; zero within `AFTER` of a stop's torque."""
+    """Force on the tip, shape (N, 3) in [N], set to zero within `AFTER` of contact with a stop."""
     from scipy.ndimage import binary_dilation
 
     room = np.minimum(log.q - log.robot.lower, log.robot.upper - log.q).min(axis=1)

@@ -1,8 +1,8 @@
-"""What stays in a saved notebook: a picture and its caption, for pages without a kernel.
+"""The picture and caption that remain in a saved notebook, for pages without a kernel.
 
-JupyterLab prefers a widget to all else in an output and says "model not found" where its kernel is
-gone.  So the picture is an output of its own before the widget's, and a style sheet shows one of
-the two: the picture until the widget lives, and beside it in a browser that draws no 3-D.
+JupyterLab prefers a widget to everything else in an output, and shows "model not found" if its
+kernel is gone.  So the picture is a separate output before the widget's, and a style sheet shows
+the picture until the widget runs, and beside the widget in a browser that cannot draw 3-D.
 """
 
 from __future__ import annotations
@@ -20,13 +20,13 @@ from ..shapes import Array
 from .figure import filled
 
 LIFT = 0.6
-"""Power of the picture's brightness, below 1 to lighten what is dark."""
+"""Exponent of the picture's brightness, below 1 to lighten dark parts."""
 
 NEWTON, FORCE = 0.01, "#c77700"
-"""How long a newton of a force's arrow is, in [m], and its colour, as `player.js` has them."""
+"""Length of a force's arrow per newton, in [m], and its colour, as in `player.js`."""
 
 BACK = 0.005
-"""How far what can be seen through is set back, in [m], so that an arm within another stays."""
+"""Distance by which see-through parts are set back, in [m], so that they hide no coinciding arm."""
 
 
 class Saved:
@@ -34,7 +34,7 @@ class Saved:
 
     Attributes:
         words: Caption and description.
-        picture: Makes the picture, a PNG file's bytes.
+        picture: Function that returns the picture as the bytes of a PNG file.
     """
 
     words: str
@@ -48,16 +48,16 @@ class Saved:
         display(data, metadata=metadata, raw=True)
 
     def fallback(self) -> dict[str, str]:
-        """The picture and its caption as an output."""
+        """The picture and its caption as a notebook output."""
         return in_its_place(self.words, self.picture())
 
 
 def in_its_place(words: str, picture: bytes | None = None) -> dict[str, str]:
-    """An output that stands for the widget after it, where there is no kernel.
+    """Make an output that replaces the widget after it if there is no kernel.
 
     Args:
-        words: What is to be seen there.
-        picture: A PNG file's bytes, if there is one.
+        words: What the widget shows.
+        picture: The bytes of a PNG file, if there is a picture.
     """
     told = escape(words)
     data = base64.b64encode(picture or b"").decode()
@@ -74,16 +74,16 @@ def still(
     through: Iterable[tuple[Any, float]] = (),
     force: Any = (0.0, 0.0, 0.0),
 ) -> bytes:
-    """A picture of an arm, with what is around it: a PNG file's bytes.
+    """Draw an arm and its surroundings, as the bytes of a PNG file.
 
     Args:
-        robot: Which arm.
+        robot: The arm.
         q: Joint angles, shape (n,) in [rad].
         *paths: Points of lines, each of shape (K, 3) in [m]: red, black, then grey ones.
-        around: Further points that must be in sight, shape (K, 3) in [m].
+        around: Further points that must be in view, shape (K, 3) in [m].
         alone: Leave out body, head and the other arm.
-        through: What can be seen through: each surface, and its opacity from 0 to 1.
-        force: What acts on the tip, shape (3,) in [N].
+        through: See-through surfaces, each with its opacity from 0 to 1.
+        force: Force on the tip, shape (3,) in [N].
     """
     from PIL import Image, ImageDraw
 
@@ -115,7 +115,7 @@ def still(
     paint, T_cw = ImageDraw.Draw(whole), np.linalg.inv(T_wc)
     for points, colour in lines:
         seen = points @ T_cw[:3, :3].T + T_cw[:3, 3]
-        if (seen[:, 2] > 0.0).all():  # no large wall that reaches behind the camera
+        if (seen[:, 2] > 0.0).all():  # leaves out a large wall that reaches behind the camera
             pixels = lens.project(seen)
             paint.line([*map(tuple, pixels.tolist())], colour, 3)
             if colour == FORCE:

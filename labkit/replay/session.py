@@ -1,7 +1,7 @@
-"""A live session: one thread that owns the simulator and keeps the time of the wall.
+"""A live session: one thread that owns the simulator and keeps real time.
 
-The thread runs the same loop as `run`, tick after tick; between two ticks it reads what came from
-the page.  What can go wrong ends the run with a sentence and leaves the arm at rest.
+The thread runs the same loop as `run` and reads the messages of the page between two ticks.  Any
+error ends the run with a message and leaves the arm at rest.
 """
 
 from __future__ import annotations
@@ -26,13 +26,13 @@ from .surroundings import Surroundings
 from .watch import PATIENCE, Watch, sentence
 
 LONGEST = 120.0
-"""A run is at most this long, in [s]; then the next begins where it ended."""
+"""Longest duration of a run, in [s]; then the next one begins where it ended."""
 
 ABSENT = 60.0
-"""Without a word from any page for this long, in [s], the session pauses."""
+"""Time without a message from any page after which the session pauses, in [s]."""
 
 STEP = 0.05
-"""What the button "Step" advances, in [s]."""
+"""Time by which the button "Step" advances, in [s]."""
 
 _OVER = 10**9  # a tick later than the last of any run
 
@@ -40,10 +40,10 @@ _LIMIT = "a run ends after {:g} s; at t = {:.0f} s the next one began, which Kee
 
 
 class Session(Simulated):
-    """An arm, its laws and a hand, in a thread of their own from `start` to `close`.
+    """An arm, its controllers and a hand, which run in a separate thread until `close`.
 
     Attributes:
-        logs: The runs that were kept, in their order.
+        logs: The runs that were kept, in order.
     """
 
     def __init__(
@@ -55,7 +55,7 @@ class Session(Simulated):
         rate: float,
         show: Callable[[dict[str, Any]], None],
     ) -> None:
-        """A session that has not begun; ``show`` receives each picture, in numbers."""
+        """Make a session that has not begun; ``show`` receives each picture as numbers."""
         super().__init__(arm, rate)
         self.arm, self._show = arm, show
         self._law, self.around = Dialled(laws, dials), Surroundings(arm, target)
@@ -74,10 +74,10 @@ class Session(Simulated):
 
     def tell(self, message: dict[str, Any]) -> None:
         """Take a message from the page; the thread reads it before its next tick."""
-        if message.get("kind") in (None, "files"):  # not for the arm
+        if message.get("kind") in (None, "files"):  # not meant for the arm
             return
         if self.state == "closed" and self._thread.is_alive():
-            self._thread.join(2 * PATIENCE)  # it is on its way out, and reads no more
+            self._thread.join(2 * PATIENCE)  # it is ending and reads no more messages
         self._heard = time.monotonic()
         self._inbox.put({**message, "heard": self._heard})
         if self._thread.is_alive():
@@ -92,7 +92,7 @@ class Session(Simulated):
             self._picture()
 
     def close(self) -> None:
-        """End it; the arm is at rest and free for other cells."""
+        """End the session, which leaves the arm at rest and free for other cells."""
         self._inbox.put({"kind": "close"})
         if self._thread.is_alive() and self._thread is not threading.current_thread():
             self._thread.join(2 * PATIENCE)
@@ -108,12 +108,12 @@ class Session(Simulated):
                 self._one_run()
             self._picture()
         finally:
-            world.things.remove(self._hand)  # another session may follow with its own
+            world.things.remove(self._hand)  # another session may follow with its own hand
             self.arm.become(self._usual)
             world.owner = None
 
     def _one_run(self) -> None:
-        """From a start to whatever ends it: a dial, another law, "keep", an error."""
+        """Run until something ends the run: a dial, another controller, "keep" or an error."""
         self._change()
         self._obey(wait=self.state != "running")
         if self._changes or self.state != "running":
@@ -136,7 +136,7 @@ class Session(Simulated):
             self._picture()
 
     def _change(self) -> None:
-        """Turn what is to be turned between two runs."""
+        """Apply the pending changes between two runs."""
         if self._changes:
             for change in self._changes:
                 change()
@@ -144,7 +144,7 @@ class Session(Simulated):
             self._picture()
 
     def _rest(self, error: BaseException) -> None:
-        """Put the arm to rest and say why."""
+        """Bring the arm to rest and say why."""
         self._hand.let_go()
         self.arm.recover()
         if isinstance(error, Diverged):
@@ -153,19 +153,19 @@ class Session(Simulated):
         self._picture()
 
     def begin(self) -> float:
-        """A run begins."""
+        """Begin a run; the time since then."""
         self._pull.begin()
         self._watch.begins(self._law.name)
         return 0.0
 
     def stop(self) -> None:
-        """A run that only makes room for the next does not stop the arm."""
+        """Stop the arm, unless another run follows immediately."""
         self._watch.ends()
         if self.state != "running":
             super().stop()
 
     def advance(self, k: int) -> tuple[int, float, bool]:
-        """Take the physics of a tick, read what came, and wait for the wall's clock."""
+        """Simulate a tick, wait for real time, and read the messages of the page."""
         self._watch.ends()
         self._watch.check_pace()
         self._hand.tire()
@@ -175,7 +175,7 @@ class Session(Simulated):
             self._steps_left -= 1
             self.state = "running" if self._steps_left else "paused"
         self._pace(t)
-        self._obey()  # after the wait, so that the next tick has what came meanwhile
+        self._obey()  # after the wait, so that the next tick has the newest messages
         while self.state == "paused" and not self._over:
             self._picture()
             self._obey(wait=True)
@@ -184,7 +184,7 @@ class Session(Simulated):
         return (_OVER if self._over or self.state != "running" else k), t, cut
 
     def _pace(self, t: float) -> None:
-        """Wait for the wall, and show a picture if one is due."""
+        """Wait for real time, and show a picture if one is due."""
         if time.monotonic() - self._heard > ABSENT:
             self.state, self.note = "paused", "nobody looked for a minute"
         if self._clock.is_due(self._hand.move):
@@ -193,7 +193,7 @@ class Session(Simulated):
         time.sleep(max(0.0, self._clock.ahead(t)))
 
     def _obey(self, wait: bool = False) -> None:
-        """Do what the page asked for; with `wait`, wait for something."""
+        """Carry out the messages of the page; with `wait`, wait for at least one."""
         with suppress(Empty):
             while True:
                 message = self._inbox.get(wait, ABSENT if wait else None)
@@ -243,7 +243,7 @@ class Session(Simulated):
         self._after(lambda: self._turn(message["name"], float(message["value"])))
 
     def _after(self, change: Callable[[], Any]) -> None:
-        """End the run, for one run has one law on one plant, and begin the next with a change."""
+        """Apply a change after the present run, because a run has one controller and one plant."""
         self._changes.append(change)
         self._over = True
 

@@ -1,4 +1,4 @@
-"""What stands around a live arm: its target, walls, bands and tags, seen and moved by the page."""
+"""The surroundings of a live arm: target, walls, bands and tags, which the page shows and moves."""
 
 from __future__ import annotations
 
@@ -15,9 +15,9 @@ from ..trajectory import PoseSample, Sample
 
 TARGET = "target"
 POINTS = 121
-"""Of this many points is the path of the target."""
+"""Number of points on the drawn path of the target."""
 FASTEST = 2.0
-"""Dragged walls and bands move at most this fast, in [m/s], so no wall jumps over the tip."""
+"""Largest speed of dragged walls and bands, in [m/s], so that no wall jumps over the tip."""
 
 
 class Surroundings:
@@ -28,7 +28,7 @@ class Surroundings:
     """
 
     def __init__(self, arm: Arm, target: Any) -> None:
-        """Look around ``arm``."""
+        """Take the target and the things in the world of ``arm``."""
         self._arm, self._target, self.since = arm, target, 0.0
         self._shift: Array = np.zeros(3)
         self._latest: Any = None
@@ -37,22 +37,22 @@ class Surroundings:
         self._round = duration if duration and _closed(target, duration) else None
 
     def begin_again(self) -> None:
-        """Go back to the target's start, where it has one; a tag's target lives on with its tag."""
+        """Go back to the target's start, if it has one; a tag's target continues with its tag."""
         if hasattr(self._target, "duration"):
             self.since = 0.0
 
     def go_on(self, seconds: float) -> None:
-        """Let the next run begin this much later in the target's time."""
+        """Let the next run begin ``seconds`` later in the target's time."""
         self.since += seconds
 
     def target(self, t: float) -> Any:
-        """The target, moved by who took hold of it; a closed path goes round for ever."""
+        """The target, shifted by the user's dragging; a closed path repeats for ever."""
         t += self.since
         self._latest = self._target(t % self._round if self._round else t)
         return self._shifted()
 
     def _shifted(self) -> Any:
-        """The latest sample, where it was dragged to."""
+        """The latest sample, shifted by the user's dragging."""
         sample = self._latest
         if isinstance(sample, PoseSample) and self._shift.any():
             pose = np.array(sample.pose)
@@ -61,7 +61,7 @@ class Surroundings:
         return sample
 
     def wanted(self) -> Array | None:
-        """The pose that the tip should have, shape (4, 4); None where only a point is named."""
+        """The desired pose of the tip, shape (4, 4); None if the target is only a point."""
         return self._pose(self.target(0.0) if self._latest is None else self._shifted())
 
     def _pose(self, sample: Any) -> Array | None:
@@ -72,7 +72,7 @@ class Surroundings:
         return None
 
     def path(self) -> list[list[float]]:
-        """Where a target that moves will be, undragged, in [m]; empty where nobody can know it."""
+        """Path of a moving target without dragging, in [m]; empty if it is not known in advance."""
         times = np.linspace(0.0, getattr(self._target, "duration", 0.0), POINTS)
         poses = [self._pose(self._target(t)) for t in times] if times[-1] else []
         places = [T[:3, 3] for T in poses if T is not None]
@@ -80,7 +80,7 @@ class Surroundings:
         return np.round(places, 4).tolist() if moves else []
 
     def seen(self) -> dict[str, Any]:
-        """The arm and all around it, in plain numbers for who draws it."""
+        """The arm and its surroundings as plain numbers, for the page to draw."""
         arm, T_wd = self._arm, self.wanted()
         most = arm.robot.effort * (1.0 - 1e-9)
         return {
@@ -92,7 +92,7 @@ class Surroundings:
         }
 
     def things(self) -> dict[str, Any]:
-        """What the page draws, by name."""
+        """The things that the page draws, by name."""
         found: dict[str, Any] = {}
         T_wd = self.wanted()
         if T_wd is not None:
@@ -107,7 +107,7 @@ class Surroundings:
             found["camera"] = placed("camera", camera.T_wc) | {
                 "field": float(np.degrees(2.0 * np.arctan(lens.height / 2.0 / lens.fy))),
                 "ratio": lens.width / lens.height,
-                "fixed": True,  # it stands where its readings are made
+                "fixed": True,  # a camera cannot be dragged
             }
         shown: list[Any] = self._arm.world.shown
         for i, board in enumerate(shown):
@@ -116,7 +116,7 @@ class Surroundings:
         return found
 
     def move(self, name: str, position: Any) -> None:
-        """Put something elsewhere, by the middle of what is drawn, shape (3,) in [m]."""
+        """Move a thing so that its drawn middle is at ``position``, shape (3,) in [m]."""
         position = as_array(position, (3,), "position")
         kind, _, number = name.partition(" ")
         if name == TARGET:
@@ -132,7 +132,7 @@ class Surroundings:
             self._goals[int(number)] = position
 
     def approach(self, seconds: float) -> None:
-        """Bring dragged things nearer to where they were dragged, no faster than a tip can feel."""
+        """Move dragged things towards their goals for ``seconds``, at `FASTEST` at most."""
         world = self._arm.world
         for number, goal in list(self._goals.items()):
             old: Any = world.things[number]
@@ -144,7 +144,7 @@ class Surroundings:
 
 
 def drawn_thing(thing: Any) -> dict[str, Any]:
-    """A wall, a table or a band in plain numbers; nothing of what cannot be seen."""
+    """A wall, a table or a band as plain numbers; empty for things that are not visible."""
     if isinstance(thing, Wall | Table):
         size, colour = (list(map(float, x)) for x in (thing.size, thing.colour))
         return placed("face", thing.T_wf) | {"size": size, "colour": colour}
@@ -165,7 +165,7 @@ def outline(drawn: Mapping[str, Any], tips: Array) -> Array:
 
 
 def faces(things: Mapping[str, Any]) -> list[tuple[Any, float]]:
-    """Walls and tables as surfaces, each with its opacity in the viewer."""
+    """Walls and tables as surfaces, each with its opacity as in the viewer."""
     from ..tags.surface import in_colour
 
     drawn = [x for x in things.values() if x["kind"] == "face"]
@@ -187,8 +187,8 @@ def _moved(thing: Any, position: Array) -> Any:
 
 
 def placed(kind: str, T: Array) -> dict[str, Any]:
-    """Something at a pose, shape (4, 4), in plain numbers."""
-    from scipy.spatial.transform import Rotation  # a slow import, for who looks around
+    """A thing of a kind at a pose, shape (4, 4), as plain numbers."""
+    from scipy.spatial.transform import Rotation  # slow to import
 
     turn = Rotation.from_matrix(T[:3, :3]).as_quat()
     return {
@@ -199,6 +199,6 @@ def placed(kind: str, T: Array) -> dict[str, Any]:
 
 
 def _closed(target: Any, duration: float) -> bool:
-    """Whether a target ends where it began, and has been elsewhere."""
+    """Whether a target moves and ends where it began."""
     first, middle, last = (target(t)[0] for t in (0.0, 0.5 * duration, duration))
     return bool(np.allclose(first, last, atol=1e-6) and not np.allclose(first, middle, atol=1e-6))

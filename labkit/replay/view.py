@@ -1,4 +1,4 @@
-"""Live: the arm in real time under a law of this notebook, and a hand that can pull at it."""
+"""Live: an arm in real time, driven by a controller, with a hand that can pull at it."""
 
 from __future__ import annotations
 
@@ -30,23 +30,23 @@ def live(
     title: str = "The arm, live",
     **dials: Any,
 ) -> Any:
-    """The arm in real time, to be pulled at with the mouse, by touch or by keys.
+    """Show an arm in real time that the user can pull with the mouse, by touch or with keys.
 
-    Nothing runs before "Start" is pressed.  From then on the arm belongs to the cell; its
-    use in other cells raises an error.  A law that raises, loses the arm, is too slow or never
-    returns leaves it at rest and is named beside the picture.
+    Nothing runs before "Start" is pressed.  From then on the arm belongs to the cell, and its use
+    in other cells raises an error.  If a controller raises, loses the arm, is too slow or never
+    returns, the arm is left at rest, and a message beside the picture names the controller.
 
     Args:
-        arm: A simulated arm, best one made for this cell; it starts where it is.
+        arm: A simulated arm, preferably one made for this cell; it starts where it is.
         controller: As for `run`; or several by name, to switch between.  One that has an argument
             with the name of a dial is given the dial's value there: ``law(state, target, Kp)``.
-        target: As for `run`.  A closed path goes round for ever; a target of poses can be dragged,
+        target: As for `run`.  A closed path repeats for ever; a target of poses can be dragged,
             and so can walls, tables, bands and tags.
-        rate: How often the controller is asked, in [Hz].
+        rate: How often the controller is called, in [Hz].
         title: The heading.
-        **dials: For each a range (low, high) or (low, high, start), and perhaps a unit, such as
+        **dials: For each dial a range (low, high) or (low, high, start), and perhaps a unit, as in
             (50.0, 1500.0, 300.0, "N/m").  A number of `Plant`, such as payload, stiction or
-            state_delay, turns the arm itself.
+            state_delay, changes the arm itself.
 
     Returns:
         A view to put last in a cell; ``view.log`` is the run that was kept last, ``view.logs`` are

@@ -1,4 +1,4 @@
-"""The watch over a live law: one that is too slow or never returns is ended, in words."""
+"""A watch over a live controller that ends one that is too slow or never returns, and says why."""
 
 from __future__ import annotations
 
@@ -15,22 +15,22 @@ from statistics import median
 from ..errors import LabkitError
 
 PATIENCE = 1.0
-"""A law that has not returned after this long, in [s], is ended."""
+"""A controller that has not returned after this long, in [s], is ended."""
 
 GIVES_UP = 4.0
-"""One that still has not returned after this long, in [s], needs a new kernel."""
+"""A controller that still has not returned after this long, in [s], requires a new kernel."""
 
 SLOW, CALLS = 1.0, 40
-"""A law is judged by calls that took this long in all, in [s], and at least by this number."""
+"""Least total duration, in [s], and least number of calls by which a controller is judged."""
 
 TURN = 5e-4
-"""Python's threads change this often, in [s], while an arm is live; other cells let it go on."""
+"""Switch interval of Python's threads while an arm is live, in [s], lest other cells delay it."""
 
-_LOOK = 0.05  # between two looks, in [s]
+_LOOK = 0.05  # period of the watch, in [s]
 
 
 class _Turns:
-    """Threads change often while an arm is live, and as usual when the last one has ended."""
+    """Switches threads often while an arm is live, and as usual after the last one has ended."""
 
     _lock, _live, _usual = threading.Lock(), 0, 0.0
 
@@ -49,37 +49,37 @@ class _Turns:
 
 
 class _Ended(BaseException):
-    """Thrown into a law that does not return; no `except Exception` of a student's stops it."""
+    """Raised in a controller that does not return; a student's `except Exception` misses it."""
 
 
 class TooSlow(LabkitError):
-    """A law takes longer than its tick."""
+    """A controller takes longer than a tick."""
 
 
 class Watch:
-    """Looks at how long a law takes, call by call."""
+    """Measures how long each call of a controller takes."""
 
     def __init__(self, period: float, say: Callable[[str], None]) -> None:
-        """Watch a law that is called once in a period [s]; ``say`` tells of one that is stuck."""
+        """Watch a controller called once in a period [s]; ``say`` is called if it gets stuck."""
         self._period, self._say = period, say
         self._calls, self._within, self._since, self._name = 0, False, 0.0, ""
         self._times: deque[float] = deque(maxlen=round(1.0 / period))
 
     def begins(self, name: str) -> None:
-        """From here on the law of this name computes."""
+        """Note that a call of the controller with this name begins."""
         self._calls += 1
         if name != self._name:
             self._times.clear()
         self._name, self._since, self._within = name, time.perf_counter(), True
 
     def ends(self) -> None:
-        """It returned, or its run is over."""
+        """Note that the call has returned, or that the run is over."""
         if self._within:
             self._times.append(time.perf_counter() - self._since)
         self._within = False
 
     def check_pace(self) -> None:
-        """Raise `TooSlow` if half of its calls take longer than a period."""
+        """Raise `TooSlow` if half of the recent calls took longer than a period."""
         times = self._times
         if len(times) >= CALLS and sum(times) > SLOW and median(times) > self._period:
             took = 1e3 * median(self._times)
@@ -90,13 +90,14 @@ class Watch:
             )
 
     def over(self, thread: threading.Thread) -> None:
-        """Watch over the laws of ``thread`` as long as it lives."""
+        """Watch the controllers of ``thread`` as long as it lives."""
         threading.Thread(target=self._look, args=(thread,), daemon=True).start()
 
     def _look(self, thread: threading.Thread) -> None:
-        """End a law that is seen in the same call for `PATIENCE`, look after look.
+        """End a controller that stays in the same call for `PATIENCE`.
 
-        Looks are counted, not seconds: where another cell holds Python's lock, this waits too.
+        Checks are counted instead of seconds, because this thread also waits while another cell
+        holds Python's lock.
         """
         looks, call = 0, -1
         with _Turns():
@@ -119,7 +120,7 @@ class Watch:
 
 
 def sentence(error: BaseException, name: str) -> str:
-    """What stopped the arm, and in which line of the student's."""
+    """The reason why the arm stopped, with the student's line that caused it."""
     if isinstance(error, _Ended):
         what = f"{name} did not return; does every loop in it come to its end?"
     elif isinstance(error, LabkitError):
@@ -132,5 +133,5 @@ def sentence(error: BaseException, name: str) -> str:
 
 
 def _library(file: str) -> bool:
-    """Whether a line of code, by its file, is labkit's or an installed package's."""
+    """Whether a file belongs to labkit or to an installed package."""
     return file.startswith(str(Path(__file__).parents[1])) or "site-packages" in file

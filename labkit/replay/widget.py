@@ -1,4 +1,4 @@
-"""The same viewer in a notebook, as an anywidget."""
+"""The viewer as a widget in a notebook."""
 
 from __future__ import annotations
 
@@ -16,25 +16,25 @@ from .saved import body, still
 from .surroundings import faces, outline, placed
 
 BOARD = 0.12
-"""Side of the square that stands for a tag's board, as `marks.js` draws it, in [m]."""
+"""Side of the square that represents a tag's board, as in `marks.js`, in [m]."""
 
 
 GHOSTS = (0.12, 0.47, 0.82), (0.78, 0.47, 0.0), (0.16, 0.62, 0.4), (0.6, 0.36, 0.77)
 SEEN_THROUGH = 0.38
-"""Colours and opacity of see-through arms, as `player.js` and `body.js` have them."""
+"""Colours and opacity of see-through arms, as in `player.js` and `body.js`."""
 
 
 def show(motion: Motion) -> Any:
-    """A replay to put last in a cell.
+    """Make a replay to put at the end of a cell.
 
     Args:
-        motion: What to show.
+        motion: The motion to show.
 
     Returns:
         A widget; its ``save("run.html")`` writes a page.
 
     Raises:
-        TypeMismatch: It is not a `Motion`.
+        TypeMismatch: ``motion`` is not a `Motion`.
     """
     if not isinstance(motion, Motion):
         raise TypeMismatch(
@@ -49,7 +49,7 @@ def show(motion: Motion) -> Any:
 
 
 def motion_still(motion: Motion) -> bytes:
-    """A motion half way, or where the force is largest, as the viewer shows it: a PNG file."""
+    """Draw a motion half way, or at its largest force, as the viewer would, as a PNG file."""
     from ..model import Model
     from ..tags.surface import in_colour
 

@@ -1,4 +1,4 @@
-"""Physics engines behind one protocol; each has one module, the only one that imports it."""
+"""Physics engines behind one protocol; only the module of an engine imports that engine."""
 
 from __future__ import annotations
 
@@ -12,20 +12,20 @@ from ..robot import Robot
 from .engine import Engine
 
 ENGINES = {"pybullet": "PyBullet", "mujoco": "MuJoCo"}
-"""Their modules and classes; the first that is installed is the default."""
+"""The engines' modules and classes; the first one installed is the default."""
 
 
 def installed() -> list[str]:
-    """The engines that are there."""
+    """The engines that are installed."""
     return [name for name in ENGINES if find_spec(name)]
 
 
 def chosen(name: str | None = None) -> str:
-    """The engine that a world asks for; None is that of LABKIT_ENGINE, or the first installed.
+    """Check the name of an engine; None means that of LABKIT_ENGINE, or the first installed.
 
     Raises:
         UnknownName: There is no such engine.
-        LabkitError: It is not installed.
+        LabkitError: The engine is not installed.
     """
     name = name or os.environ.get("LABKIT_ENGINE") or next(iter(installed()), "mujoco")
     if name not in ENGINES:
@@ -40,6 +40,6 @@ def chosen(name: str | None = None) -> str:
 
 
 def new_arm(name: str, robot: Robot, plant: Plant, dt: float) -> Engine:
-    """An arm in the engine ``name``, in steps of ``dt`` [s]."""
+    """Make an arm in the engine ``name``, with steps of ``dt`` [s]."""
     made: Engine = getattr(import_module(f".{name}", __name__), ENGINES[name])(robot, plant, dt)
     return made

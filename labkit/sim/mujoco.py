@@ -9,12 +9,12 @@ from ..robot import Robot
 from ..shapes import Array
 
 _OFF = (
-    mujoco.mjtDisableBit.mjDSBL_CONSTRAINT,  # stops, contacts and friction are the lab's
+    mujoco.mjtDisableBit.mjDSBL_CONSTRAINT,  # labkit computes stops, contacts and friction
     mujoco.mjtDisableBit.mjDSBL_SENSOR,
     mujoco.mjtDisableBit.mjDSBL_ACTUATION,
-    mujoco.mjtDisableBit.mjDSBL_AUTORESET,  # a runaway is for `run` to see
+    mujoco.mjtDisableBit.mjDSBL_AUTORESET,  # `run` must see an arm that runs away
 )
-# It would write its warnings to a file in the working folder.
+# By default, MuJoCo writes warnings to a file in the working folder.
 mujoco.set_mju_user_warning(lambda text: None)
 
 
@@ -42,4 +42,4 @@ class MuJoCo:
         mujoco.mj_step(self._model, self._data)
 
     def close(self) -> None:
-        pass  # MuJoCo frees it with the object
+        pass  # MuJoCo frees its memory with the object

@@ -19,10 +19,10 @@ with quiet():
 
 
 class PyBullet:
-    """An arm in a world of PyBullet's."""
+    """An arm in PyBullet."""
 
     def __init__(self, robot: Robot, plant: Plant, dt: float) -> None:
-        """Load the arm; nothing that PyBullet does unasked is left in it."""
+        """Load the arm, without the damping, limits and motors that PyBullet adds by default."""
         self._client: int = bullet.connect(bullet.DIRECT)
         here = {"physicsClientId": self._client}
         bullet.setTimeStep(dt, **here)
@@ -55,7 +55,7 @@ class PyBullet:
         return self._state
 
     def step(self, tau: Array, ddq: Array | None = None) -> None:
-        if self._geared is not None:  # PyBullet has no rotors: take off what they would take
+        if self._geared is not None:  # PyBullet has no rotors: subtract their torque
             if ddq is None:
                 ddq = self._geared.forward_dynamics(*self._state, tau)
             tau = tau - self._rotors * ddq

@@ -1,4 +1,4 @@
-"""Tags: boards that carry them, cameras that see them, and where a picture says that they are."""
+"""Tags, the boards that carry them, the cameras that see them, and pose estimates from pictures."""
 
 from __future__ import annotations
 

@@ -1,6 +1,6 @@
 """A board in the world that carries a tag: still, moved by hand, or moved on a trajectory.
 
-It has neither weight nor substance: cameras see it, arms pass through it.
+It has no part in the physics: cameras see it, and arms pass through it.
 """
 
 from __future__ import annotations
@@ -22,23 +22,23 @@ _GREY = (0.5, 0.5, 0.5)
 
 
 class Board:
-    """A tag on a plate.  Put as many into a world as you like.
+    """A tag on a plate; a world can contain any number of them.
 
     Attributes:
-        tag: What is printed on it.
-        world: Where it is.
+        tag: The tag that is printed on it.
+        world: The world that it is in.
     """
 
     def __init__(self, world: World, tag: Tag, T_wm: Any) -> None:
         """Put a board into ``world``.
 
         Args:
-            world: Where to.
-            tag: What is printed on it.
+            world: The world to put it in.
+            tag: The tag that is printed on it.
             T_wm: Pose of the tag in the world, shape (4, 4); its z axis comes out of the paper.
 
         Raises:
-            TypeMismatch: The first is not a world, or the second not a tag.
+            TypeMismatch: ``world`` is not a world, or ``tag`` is not a tag.
             Closed: The world is closed.
         """
         if not isinstance(world, World) or not isinstance(tag, Tag):
@@ -53,7 +53,7 @@ class Board:
         world.show(self)
 
     def place(self, T_wm: Any) -> None:
-        """Put the board somewhere, where it stays.
+        """Put the board at a pose, where it stays.
 
         Args:
             T_wm: Pose of the tag in the world, shape (4, 4).
@@ -63,14 +63,14 @@ class Board:
         self._since = self.world.t
 
     def move(self, motion: Target) -> None:
-        """Move on a trajectory, from this moment of the world's clock on.
+        """Move the board on a trajectory that starts now, by the world's clock.
 
         Args:
-            motion: A function of the time since now, in [s]; its poses are the tag's, its points
-                are where the tag's middle goes, turned as it is now.
+            motion: A function of the time since now, in [s].  It returns poses of the tag, or
+                points for the tag's middle, which then keeps its present orientation.
 
         Raises:
-            TypeMismatch: It is not a function, or its samples are neither poses nor points.
+            TypeMismatch: ``motion`` is not a function, or its samples are neither poses nor points.
         """
         if not callable(motion):
             raise TypeMismatch(
@@ -88,11 +88,11 @@ class Board:
 
     @property
     def T_wm(self) -> Array:
-        """Where the tag really is now, shape (4, 4)."""
+        """True present pose of the tag, shape (4, 4)."""
         return self.pose_at(self.world.t)
 
     def pose_at(self, t: float) -> Array:
-        """Where the tag is at time ``t`` of the world's clock, by its present motion.
+        """Pose of the tag at time ``t`` [s] of the world's clock, by its present motion.
 
         Returns:
             `T_wm`, shape (4, 4), read-only.

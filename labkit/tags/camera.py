@@ -21,24 +21,24 @@ from .tag import Picture
 from .visuals import RobotVisuals, scenery
 
 BACKGROUND = 255
-"""Grey level where there is nothing to see."""
+"""Grey level of the empty background."""
 
-_MARGIN = 4  # pixels around a tag's paper that are drawn with it
-_INSTANTS = 9  # of an exposure that are drawn
-_FINE = 4  # samples of a pixel along either side, where something may hide a tag
+_MARGIN = 4  # pixels that are drawn around a tag's paper
+_INSTANTS = 9  # that are drawn during an exposure
+_FINE = 4  # samples of a pixel along each side where something may hide a tag
 
 
 class Camera:
     """A camera that takes pictures of a world.
 
     Attributes:
-        world: What it looks at.
+        world: The world that it sees.
         intrinsics: Its lens and sensor.
         noise: Standard deviation of each colour of each pixel, in grey levels.
-        samples: How fine a tag's edges are drawn: at s^2 points of each pixel.
+        samples: The number s of samples along each side of a pixel on an edge of a tag.
         blur: Standard deviation of the blur of a lens out of focus, in [px].
-        exposure: How long the shutter is open about the moment of a picture, in [s]: boards that
-            move are smeared.  The robot, and with it a camera in its hand, is taken as still.
+        exposure: Time for which the shutter is open, centred on the time of the picture, in [s].
+            Moving boards are smeared; the robot, and a camera in its hand, count as still.
     """
 
     def __init__(
@@ -56,20 +56,21 @@ class Camera:
         """Fix a camera in ``world``.
 
         Args:
-            world: What it looks at.
+            world: The world that it sees.
             T_wc: Pose of the camera in the world (z forward, x right, y down), shape (4, 4);
                 `looking_at` makes one.
-            intrinsics: Lens and sensor; None is 640 x 480 pixels and a focal length of 515 px.
+            intrinsics: Lens and sensor; None means 640 x 480 pixels and a focal length of 515 px.
             noise: Standard deviation of each colour of each pixel, in grey levels of 255.
-            samples: s, for s^2 points of each pixel on an edge of a tag; 1 makes it jagged.
-            blur: Of a lens out of focus, standard deviation in [px].
-            exposure: How long the shutter is open, in [s].
-            seed: Of the noise.
+            samples: The number s of samples along each side of a pixel on an edge of a tag; with 1,
+                edges are jagged.
+            blur: Standard deviation of the blur of a lens out of focus, in [px].
+            exposure: Time for which the shutter is open, in [s].
+            seed: Seed of the noise.
 
         Raises:
             TypeMismatch: The world is not a `World`, the lens not `Intrinsics`, or the seed not a
                 number.
-            OutOfRange: ``noise`` or ``samples`` is not what it may be.
+            OutOfRange: ``noise`` or ``samples`` is outside its permitted range.
         """
         if not isinstance(world, World):
             raise TypeMismatch(f"world is {shown(world)}, expected a World; an arm's is arm.world")
@@ -90,10 +91,10 @@ class Camera:
 
     @classmethod
     def in_hand(cls, arm: Arm, intrinsics: Intrinsics | None = None, **options: Any) -> Camera:
-        """A hand's camera, such as Baxter's, which moves with the arm.
+        """Put a camera into a hand, as on Baxter, so that it moves with the arm.
 
         Args:
-            arm: Whose hand.
+            arm: The arm with the hand.
             intrinsics: As for a fixed camera.
             **options: The other arguments of a fixed camera.
 
@@ -110,7 +111,7 @@ class Camera:
         return camera
 
     def place(self, T_wc: Any) -> None:
-        """Fix the camera somewhere, also if it was in a hand.
+        """Fix the camera at a pose, even if it was in a hand.
 
         Args:
             T_wc: Pose of the camera in the world, shape (4, 4).
@@ -120,12 +121,12 @@ class Camera:
 
     @property
     def T_wc(self) -> Array:
-        """Where the camera really is now, shape (4, 4)."""
+        """True present pose of the camera, shape (4, 4)."""
         return self._fixed if self._hand is None else _held(self._hand, self._hand.truth().q)
 
     @property
     def reported_T_wc(self) -> Array:
-        """Where the robot thinks that the camera is: by its reported joint angles, if in a hand.
+        """Pose of the camera as the robot knows it, from the reported joint angles if in a hand.
 
         Returns:
             Shape (4, 4).
@@ -148,10 +149,10 @@ class Camera:
         return self._developed(self._exposed(picture, robot, T_wc)[0], [size])
 
     def tag_image(self) -> Picture:
-        """A quick picture of only the tags and of what hides them; the rest stays blank.
+        """Take a quick picture of only the tags and of what hides them; the rest stays blank.
 
         Returns:
-            As `image`; without noise, both are the same within a tag's paper.
+            As for `image`; without noise, both are the same within a tag's paper.
 
         Raises:
             Closed: The world is closed.
@@ -161,7 +162,7 @@ class Camera:
         return self._developed(*self._exposed(picture, robot, T_wc))
 
     def _exposed(self, picture: Any, robot: RobotVisuals, T_wc: Array) -> tuple[Any, list[Window]]:
-        """A picture with the tags printed over it, as a mean over the exposure; and where."""
+        """The picture with the tags printed on it, averaged over the exposure; their windows."""
         if not self.exposure:
             return picture, self._print(picture, robot, T_wc, self.world.t)
         total, windows = np.zeros_like(picture), []
@@ -172,13 +173,13 @@ class Camera:
         return total, windows
 
     def _focus(self) -> tuple[RobotVisuals, Array]:
-        """The robot as it stands now, and where the camera is."""
+        """The robot in its present posture, and the pose of the camera."""
         if self.world.closed:
             raise Closed("this camera's world was closed; make a new World, and a Camera in it")
         return RobotVisuals([(arm.robot, arm.truth().q) for arm in self.world.arms]), self.T_wc
 
     def _robot_in(self, robot: RobotVisuals, T_wc: Array, window: Window, depth: float) -> Surface:
-        """Those pieces of the robot that reach into a window's cone, up to a depth."""
+        """The pieces of the robot that reach into a window's cone, up to a depth."""
         centres, radii = robot.balls
         x, y, z = ((centres - T_wc[:3, 3]) @ T_wc[:3, :3]).T
         outside = (z + radii < NEAR) | (z - radii > depth)
@@ -189,7 +190,7 @@ class Camera:
         return robot.surface(~outside)
 
     def _print(self, picture: Any, robot: RobotVisuals, T_wc: Array, t: float) -> list[Window]:
-        """Print the tags' papers over a picture, and over them what hides them; returns where."""
+        """Print the tags' papers over a picture, then what hides them; returns their windows."""
         boards = [thing for thing in self.world.shown if isinstance(thing, Board)]
         poses = [se3.inverse(T_wc) @ board.pose_at(t) for board in boards]
         windows = []
@@ -216,7 +217,7 @@ class Camera:
         window: Window,
         depth: float,
     ) -> None:
-        """Draw what stands before a board over its part of the picture."""
+        """Draw what is in front of a board over its part of the picture."""
         T_wm = board.T_wm
         near = joined([self._robot_in(robot, T_wc, window, depth), scenery(self.world)])
         height = (near.corners - T_wm[:3, 3]) @ T_wm[:3, 2]
@@ -248,12 +249,12 @@ class Camera:
         return Window(int(low[0]), int(low[1]), int(wide), int(tall)), float(corners[:, 2].max())
 
     def _developed(self, picture: Any, windows: list[Window]) -> Picture:
-        """Through the lens and with the sensor's noise where something was drawn, frozen."""
+        """Apply lens and blur, and noise where something was drawn; the result is read-only."""
         drawn = np.zeros(picture.shape[:2], np.uint8)
         for window in windows:
             drawn[window.rows, window.columns] = 1
         if self._seen_at is not None:
-            at, nothing = self._seen_at, cast(Any, None)  # the second map is in the first
+            at, nothing = self._seen_at, cast(Any, None)  # the first map holds both coordinates
             # Linear: OpenCV's cubic kernel (a = -0.75) shifts an edge by up to 0.047 pixels.
             picture = cv2.remap(picture, at, nothing, cv2.INTER_LINEAR)
             drawn = np.asarray(cv2.remap(drawn, at, nothing, cv2.INTER_NEAREST))
@@ -269,7 +270,7 @@ class Camera:
 
 
 def _held(arm: Arm, q: Array) -> Array:
-    """Pose in the world of the camera in an arm's hand, at joint angles ``q``."""
+    """World pose of the camera in an arm's hand at joint angles ``q``."""
     T_hc: Any = arm.robot.T_hand_camera
     T_tc = se3.inverse(arm.robot.T_hand_tip) @ T_hc
     return locked(arm.model.pose(q) @ T_tc)
@@ -279,15 +280,15 @@ def looking_at(eye: Any, at: Any, up: Any = (0.0, 0.0, 1.0)) -> Array:
     """The pose of a camera that looks at a point.
 
     Args:
-        eye: Where the camera is, world axes, shape (3,) in [m].
-        at: What it looks at, shape (3,) in [m].
-        up: Which way is up in the picture, shape (3,).
+        eye: Position of the camera, world axes, shape (3,) in [m].
+        at: Point that it looks at, world axes, shape (3,) in [m].
+        up: Direction that is up in the picture, world axes, shape (3,).
 
     Returns:
         `T_wc`, shape (4, 4).
 
     Raises:
-        OutOfRange: The two points are one, or the camera looks along ``up``.
+        OutOfRange: The two points coincide, or the camera looks along ``up``.
     """
     eye, at, up = (as_vector(x, 3, n) for x, n in ((eye, "eye"), (at, "at"), (up, "up")))
     z = at - eye

@@ -1,14 +1,14 @@
 r"""Detection: from a picture to the poses of the tags in it.
 
 OpenCV finds the tags and refines their corners as AprilTag does; `edges` makes the corners exact.
-A flat square seen from afar looks the same tilted one way or the other, so there are two poses to
-choose from (Collins & Bartoli 2014, "Infinitesimal plane-based pose estimation", IPPE); the ratio
-of their errors says how safe the choice is.
+A flat square seen from afar looks the same tilted in either of two directions, so there are two
+poses to choose from (Collins & Bartoli 2014, "Infinitesimal plane-based pose estimation", IPPE);
+the ratio of their errors says how reliable the choice is.
 
 The covariance is that of least squares, :math:`J^+ C J^{+T}`, with J the derivative of the corners'
 pixels with respect to a small motion of the tag, and C the corners' covariance from the edges of
-this very picture.  A tag whose edges are not seen well, or whose corners are not those of a square
-as well as C says, is not reported: half hidden, it would be found in the wrong place.
+the same picture.  A tag whose edges are not seen well, or whose corners differ from those of a
+square by more than C explains, is not reported, because a half-hidden tag has a wrong pose.
 """
 
 from __future__ import annotations
@@ -32,7 +32,7 @@ if TYPE_CHECKING:
     from .camera import Camera
 
 _SQUARE = 6.0
-"""How many sigmas corners may be off those of a square."""
+"""Largest error of the corners relative to those of a square, in standard deviations."""
 
 _NONE = Intrinsics().distortion
 
@@ -53,13 +53,14 @@ class Detection:
 
     Attributes:
         id: Its number.
-        corners: Its corners in the picture, clockwise from its upper left, shape (4, 2) in [px].
-        noise: Standard deviation of a corner's coordinate, as its edges tell it, in [px].
+        corners: Its corners in the picture, clockwise from the tag's upper left, shape (4, 2) in
+            [px].
+        noise: Standard deviation of a corner's coordinate, estimated from the edges, in [px].
         T_cm: Pose of the tag in the camera's frame, shape (4, 4).
-        error: What is left between the corners and the pose's, root mean square, in [px].
+        error: Root mean square distance between the corners and those of the pose, in [px].
         ratio: How many times worse the other pose fits, at least 1; near 1 the tilt is a guess.
-        covariance: Of the position [m] and of the orientation, as a rotation vector [rad], in the
-            camera's axes, shape (6, 6).
+        covariance: Covariance of the position [m] and of the orientation, as a rotation vector
+            [rad], in the camera's axes, shape (6, 6).
     """
 
     id: int
@@ -79,11 +80,11 @@ def detect_tags(
     Args:
         image: Grey levels (height, width) or RGB (height, width, 3), uint8.
         camera: The camera that took it, or its intrinsics.
-        size: Side of the black square, in [m]; or a size for each number, and tags of other numbers
-            are passed over.
+        size: Side of the black square, in [m]; or a mapping from tag numbers to sizes; tags
+            with other numbers are ignored.
 
     Returns:
-        What was found, by number; empty if there is none.
+        The detected tags in the order of their numbers; empty if there are none.
 
     Raises:
         TypeMismatch: The image is not a picture, or the camera not a camera.
@@ -104,15 +105,15 @@ def detect_tags(
 
 
 def find_tag(detections: Sequence[Detection], id: int) -> Detection:
-    """The detection with a number.
+    """The detection of the tag with a given number.
 
     Args:
-        detections: From `detect_tags`.
-        id: The number.
+        detections: Result of `detect_tags`.
+        id: Number of the tag.
 
     Raises:
-        TagNotFound: It is not among them.
-        DuplicateTag: It is there twice.
+        TagNotFound: The tag is not among them.
+        DuplicateTag: The tag is among them more than once.
     """
     hits = [d for d in detections if d.id == id]
     if not hits:
@@ -130,7 +131,7 @@ def find_tag(detections: Sequence[Detection], id: int) -> Detection:
 
 
 def tag_poses(corners: Any, camera: Camera | Intrinsics, size: float) -> list[Array]:
-    """The two poses at which a tag's corners look about as they do, best first, by IPPE alone.
+    """The two poses that approximately explain a tag's corners, best first, by IPPE alone.
 
     Args:
         corners: Pixels, clockwise from the tag's upper left, shape (4, 2).
@@ -162,7 +163,7 @@ def tag_poses(corners: Any, camera: Camera | Intrinsics, size: float) -> list[Ar
 
 
 def tag_pose(corners: Any, camera: Camera | Intrinsics, size: float) -> Array:
-    """The pose at which a tag's corners look most as they do: IPPE's best, then least squares.
+    """The pose that best explains a tag's corners, by IPPE and then least squares.
 
     Args:
         corners: Pixels, clockwise from the tag's upper left, shape (4, 2).
@@ -180,7 +181,7 @@ def tag_pose(corners: Any, camera: Camera | Intrinsics, size: float) -> Array:
 
 
 def reprojection_error(T_cm: Any, corners: Any, camera: Camera | Intrinsics, size: float) -> float:
-    """How far a pose's corners are from those seen, root mean square, in [px]; behind, infinitely.
+    """Root mean square distance of a pose's corners from those seen, in [px]; infinite if behind.
 
     Args:
         T_cm: Pose of the tag in the camera's frame, shape (4, 4).
@@ -197,21 +198,21 @@ def reprojection_error(T_cm: Any, corners: Any, camera: Camera | Intrinsics, siz
 
 
 def pose_covariance(T_cm: Any, camera: Camera | Intrinsics, size: float, noise: Any) -> Array:
-    """What an error of the corners means for the pose.
+    """Covariance of a pose that results from errors of the corners.
 
     Args:
         T_cm: Pose of the tag in the camera's frame, shape (4, 4).
         camera: The camera, or its intrinsics.
         size: Side of the black square, in [m].
-        noise: Standard deviation of each of the corners' coordinates, in [px], as if they erred
-            apart; or their covariance, x and y in turn, shape (8, 8) in [px^2].
+        noise: Standard deviation of each of the corners' coordinates, in [px], with independent
+            errors; or their covariance, x and y in turn, shape (8, 8) in [px^2].
 
     Returns:
         Shape (6, 6), as `Detection.covariance`.
     """
     lens, T = _intrinsics(camera), se3.as_pose(T_cm, "T_cm")
     arms = tag_corners(size) @ T[:3, :3].T
-    turn, place = np.zeros(3), np.array(T[:3, 3])  # small turns of what is turned already
+    turn, place = np.zeros(3), np.array(T[:3, 3])  # a small rotation after the pose's own
     bent = np.array(lens.distortion)
     J = cv2.projectPoints(arms, turn, place, lens.matrix, bent)[1][:, [3, 4, 5, 0, 1, 2]]
     C = noise if np.ndim(noise) else as_number(noise, "noise", above=0.0) ** 2 * np.eye(8)
@@ -238,7 +239,7 @@ def _detection(id: int, outline: Outline, lens: Intrinsics, size: float) -> Dete
 
 
 def _polished(T_cm: Array, corners: Array, lens: Intrinsics, size: float) -> Array:
-    """The nearest pose that fits the pixels best."""
+    """The pose near ``T_cm`` that fits the pixels best."""
     turn, place = se3.rotation_log(T_cm[:3, :3])[:, None], np.array(T_cm[:3, 3:])
     bent = np.array(lens.distortion)
     return _pose(*cv2.solvePnPRefineLM(tag_corners(size), corners, lens.matrix, bent, turn, place))

@@ -1,17 +1,17 @@
-r"""Edges: the corners of a dark square to a few hundredths of a pixel, and how sure they are.
+r"""Edges: the corners of a dark square to a few hundredths of a pixel, with their covariance.
 
-Each side is met by short rows of samples across it.  Along such a row the picture rises from dark
-to light; where a sharp edge would have to be to make the same sum is where the side is, however the
-pixels blurred it.  A line through these places, by total least squares, is the side; the sides'
-intersections are the corners.  Where a row is shorter than the rise, a step towards the side falls
-short of it, so the rows are laid anew about the last sides until these stay.
+Short rows of samples cross each side.  Along such a row the picture rises from dark to light, and
+the side is where a sharp edge would give the same sum of grey levels, however much the pixels
+blurred it.  The side is the line through these places by total least squares, and the corners are
+the intersections of the sides.  If a row is shorter than the rise, a step towards the side falls
+short of it, so the rows are centred on the latest sides again until the sides stay the same.
 
 A line through n places, each off by :math:`\sigma`, is off by :math:`a + b x` at x along the side
 from their middle, where a has the variance :math:`\sigma^2/n` and b :math:`\sigma^2/\sum x^2`.
-The corner of two sides with unit normals N is off by :math:`N^{-1}` times what they are off there.
+The error of the corner of two sides with unit normals N is :math:`N^{-1}` times theirs there.
 Neighbouring places share pixels, so sigma comes from the means of groups of them (batch means; Law,
-Simulation Modeling and Analysis, section 9.5.3).  To a the levels of black and white add, which all
-places of a side share.
+Simulation Modeling and Analysis, section 9.5.3).  The errors of the levels of black and white
+add to a, because all places of a side share them.
 """
 
 from __future__ import annotations
@@ -26,11 +26,11 @@ from .intrinsics import Intrinsics
 from .tag import CELLS, Picture
 
 _ROWS, _DEEP = 48, 25
-"""Rows across each side, samples along a row.  24 rows leave 0.015 px of error, 48 rows 0.009."""
+"""Rows across each side, and samples along a row; 24 rows leave an error of 0.015 px, 48 0.009."""
 
 _GROUPS = 8  # of neighbouring rows, whose means err independently
 _STEPS = 6  # at most; 2 leave 0.022 px of error in a blur of 1 px, 5 leave 0.012
-_STILL = 0.001  # [px]; corners that move less have arrived
+_STILL = 0.001  # [px]; corners that move less have converged
 _LONGEST = 2.5  # half of a row's length, in [px], if the tag's cells are large enough
 _ALONG = np.linspace(0.12, 0.88, _ROWS)[:, None]  # the corners themselves are rounded off
 _ACROSS = np.linspace(-1.0, 1.0, _DEEP)[:, None]
@@ -49,7 +49,7 @@ class Outline(NamedTuple):
 
     Attributes:
         corners: Shape (4, 2) in [px], as a lens without distortion would show them.
-        covariance: Of their coordinates, x and y in turn, by this picture, shape (8, 8) in [px^2].
+        covariance: Covariance of their coordinates, x and y in turn, shape (8, 8) in [px^2].
     """
 
     corners: Array
@@ -57,15 +57,15 @@ class Outline(NamedTuple):
 
 
 def sharpened(picture: Picture, corners: Any, lens: Intrinsics) -> Outline | None:
-    """The corners of a dark square on light ground, found again from its sides.
+    """Refine the corners of a dark square on a light background from its sides.
 
     Args:
         picture: Grey levels, shape (height, width).
-        corners: About where they are, shape (4, 2) in [px], in order.
-        lens: The lens; one with distortion makes the sides crooked.
+        corners: Approximate corners, shape (4, 2) in [px], in order.
+        lens: The lens, whose distortion bends the sides.
 
     Returns:
-        The outline; None, if a side cannot be seen well.
+        The outline; None if a side cannot be seen well.
     """
     given: Array = lens.straightened(np.asarray(corners, dtype=float))
     found = given
@@ -137,10 +137,10 @@ def _sides(picture: Picture, corners: Array, lens: Intrinsics) -> _Sides | None:
 
 
 def _uncut(levels: Array, usable: Any) -> Array:
-    """The rows without the noise of black or white that the sensor cuts off.
+    """Remove from the rows the noise of black or white that the sensor has clipped.
 
-    What is left of such noise moves the mean of black or white, but not the rise between them: the
-    tag would look larger, by 0.013 px a side with a noise of 10.
+    Clipped noise moves the mean of black or white, but not the rise between them, so the tag would
+    look larger, by 0.013 px on each side with a noise of 10.
     """
     for end, inner, rail in ((0, 2, _BLACK), (-1, -3, _WHITE)):
         away = np.abs(levels - rail)
@@ -153,7 +153,7 @@ def _uncut(levels: Array, usable: Any) -> Array:
 
 
 def _lines(points: Array, keep: Any) -> _Sides | None:
-    """The lines through places along the sides, shape (4, rows, 2); those off them do not count."""
+    """Fit lines to places along the sides, shape (4, rows, 2), without the outliers."""
     for _ in range(3):
         count = keep.sum(axis=1)
         if count.min() < _ROWS // 3:
@@ -173,12 +173,12 @@ def _lines(points: Array, keep: Any) -> _Sides | None:
 
 
 def _variance(x: Array, counts: Any, taken: int) -> float:
-    """Of each of the values along the sides, shape (4, rows), as if they erred apart.
+    """Variance of each of the values along the sides, as if their errors were independent.
 
     Args:
-        x: Their differences from what was fitted to them, 0 where they do not count.
-        counts: Which do.
-        taken: How many numbers were fitted to all of them.
+        x: Residuals of the values, shape (4, rows), 0 for values that do not count.
+        counts: Which values count, shape (4, rows).
+        taken: How many parameters were fitted to all values.
     """
     groups = 4, _GROUPS, -1
     members = counts.reshape(groups).sum(axis=2)
@@ -187,7 +187,7 @@ def _variance(x: Array, counts: Any, taken: int) -> float:
 
 
 def _covariance(corners: Array, sides: _Sides) -> Array:
-    """What the errors of the four lines do to the eight coordinates."""
+    """Covariance of the eight coordinates from the variances of the four lines."""
     leans = np.zeros((4, 2, 2, 4))  # corner, coordinate; a or b, line
     normals = np.column_stack([-sides.directions[:, 1], sides.directions[:, 0]])
     for k in range(4):
@@ -201,7 +201,7 @@ def _covariance(corners: Array, sides: _Sides) -> Array:
 
 
 def _meet(points: Array, directions: Array) -> Array:
-    """Where each side meets the one before it."""
+    """The intersection of each side with the one before it."""
     before, turn = np.roll(points, 1, axis=0), np.roll(directions, 1, axis=0)
     gap = before - points
     distance = (gap[:, 0] * turn[:, 1] - gap[:, 1] * turn[:, 0]) / (

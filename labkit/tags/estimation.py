@@ -1,4 +1,4 @@
-r"""Estimation: making one good reading out of several noisy ones.
+r"""Estimation: combining several noisy readings into a better one.
 
 Sources: the Kalman filter, Thrun, Burgard & Fox, *Probabilistic Robotics*, section 3.2; constant
 velocity under white acceleration, Bar-Shalom, Li & Kirubarajan, *Estimation with Applications*,
@@ -15,13 +15,13 @@ from ..shapes import Array, as_array, as_number, locked
 
 
 class Estimate(NamedTuple):
-    """Where something is and how it moves, as far as one knows.
+    """An estimate of a position and its motion.
 
     Attributes:
-        t: At which time, in [s].
+        t: Time of the estimate, in [s].
         mean: Position [m] and velocity [m/s], and acceleration [m/s^2] if it is estimated too,
             shape (6,) or (9,).
-        covariance: Of the mean, shape (6, 6) or (9, 9).
+        covariance: Covariance of the mean, shape (6, 6) or (9, 9).
     """
 
     t: float
@@ -30,14 +30,14 @@ class Estimate(NamedTuple):
 
 
 def first_estimate(t: float, position: Any, noise: Any, *spread: float) -> Estimate:
-    """What one reading of a position tells, the velocity being anything.
+    """The estimate from a single reading of a position, with an unknown velocity.
 
     Args:
         t: When the picture was taken, in [s].
-        position: Shape (3,) in [m].
-        noise: Its covariance, shape (3, 3) in [m^2].
-        *spread: Standard deviation that one expects of the velocity's coordinates, in [m/s], and,
-            to estimate it too, of the acceleration's, in [m/s^2].
+        position: The reading, shape (3,) in [m].
+        noise: Covariance of the reading, shape (3, 3) in [m^2].
+        *spread: Expected standard deviation of the velocity's coordinates, in [m/s], and of the
+            acceleration's, in [m/s^2], if it is to be estimated too.
     """
     variances = [as_number(s, "spread", above=0.0) ** 2 for s in spread]
     covariance: Array = np.kron(np.diag([0.0, *variances]), np.eye(3)).astype(float)
@@ -47,7 +47,7 @@ def first_estimate(t: float, position: Any, noise: Any, *spread: float) -> Estim
 
 
 def update(estimate: Estimate, position: Any, noise: Any) -> Estimate:
-    r"""Take in a reading of the position at the estimate's own time.
+    r"""Update an estimate with a reading of the position at the same time.
 
     .. math::
 
@@ -56,16 +56,16 @@ def update(estimate: Estimate, position: Any, noise: Any) -> Estimate:
         P' &= (I - KH) P (I - KH)^T + K R K^T
 
     Args:
-        estimate: What is known so far, predicted to the time of the picture.
-        position: z, shape (3,) in [m].
-        noise: R, its covariance, shape (3, 3) in [m^2].
+        estimate: The estimate so far, predicted to the time of the picture.
+        position: The reading z, shape (3,) in [m].
+        noise: Covariance R of the reading, shape (3, 3) in [m^2].
 
     Returns:
-        The better estimate, at the same time.
+        The improved estimate, for the same time.
     """
     z, R = as_array(position, (3,), "position"), as_array(noise, (3, 3), "noise")
     mean, P = estimate.mean, estimate.covariance
-    K = np.linalg.solve(P[:3, :3] + R, P[:3, :]).T  # (n, 3); H picks the position
+    K = np.linalg.solve(P[:3, :3] + R, P[:3, :]).T  # (n, 3); H selects the position
     keep = np.eye(len(mean))
     keep[:, :3] -= K
     covariance = keep @ P @ keep.T + K @ R @ K.T

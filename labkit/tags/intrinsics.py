@@ -1,4 +1,4 @@
-r"""Intrinsics: how a camera turns points into pixels.
+r"""Intrinsics: how a camera projects points to pixels.
 
 .. math:: u = f_x x + c_x, \qquad v = f_y y + c_y
 
@@ -33,8 +33,8 @@ class Intrinsics:
     """A camera's lens and sensor, as a value.
 
     Attributes:
-        width: Of the picture, in [px].
-        height: Of the picture, in [px].
+        width: Width of the picture, in [px].
+        height: Height of the picture, in [px].
         fx: Focal length along x, in [px].
         fy: Focal length along y, in [px].
         cx: Where the optical axis meets the picture, along x, in [px]; None is the middle.
@@ -65,11 +65,11 @@ class Intrinsics:
 
     @property
     def matrix(self) -> Array:
-        """The matrix K, shape (3, 3)."""
+        """The camera matrix K, shape (3, 3)."""
         return locked(np.array([[self.fx, 0, self.cx], [0, self.fy, self.cy], [0, 0, 1.0]]))
 
     def straightened(self, pixels: Any) -> Array:
-        """Where a lens without distortion would show what appears at pixels, shape (n, 2)."""
+        """Convert pixels, shape (n, 2), to those of the same lens without distortion."""
         if not any(self.distortion):
             return np.asarray(pixels)
         K, bent = self.matrix, np.array(self.distortion)
@@ -79,16 +79,16 @@ class Intrinsics:
         return np.asarray(straight, dtype=float)[:, 0]
 
     def bent(self, pixels: Any) -> Array:
-        """Where what a lens without distortion shows at pixels, shape (n, 2), really appears."""
+        """Convert pixels of the lens without distortion, shape (n, 2), to those of this lens."""
         K = self.matrix
         rays = (np.asarray(pixels) - K[:2, 2]) / K.diagonal()[:2]
         return self.project(np.column_stack([rays, np.ones(len(rays))]))
 
     def project(self, points: Any) -> Array:
-        """Where points appear in the picture.
+        """Project points to pixels of the picture.
 
         Args:
-            points: In the camera's frame, shape (n, 3) in [m].
+            points: Points in the camera's frame, shape (n, 3) in [m].
 
         Returns:
             Pixels (u, v), shape (n, 2); they may lie outside the picture.
@@ -114,10 +114,10 @@ class Intrinsics:
 
 
 def without_distortion(lens: Intrinsics) -> tuple[Intrinsics, Any]:
-    """A lens without distortion that sees all that ``lens`` sees, and where in its picture.
+    """A lens without distortion that sees everything that ``lens`` sees, and a map between them.
 
     Returns:
-        The lens, and for each pixel of ``lens`` the place in the other's picture, shape (height,
+        The new lens, and for each pixel of ``lens`` the pixel of the new lens, shape (height,
         width, 2), float32; None if there is no distortion.
     """
     if not any(lens.distortion):

@@ -1,7 +1,7 @@
 """A tag's paper in a picture: its pattern, averaged over the area of each pixel.
 
-A renderer looks at one point of each pixel, which would move the pattern's edges by up to half a
-pixel.  The pattern is known exactly; so pixels on an edge are looked at in many points.
+A renderer samples one point of each pixel, which would move the pattern's edges by up to half a
+pixel.  The pattern is known exactly, so pixels on an edge are sampled at many points.
 """
 
 from __future__ import annotations
@@ -22,18 +22,18 @@ _OUTSIDE = -1.0
 def paper(
     tag: Tag, T_cm: Array, lens: Intrinsics, window: Window, samples: int
 ) -> tuple[Array, Array]:
-    """What of each pixel shows a tag's paper.
+    """Compute which share of each pixel shows a tag's paper, and how white that share is.
 
     Args:
         tag: The tag, all of it in front of the camera.
         T_cm: Its pose in the camera's frame, shape (4, 4).
         lens: Lens and sensor.
         window: The part of the picture.
-        samples: How many points of a pixel on an edge, along either side.
+        samples: Number of points along each side of a pixel on an edge.
 
     Returns:
-        The share of each pixel that the paper covers, and how white that part is, each from 0 to 1
-        and of the window's shape.
+        The share of each pixel that the paper covers, and how white that share is, both from 0 to 1
+        and with the window's shape.
     """
     to_tag: Any = np.linalg.inv(lens.matrix @ T_cm[:3, [0, 1, 3]])  # from pixels to the paper
     u = window.left - 0.5 + np.arange(window.width + 1)
@@ -47,7 +47,7 @@ def paper(
     share = (level[around[0]] != _OUTSIDE).astype(float)
     white = np.maximum(level[around[0]], 0.0)
     i, j = np.nonzero(edge)
-    # No two points in one row or column, so that an edge along the rows is placed as well as any.
+    # No two points share a row or a column, so edges along rows or columns are as exact as others.
     first, second = (x.ravel() for x in np.indices((samples, samples)))
     du, dv = (
         (first + (second + 0.5) / samples) / samples,
@@ -61,7 +61,7 @@ def paper(
 
 
 def _levels(tag: Tag, to_tag: Any, u: Any, v: Any) -> tuple[Array, tuple[Any, Any]]:
-    """How white the paper is at points of the picture, -1 beside it, and in which cell they lie."""
+    """Whiteness of the paper at points of the picture, -1 beside it, and the points' cells."""
     x, y, w = (to_tag[i, 0] * u + to_tag[i, 1] * v + to_tag[i, 2] for i in range(3))
     table = _table(tag)
     n = len(table) - 2
@@ -72,5 +72,5 @@ def _levels(tag: Tag, to_tag: Any, u: Any, v: Any) -> tuple[Array, tuple[Any, An
 
 @cache
 def _table(tag: Tag) -> Array:
-    """How white each cell is, 0 or 1, from the upper left, within a frame of `_OUTSIDE`."""
+    """Whiteness of each cell, 0 or 1, from the upper left, framed by cells of `_OUTSIDE`."""
     return np.pad(tag.image(1) / 255.0, 1, constant_values=_OUTSIDE)

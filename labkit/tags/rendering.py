@@ -1,4 +1,4 @@
-"""Rendering: a part of a camera's picture, by OpenCV's rasteriser and a depth for each sample.
+"""Rendering: a part of a camera's picture, drawn with OpenCV's rasteriser and a depth buffer.
 
 It needs neither a physics engine nor a graphics card, and gives the same picture everywhere.
 """
@@ -21,12 +21,12 @@ FAR = 12.0
 """Nothing farther than this is drawn, in [m]."""
 
 _LIGHT = np.array([0.6, 0.35, 1.0]) / np.linalg.norm([0.6, 0.35, 1.0])
-"""Where the light comes from, world axes."""
+"""Direction towards the light, world axes."""
 
 _AMBIENT = 0.6
 """Brightness of a face that the light does not reach; one that faces it has 1."""
 
-_HALF_ANGLE = 0.25 * np.pi  # the rasteriser's own lens; `_folded` makes any other of it
+_HALF_ANGLE = 0.25 * np.pi  # of the rasteriser's own lens, for which `_folded` converts points
 
 Levels = NDArray[np.float32]
 """Brightness from 0 to 1, or depth in [m]."""
@@ -38,8 +38,8 @@ class Window(NamedTuple):
     Attributes:
         left: First column.
         top: First row.
-        width: How many columns.
-        height: How many rows.
+        width: Number of columns.
+        height: Number of rows.
     """
 
     left: int
@@ -49,20 +49,20 @@ class Window(NamedTuple):
 
     @property
     def rows(self) -> slice:
-        """Its rows of a picture."""
+        """The window's rows in a picture."""
         return slice(self.top, self.top + self.height)
 
     @property
     def columns(self) -> slice:
-        """Its columns of a picture."""
+        """The window's columns in a picture."""
         return slice(self.left, self.left + self.width)
 
     def rays(self, lens: Intrinsics, samples: int = 1) -> tuple[Array, Array]:
-        """Where samples look: X/Z of each column and Y/Z of each row, in the camera's frame.
+        """Directions of the samples: X/Z of each column and Y/Z of each row, in the camera's frame.
 
         Args:
             lens: The lens.
-            samples: For each pixel, along either side.
+            samples: Number of samples along each side of a pixel.
 
         Returns:
             Shapes (width * samples,) and (height * samples,), without unit.
@@ -73,7 +73,7 @@ class Window(NamedTuple):
 
 
 def brightness(normals: Any) -> Array:
-    """How bright faces are, from 0 to 1, by Lambert's law and some light from everywhere.
+    """Brightness of faces, from 0 to 1, by Lambert's law with ambient light.
 
     Args:
         normals: Unit vectors out of the faces, world axes, shape (..., 3).
@@ -87,15 +87,15 @@ def draw(
     """Draw a surface.
 
     Args:
-        surface: In the world.
+        surface: The surface, in the world.
         lens: Lens and sensor.
         T_wc: Pose of the camera in the world, shape (4, 4).
-        window: Which part of the picture.
-        samples: For each pixel, along either side.
+        window: The part of the picture to draw.
+        samples: Number of samples along each side of a pixel.
 
     Returns:
-        Colours, shape (rows, columns, 3), white where nothing is, and depths along the camera's
-        axis, shape (rows, columns), `FAR` to a thousandth where nothing is.
+        Colours, shape (rows, columns, 3), white where the picture is empty, and depths along the
+        camera's axis, shape (rows, columns), within a thousandth of `FAR` where it is empty.
     """
     wide, tall = window.width * samples, window.height * samples
     colours, depth = np.ones((tall, wide, 3), np.float32), np.full((tall, wide), FAR, np.float32)
@@ -118,7 +118,7 @@ _SETTINGS = (
 
 
 def _lit(surface: Surface, eye: Array) -> Surface:
-    """The surface in the light; of a sheet, the side towards the eye counts."""
+    """The surface with the light applied; of a sheet, the side towards the eye counts."""
     a, b, c = np.moveaxis(surface.corners, 1, 0)
     normals = np.cross(b - a, c - a)
     lengths = np.linalg.norm(normals, axis=1)
@@ -148,7 +148,7 @@ def _clipped(corners: Array, colours: Array) -> tuple[Array, Array]:
 
 
 def _where(a: Array, b: Array) -> Array:
-    """Where lines from ``a`` to ``b`` come as near as `NEAR`, shape (n, 3)."""
+    """The points where lines from ``a`` to ``b`` cross the depth `NEAR`, shape (n, 3)."""
     share = (NEAR - a[:, 2:]) / (b[:, 2:] - a[:, 2:])
     at = a + share * (b - a)
     at[:, 2] = NEAR
@@ -156,10 +156,10 @@ def _where(a: Array, b: Array) -> Array:
 
 
 def _folded(corners: Array, lens: Intrinsics, window: Window, samples: int) -> Array:
-    """Points as OpenGL has them, so that the rasteriser's lens sees them as ours does.
+    """Convert points to OpenGL's axes such that the rasteriser's lens shows them as ``lens`` would.
 
-    Its samples are the pixels' middles, its axis meets the picture's middle, and its focal length
-    is half of the picture's height.
+    The rasteriser samples the middles of pixels, its axis meets the picture's middle, and its focal
+    length is half of the picture's height.
     """
     x, y, z = np.moveaxis(corners, -1, 0)
     wide, tall = window.width * samples, window.height * samples

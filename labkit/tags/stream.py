@@ -1,7 +1,7 @@
-"""Looking: pictures and detections beside the control loop, with rate, delay and losses as dials.
+"""Streams of tag readings beside the control loop, with adjustable rate, delay and losses.
 
-Nothing runs in parallel: the simulation's clock says when a picture is taken and when its reading
-arrives, and every chance is drawn from a seed, so a run can be repeated to the last bit.
+Nothing runs in parallel.  The simulation's clock determines when a picture is taken and when its
+reading arrives, and all randomness comes from a seed, so a run can be repeated to the last bit.
 """
 
 from __future__ import annotations
@@ -21,13 +21,13 @@ from .tag import Tag
 
 
 class Reading(NamedTuple):
-    """What one look-up tells.
+    """The result of one look-up of a tag.
 
     Attributes:
-        stamp: When the picture was taken, in [s].
-        arrived: When the reading could first be used, in [s].
-        T_wm: Where the tag was by this picture, shape (4, 4).
-        covariance: Of its position [m] and orientation [rad], world axes, shape (6, 6).
+        stamp: Time at which the picture was taken, in [s].
+        arrived: Time at which the reading could first be used, in [s].
+        T_wm: Pose of the tag according to this picture, shape (4, 4).
+        covariance: Covariance of its position [m] and orientation [rad], world axes, shape (6, 6).
     """
 
     stamp: float
@@ -58,19 +58,19 @@ class TagStream:
         seed: int = 0,
         T_wc: Any = None,
     ) -> None:
-        """Start looking, with the first picture at the first `poll`.
+        """Prepare look-ups; the first `poll` takes the first picture.
 
         Args:
             camera: The camera.
-            tag: Which tag, of what size.
+            tag: The tag, with its size.
             rate: Pictures per second, in [Hz].
-            delay: From picture to reading, in [s].
-            jitter: Up to this much later, at random, in [s].
+            delay: Delay from picture to reading, in [s].
+            jitter: Largest additional random delay, in [s].
             dropout: Share of the readings that never arrive, from 0 to 1.
-            blind: Stretches (from, to) in which no picture shows the tag, in [s] since the first.
-            seed: Of jitter and dropout.
-            T_wc: Where the robot believes the camera to be, shape (4, 4); None is where it is, or,
-                in a hand, where the reported joint angles put it.
+            blind: Intervals (from, to) in which no picture shows the tag, in [s] since the first.
+            seed: Seed of jitter and dropout.
+            T_wc: Pose at which the robot believes the camera to be, shape (4, 4); None means
+                `Camera.reported_T_wc`.
         """
         self.camera, self.tag, self.unseen = camera, tag, 0
         self._period = 1.0 / as_number(rate, "rate", above=0.0)
@@ -87,11 +87,11 @@ class TagStream:
 
     @property
     def busy(self) -> bool:
-        """Whether a picture was taken whose reading has not arrived yet."""
+        """Whether the reading of a picture taken earlier has not arrived yet."""
         return bool(self._under_way)
 
     def poll(self) -> tuple[Reading, ...]:
-        """Take the picture that is due, if any; what has arrived since the last call, by stamp.
+        """Take a picture if one is due; the readings that arrived since the last call, by stamp.
 
         Raises:
             DuplicateTag: The tag is in the picture twice.
@@ -126,13 +126,13 @@ def detect_once(camera: Camera, tag: Tag, T_wc: Any = None, age: float = 0.0) ->
 
     Args:
         camera: The camera.
-        tag: Which tag, of what size.
-        T_wc: Where the camera is believed to be, shape (4, 4); None is `Camera.reported_T_wc`.
-        age: How old the reading will be when it is used, in [s].
+        tag: The tag, with its size.
+        T_wc: Believed pose of the camera, shape (4, 4); None means `Camera.reported_T_wc`.
+        age: Age of the reading at the time of its use, in [s].
 
     Raises:
-        TagNotFound: It is not in the picture.
-        DuplicateTag: It is there twice.
+        TagNotFound: The tag is not in the picture.
+        DuplicateTag: The tag is in the picture more than once.
     """
     now = camera.world.t
     T_wc = camera.reported_T_wc if T_wc is None else se3.as_pose(T_wc, "T_wc")
@@ -148,13 +148,13 @@ def detect_once(camera: Camera, tag: Tag, T_wc: Any = None, age: float = 0.0) ->
 
 
 class TagTarget:
-    """A target for `run`: what a follower makes of the readings that have arrived.
+    """A target for `run` that a follower computes from the readings that have arrived.
 
     Attributes:
-        lookups: Where the readings come from.
+        lookups: The stream of readings.
         follower: A function of the time since the run began and of the readings that arrived since
-            it was last asked, their times counted from there too; returns a `Sample` or a
-            `PoseSample`.  It sees no world, camera or arm.
+            the last call, with their times also counted from the start of the run; it returns a
+            `Sample` or a `PoseSample`.  It has no access to the world, the camera or the arm.
     """
 
     def __init__(

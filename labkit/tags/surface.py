@@ -1,4 +1,4 @@
-"""Surfaces: what cameras see, as triangles of one colour each."""
+"""Surfaces: what cameras see, as triangles with one colour each."""
 
 from __future__ import annotations
 
@@ -20,10 +20,10 @@ _SIDES = np.array([
 
 
 class Surface(NamedTuple):
-    """Triangles.
+    """A set of coloured triangles.
 
     Attributes:
-        corners: Of each triangle, shape (n, 3, 3) in [m].
+        corners: Corners of each triangle, shape (n, 3, 3) in [m].
         colours: Red, green and blue of each triangle, from 0 to 1, shape (n, 3).
     """
 
@@ -31,11 +31,11 @@ class Surface(NamedTuple):
     colours: Array
 
     def moved(self, T: Array) -> Surface:
-        """The surface at the pose ``T`` of its frame in another, shape (4, 4)."""
+        """The surface in another frame, in which its own frame has the pose ``T``, shape (4, 4)."""
         return self._replace(corners=self.corners @ T[:3, :3].T + T[:3, 3])
 
     def only(self, wanted: Any) -> Surface:
-        """Those triangles alone that are wanted, shape (n,), bool."""
+        """Only the triangles for which ``wanted``, shape (n,), is true."""
         return Surface(self.corners[wanted], self.colours[wanted])
 
 
@@ -57,8 +57,8 @@ def box(half: Any, colour: Any) -> Surface:
     """A box about the origin.
 
     Args:
-        half: Half of its edges, shape (3,) in [m].
-        colour: Red, green and blue, and opacity, which is not drawn.
+        half: Half the lengths of its edges, shape (3,) in [m].
+        colour: Red, green and blue, and perhaps opacity, which is ignored.
     """
     corners = (_BOX * half)[_SIDES]
     return in_colour(corners, colour)
@@ -71,7 +71,7 @@ def wrapped(points: Array, colour: Any) -> Surface:
 
 
 def mesh(file: Path, colour: Any) -> Surface:
-    """The triangles of a Wavefront file (``.obj``), in its own frame."""
+    """Read the triangles of a Wavefront file (``.obj``), in its own frame."""
     points, sides = [], []
     for line in file.read_text(encoding="utf-8").splitlines():
         kind, *words = line.split() or [""]

@@ -1,8 +1,8 @@
 """AR tags: a square pattern with a number, of a stated size, to print or to put on a `Board`.
 
-The tag's frame m sits in the middle of the black square: x to the right, y up, z out of the paper
-towards the viewer.  Its size is the side of the black square, as in OpenCV and AprilTag;
-the white border around it does not count.
+The origin of the tag's frame m is the middle of the black square, with x to the right, y up and z
+out of the paper towards the viewer.  Its size is the side of the black square, as in OpenCV and
+AprilTag; the white border around it does not count.
 """
 
 from __future__ import annotations
@@ -21,7 +21,7 @@ Picture = NDArray[np.uint8]
 """Grey levels (height, width) or colours (height, width, 3) in RGB order, 0 to 255."""
 
 PATTERNS = cv2.aruco.getPredefinedDictionary(cv2.aruco.DICT_APRILTAG_36h11)
-"""The tags that robots mostly use, 587 of them, any two differ in at least 11 of 36 bits."""
+"""The family of tags most common in robotics, 587 tags that differ in at least 11 of 36 bits."""
 
 CELLS = 8
 """Cells along a side of the black square."""
@@ -29,7 +29,7 @@ CELLS = 8
 
 @dataclass(frozen=True)
 class Tag:
-    """One tag.
+    """A square tag that a camera can recognize.
 
     Attributes:
         id: Its number among the tags of AprilTag 36h11.
@@ -65,10 +65,10 @@ class Tag:
         return tag_corners(self.size)
 
     def image(self, cell: int = 16) -> Picture:
-        """The tag with its border.
+        """Draw the tag with its border.
 
         Args:
-            cell: Pixels for each cell.
+            cell: Pixels along each side of a cell.
 
         Returns:
             Grey levels, shape (n, n), 0 or 255.
@@ -81,7 +81,7 @@ class Tag:
 def tag_corners(size: float) -> Array:
     """The corners of the black square in the tag's frame, in the detector's order.
 
-    Clockwise as one looks at the tag, from the upper left.
+    The order is clockwise from the upper left, as seen by someone looking at the tag.
 
     Args:
         size: Side of the black square, in [m].
@@ -106,7 +106,7 @@ def as_picture(x: Any) -> Picture:
         Grey levels, shape (height, width).
 
     Raises:
-        TypeMismatch: It is not a picture.
+        TypeMismatch: ``x`` is not a picture.
     """
     if not isinstance(x, np.ndarray) or x.dtype != np.uint8:
         what = f"an array of {x.dtype}" if isinstance(x, np.ndarray) else type(x).__name__

@@ -1,7 +1,7 @@
-"""What cameras see of robots: Baxter's meshes, and of other arms a capsule for each link.
+"""What cameras see of robots: Baxter's meshes, or a capsule for each link of another arm.
 
-They belong to no physics: arms in the engine are bodies without a shape.  Where a world has only
-one of Baxter's arms, or no arm, the other hangs at Rethink's neutral pose.
+They have no part in the physics, where the bodies of an arm have no shape.  If a world has only one
+of Baxter's arms, or no arm, the missing ones are drawn at Rethink's neutral pose.
 """
 
 from __future__ import annotations
@@ -28,10 +28,10 @@ DATA = Path(__file__).parents[1] / "data"
 
 
 COLOUR = (0.45, 0.47, 0.5)
-"""Of an arm without meshes."""
+"""Colour of an arm without meshes."""
 
 THICK = 0.035
-"""Radius of a capsule over the length of all of them."""
+"""Radius of a capsule as a share of the total length of the capsules."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -48,7 +48,7 @@ class Piece:
 
     @cached_property
     def ball(self) -> tuple[Array, float]:
-        """A ball around it: its centre, shape (3,) in [m], and its radius in [m]."""
+        """A ball that encloses the piece: its centre, shape (3,) in [m], and its radius in [m]."""
         points = self.surface.corners.reshape(-1, 3)
         centre = 0.5 * (points.min(axis=0) + points.max(axis=0))
         return centre, float(np.linalg.norm(points - centre, axis=1).max())
@@ -58,12 +58,12 @@ class RobotVisuals:
     """What cameras see of robots with their joints at some angles.
 
     Attributes:
-        pieces: All of their parts.
-        frames: Pose in the world of each part's joint, shape (pieces, 4, 4).
+        pieces: All parts of the robots.
+        frames: World pose of each part's joint, shape (pieces, 4, 4).
     """
 
     def __init__(self, arms: Sequence[tuple[Robot, Array]]) -> None:
-        """See ``arms``, each a robot and its joint angles, shape (n,) in [rad]."""
+        """Take ``arms``, pairs of a robot and its joint angles, shape (n,) in [rad]."""
         q = {robot.name: angles for robot, angles in arms if robot.name in SIDES}
         others = [(robot, angles) for robot, angles in arms if robot.name not in SIDES]
         self.pieces: tuple[Piece, ...] = pieces() if q or not others else ()
@@ -78,18 +78,18 @@ class RobotVisuals:
 
     @property
     def balls(self) -> tuple[Array, Array]:
-        """A ball around each piece: centres in the world (pieces, 3) and radii (pieces,) in [m]."""
+        """A ball around each piece: world centres (pieces, 3) and radii (pieces,) in [m]."""
         centres, radii = _balls(self.pieces)
         return np.einsum("nij,nj->ni", self.frames, centres)[:, :3], radii
 
     def surface(self, wanted: Any) -> Surface:
-        """Those pieces that are wanted, shape (pieces,), bool, in the world."""
+        """The world surface of the pieces for which ``wanted``, shape (pieces,), is true."""
         chosen = np.flatnonzero(wanted)
         return joined(self.pieces[i].surface.moved(self.frames[i]) for i in chosen)
 
 
 def scenery(world: World) -> Surface:
-    """Walls, tables and whatever else is shown in a world, the robot apart."""
+    """Walls, tables and everything else that is shown in a world, except robots."""
     slabs = []
     for thing in world.things:
         if isinstance(thing, Wall | Table):
@@ -100,7 +100,7 @@ def scenery(world: World) -> Surface:
 
 
 def joint_frames(q: dict[str, Any]) -> dict[str, Array]:
-    """Pose in the world of the moving frames of all of Baxter's joints, and of the base.
+    """World poses of the moving frames of all of Baxter's joints, and of the base.
 
     Args:
         q: Joint angles of each side, shape (n,) in [rad].
@@ -117,7 +117,7 @@ def joint_frames(q: dict[str, Any]) -> dict[str, Array]:
 
 
 def link_frames(robot: Robot, q: Array) -> dict[str, Array]:
-    """Pose in the world of the moving frames of a robot's joints, and of the base.
+    """World poses of the moving frames of a robot's joints, and of the base.
 
     Args:
         robot: Any robot.
@@ -131,7 +131,7 @@ def link_frames(robot: Robot, q: Array) -> dict[str, Array]:
 
 
 def _turn(angle: float) -> Array:
-    """A turn about z."""
+    """A rotation about z, shape (4, 4)."""
     c, s = np.cos(angle), np.sin(angle)
     return np.array([[c, -s, 0, 0], [s, c, 0, 0], [0, 0, 1, 0], [0, 0, 0, 1.0]])
 
