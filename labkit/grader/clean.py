@@ -9,8 +9,8 @@ from typing import Any
 
 from .sandbox.clean import clean_line, clean_text
 
-__all__ = ["LONGEST", "clean_data", "clean_line", "clean_text", "from_no_formula",
-           "how_many", "no_formula", "safe_name", "some"]  # fmt: skip
+__all__ = ["LONGEST", "clean_data", "clean_line", "clean_text", "few", "from_no_formula",
+           "how_many", "no_formula", "safe_name"]  # fmt: skip
 
 _RESERVED = re.compile(r"(con|prn|aux|nul|com\d|lpt\d)(\..*)?", re.IGNORECASE)
 _FORMULAS = frozenset("=+-@\t\r")
@@ -57,6 +57,6 @@ def how_many(count: int, what: str) -> str:
     return f"{count} {what}{'s' * (count != 1)}"
 
 
-def some(names: Sequence[str]) -> str:
+def few(names: Sequence[str]) -> str:
     """The first few names, for a sentence."""
     return ", ".join(names[:5]) + ", ..." * (len(names) > 5)

@@ -12,7 +12,7 @@ from pathlib import Path
 
 from ..course.authoring.layout import Course
 from ..errors import LabkitError
-from .clean import clean_line, some
+from .clean import clean_line, few
 from .each import Failure
 
 NOTEBOOK = 200
@@ -64,10 +64,10 @@ def students(course: Course, name: str) -> list[str]:
 
 def misnamed(course: Course, name: str) -> list[Failure]:
     """Folders whose name no database, page or terminal should be given; named in plain letters."""
-    return [unfit(student) for student in _folders(course, name) if not is_name(student)]
+    return [unfit_name(student) for student in _folders(course, name) if not is_name(student)]
 
 
-def unfit(student: str) -> Failure:
+def unfit_name(student: str) -> Failure:
     """What is said of such a folder."""
     return Failure(
         plain_name(student),
@@ -90,21 +90,21 @@ def none_of(course: Course, assignment: str, student: str | None = None) -> str:
     """That somebody, or nobody at all, handed in an assignment, and what to do."""
     found = students(course, assignment)
     if student and found:
-        return f"no submission of {student!r} for {assignment}{meant(student, found)}"
+        return f"no submission of {student!r} for {assignment}{did_you_mean(student, found)}"
     return (
         f"nothing was handed in for {assignment}; type: labkit collect {assignment} DOWNLOAD.zip, "
         "or put notebooks there as submitted/STUDENT/ASSIGNMENT/ASSIGNMENT.ipynb"
     )
 
 
-def meant(name: str, known: Iterable[str]) -> str:
+def did_you_mean(name: str, known: Iterable[str]) -> str:
     """Whom an unknown name may mean, as the end of a sentence; "" where nobody is known."""
     plain = {one.casefold(): one for one in known}
     near = [one for key, one in plain.items() if name.casefold() in key]
     near = near or [plain[key] for key in get_close_matches(name.casefold(), plain)]
     if near:
         return f"; did you mean {', '.join(near[:5])}?"
-    return f"; there are {some(sorted(plain.values()))}" if plain else ""
+    return f"; there are {few(sorted(plain.values()))}" if plain else ""
 
 
 def _folders(course: Course, name: str) -> list[str]:

@@ -47,7 +47,7 @@ from labkit.grader.students.identity import FILE, all_lms_users, lms_users, reme
 from labkit.grader.students.platforms import LmsUser
 from labkit.grader.students.roster import FILE as ROSTER
 from labkit.grader.students.roster import read_roster, save_roster
-from labkit.grader.students.settle import settle
+from labkit.grader.students.settle import move_to_owners
 from labkit.grader.students.worksheet import keep_numbers
 from labkit.grader.submission import read_file
 
@@ -188,7 +188,7 @@ def enrolled(course, path, assignment=None):
     """What `labkit students import` does, but for the gradebook."""
     done = enrol(read_roster(course), read_list(path), all_lms_users(course))
     save_roster(course, done.roster)
-    left = settle(course, done.roster)
+    left = move_to_owners(course, done.roster)
     return left + (keep_numbers(course, assignment, done.rows) if assignment else [])
 
 

@@ -13,7 +13,7 @@ import click
 from ...course.authoring.layout import CUP, UNRELEASED, Course
 from ...course.cli import verb
 from ...errors import LabkitError
-from ..clean import some
+from ..clean import few
 from ..each import Failure, Failures
 from .course import of_course
 from .pages import nobody, tell, to_file, write
@@ -107,7 +107,7 @@ def export(
             return marks
         if strangers:
             doubts.append(
-                f"{name}: no 0 is written, because {some(strangers)} handed in and are not in the "
+                f"{name}: no 0 is written, because {few(strangers)} handed in and are not in the "
                 "roster, and may be somebody who is; import a list that has them"
             )
             return marks

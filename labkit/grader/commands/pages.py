@@ -12,7 +12,7 @@ import click
 from ...course.authoring.layout import Course
 from ...course.cli import PATH, verb
 from ...errors import LabkitError
-from ..clean import how_many, some
+from ..clean import few, how_many
 from ..each import Failure, Failures
 from .course import MARKED_BY, of_assignment
 
@@ -123,7 +123,7 @@ def _wait_for_marks(marks: Iterable[Mark]) -> None:
     waiting = [f"{mark.student} ({', '.join(mark.open)})" for mark in open_ones]
     if waiting:
         raise LabkitError(
-            f"{some(waiting)}: these answers wait for a mark by hand, of "
+            f"{few(waiting)}: these answers wait for a mark by hand, of "
             f"{how_many(len(waiting), 'student')} in all; give it in formgrader, or add "
             "--unmarked to write the pages without these marks"
         )

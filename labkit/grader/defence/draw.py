@@ -30,7 +30,7 @@ from ..sandbox.limits import Limits, slowness
 from ..sandbox.session import RemoteFunction, Session
 from ..seeds import seed_of
 from ..students.roster import read_roster
-from ..submission import Submission, is_name, meant
+from ..submission import Submission, did_you_mean, is_name
 from ..whys import rank
 from .edits import Edit, edits, shown
 
@@ -165,7 +165,7 @@ def accepted(course: Course, student: str) -> tuple[list[Accepted], list[str]]:
         raise LabkitError(
             f"there is no student {student!r}: not in the roster, and nothing of theirs is in "
             "submitted/ or results/; give the name of the student's folder"
-            f"{meant(student, [*roster, *folders])}"
+            f"{did_you_mean(student, [*roster, *folders])}"
         )
     return found, missing
 
@@ -187,7 +187,7 @@ def _ask(
     source = todo.source(one.question.name)
     secret = partial(rank, seed_of(course), student)
     mistakes = sorted(edits(source), key=lambda e: secret(f"{one.question.name}/{e.at}/{e.now}"))
-    found = (_with(edit, one, todo, sandbox, limits) for edit in mistakes[:TRIES])
+    found = (_tried(edit, one, todo, sandbox, limits) for edit in mistakes[:TRIES])
     first: Asked | None = None
     for asked in filter(None, found):
         if asked.known:
@@ -196,7 +196,7 @@ def _ask(
     return first
 
 
-def _with(edit: Edit, one: Accepted, todo: Plan, sandbox: Sandbox, limits: Limits) -> Asked | None:
+def _tried(edit: Edit, one: Accepted, todo: Plan, sandbox: Sandbox, limits: Limits) -> Asked | None:
     """A question with this mistake; None if the checks accept it, or it only raises an error."""
     question = one.question
     place = todo.places[question.name]

@@ -131,35 +131,35 @@ def _mistakes(node: ast.AST) -> Iterator[tuple[ast.AST, str]]:
     """The mistakes that fit into one place, each as the node that takes its place."""
     match node:
         case ast.If(test=ast.Name()) | ast.IfExp(test=ast.Name()):
-            yield _but(node, test=ast.UnaryOp(ast.Not(), node.test)), "a condition is reversed"
+            yield _with(node, test=ast.UnaryOp(ast.Not(), node.test)), "a condition is reversed"
         case ast.UnaryOp(op=ast.Not()):
             yield node.operand, "a condition is reversed"
         case ast.UnaryOp(op=ast.USub()):
             yield node.operand, "a sign is left out"
         case ast.AugAssign(op=ast.Add() | ast.Sub()):
-            yield _but(node, op=_TURNED[type(node.op)]()), "the sign of a term is reversed"
+            yield _with(node, op=_TURNED[type(node.op)]()), "the sign of a term is reversed"
         case ast.Compare(ops=[op]) if type(op) in _TURNED:
-            yield _but(node, ops=[_TURNED[type(op)]()]), "a comparison is reversed"
+            yield _with(node, ops=[_TURNED[type(op)]()]), "a comparison is reversed"
         case ast.BinOp():
-            yield from _of_two(node)
+            yield from _operator_mistakes(node)
         case ast.Attribute(attr="T"):
             yield node.value, "a transpose is left out"
         case ast.Attribute(attr=name) if name in EXCHANGED:
-            yield _but(node, attr=EXCHANGED[name]), f"{EXCHANGED[name]} stands for {name}"
+            yield _with(node, attr=EXCHANGED[name]), f"{EXCHANGED[name]} stands for {name}"
         case ast.Call(func=ast.Name(id=name)) if name in EXCHANGED:
             func = ast.Name(EXCHANGED[name])
-            yield _but(node, func=func), f"{EXCHANGED[name]} stands for {name}"
+            yield _with(node, func=func), f"{EXCHANGED[name]} stands for {name}"
         case ast.Subscript(slice=ast.Tuple(elts=parts) as indices):
             for k, part in enumerate(parts):
-                for wrong, says in _of_index(part):
+                for wrong, says in _index_mistakes(part):
                     elts = [*parts[:k], wrong, *parts[k + 1 :]]
-                    yield _but(node, slice=_but(indices, elts=elts)), says
+                    yield _with(node, slice=_with(indices, elts=elts)), says
         case ast.Subscript():
-            for wrong, says in _of_index(node.slice):
-                yield _but(node, slice=wrong), says
+            for wrong, says in _index_mistakes(node.slice):
+                yield _with(node, slice=wrong), says
 
 
-def _but(node: ast.AST, **fields: Any) -> Any:
+def _with(node: ast.AST, **fields: Any) -> Any:
     """A node with some fields changed."""
     new = copy(node)
     for name, value in fields.items():
@@ -167,18 +167,18 @@ def _but(node: ast.AST, **fields: Any) -> Any:
     return new
 
 
-def _of_two(node: ast.BinOp) -> Iterator[tuple[ast.AST, str]]:
+def _operator_mistakes(node: ast.BinOp) -> Iterator[tuple[ast.AST, str]]:
     """The mistakes with an operator: a sign, an order, a side that is left out."""
     left, right = node.left, node.right
     of_terms = isinstance(left, ast.BinOp) and isinstance(left.op, ast.Add | ast.Sub)
     match node.op:
         case ast.Add() | ast.Sub() if of_terms or isinstance(node.op, ast.Add):
-            yield _but(node, op=_TURNED[type(node.op)]()), "the sign of a term is reversed"
+            yield _with(node, op=_TURNED[type(node.op)]()), "the sign of a term is reversed"
             yield left, "a term is left out"
             if not of_terms:
                 yield right, "a term is left out"
         case ast.Sub():
-            yield _but(node, left=right, right=left), "a difference is reversed"
+            yield _with(node, left=right, right=left), "a difference is reversed"
             yield ast.UnaryOp(ast.USub(), right), "a term is left out"
         case ast.Mult():
             yield right, "a factor is left out"
@@ -190,7 +190,7 @@ def _of_two(node: ast.BinOp) -> Iterator[tuple[ast.AST, str]]:
             yield left, "an exponent is left out"
 
 
-def _of_index(part: ast.expr) -> Iterator[tuple[ast.expr, str]]:
+def _index_mistakes(part: ast.expr) -> Iterator[tuple[ast.expr, str]]:
     """The mistakes with an index: the last one, or the other half of a vector."""
     match part:
         case ast.Constant(value=int()) if not isinstance(part.value, bool):

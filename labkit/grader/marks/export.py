@@ -26,7 +26,7 @@ from collections.abc import Callable, Iterator, Mapping, Sequence
 from typing import Any
 
 from ...course.authoring.layout import DEFENCE
-from ..clean import no_formula, some
+from ..clean import few, no_formula
 from .mark import Mark
 
 
@@ -147,14 +147,14 @@ def remarks(layout: str, marks: Sequence[Mark], assignment: str = "") -> Iterato
         elif mark.remark and not (mark.absent or mark.author):
             yield f"{mark.student}: {mark.remark}"
     if team := [f"{mark.student} ({mark.author})" for mark in marks if mark.author]:
-        yield f"{len(team)} have the mark of a report that their team handed in: {some(team)}"
+        yield f"{len(team)} have the mark of a report that their team handed in: {few(team)}"
     if absent := [mark.student for mark in marks if mark.absent]:
         nothing = "with no defence yet" if assignment == DEFENCE else "handed in nothing"
-        yield f"{len(absent)} {nothing}: {some(absent)}"
+        yield f"{len(absent)} {nothing}: {few(absent)}"
     if layout == "canvas" and (lost := [m.student for m in marks if not (m.absent or m.canvas)]):
         yield (
             f"{len(lost)} have no Canvas ID, so Canvas must find them by SIS ID or login: "
-            f"{some(lost)}; import Canvas's own list (Grades, Export), which has the IDs"
+            f"{few(lost)}; import Canvas's own list (Grades, Export), which has the IDs"
         )
     yield from filter(None, [left_out(layout, marks)])
 
@@ -167,7 +167,7 @@ def left_out(layout: str, marks: Sequence[Mark]) -> str:
             f"nobody can import this table: it has no {_NEEDS[layout]} of the {count} who handed in"
         )
     who = f"{len(lost)} of the {count} who handed in"
-    return f"{who} cannot be matched by this table: {some(lost)}" if lost else ""
+    return f"{who} cannot be matched by this table: {few(lost)}" if lost else ""
 
 
 def unmatched(layout: str, marks: Sequence[Mark]) -> tuple[list[str], int]:

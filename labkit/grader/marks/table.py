@@ -26,7 +26,7 @@ from ..students.attempts import perhaps_late
 from ..students.class_list import Student
 from ..students.identity import lms_users
 from ..students.roster import read_roster
-from ..submission import meant, plain_name, students
+from ..submission import did_you_mean, plain_name, students
 from ..whys import settle_whys
 from .mark import Mark, MarkLine
 
@@ -98,7 +98,7 @@ def unknown_extensions(course: Course) -> Iterator[str]:
     known |= {path.name for path in course.submitted.glob("*")}
     for name in sorted({x.student for x in read_rules(course).extensions} - known):
         said = f"an extension for {clean_line(name, 60)!r}, who is not a student"
-        yield f"{RULES} has {said}{meant(name, known)}"
+        yield f"{RULES} has {said}{did_you_mean(name, known)}"
 
 
 def mark_of(result: Result) -> Mark:

@@ -25,7 +25,7 @@ from ..each import Failure, for_student
 from ..grading.batch import GradeOptions, grade_without_saving, keep_unless_lower
 from ..grading.results import Result, Results
 from ..lock import exclusive_run
-from ..submission import Submission, is_name, unfit
+from ..submission import Submission, is_name, unfit_name
 from .autograded_notebook import in_release_form, release_source, with_verdicts
 from .gradebook import recorded
 
@@ -49,7 +49,7 @@ class FitNames(NotebookExporter):
                 grade_all()
             finally:
                 for name in bad:
-                    parent.log.error("not graded: %s", unfit(name))
+                    parent.log.error("not graded: %s", unfit_name(name))
             raise NbGraderException("some folders have names that are not allowed")
 
         if bad:

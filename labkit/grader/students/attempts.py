@@ -106,7 +106,7 @@ def attempts(course: Course, student: str, assignment: str) -> tuple[Attempt, ..
     return tuple(_read(path) for path in sorted(place.glob(f"*/{_RECORD}")))
 
 
-def counts(all: Sequence[Attempt], assignment: str) -> Counted | None:
+def choose(all: Sequence[Attempt], assignment: str) -> Counted | None:
     """The attempt that counts; None if there is none."""
     found: list[Counted] = []
     for origin in sorted({x.origin for one in all for x in one.hand_ins}):
@@ -122,7 +122,7 @@ def counts(all: Sequence[Attempt], assignment: str) -> Counted | None:
     return max(found, key=lambda x: (x.first.when, x.first.origin == BY_HAND), default=None)
 
 
-def that_counts(course: Course, student: str, assignment: str) -> Counted | None:
+def counted_attempt(course: Course, student: str, assignment: str) -> Counted | None:
     """The attempt of a student that counts by the rules of the course; None if there is none.
 
     Raises:
@@ -131,12 +131,12 @@ def that_counts(course: Course, student: str, assignment: str) -> Counted | None
     all, rules = attempts(course, student, assignment), read_rules(course)
     due = rules.due_for(student, assignment)
     if due is None or rules.counts == "latest":
-        return counts(all, assignment)
+        return choose(all, assignment)
     shown = (
         replace(one, hand_ins=tuple(x for x in one.hand_ins if x.when <= due and not x.late))
         for one in all
     )
-    return counts([one for one in shown if one.hand_ins], assignment) or counts(all, assignment)
+    return choose([one for one in shown if one.hand_ins], assignment) or choose(all, assignment)
 
 
 def perhaps_late(course: Course, student: str, assignment: str) -> str:
@@ -146,7 +146,7 @@ def perhaps_late(course: Course, student: str, assignment: str) -> str:
     """
     due = read_rules(course).due_for(student, assignment)
     try:
-        chosen = that_counts(course, student, assignment)
+        chosen = counted_attempt(course, student, assignment)
     except LabkitError:  # a damaged record, which is named where work is collected
         return ""
     if chosen is None or due is None or chosen.first.when <= due:
@@ -161,7 +161,7 @@ def perhaps_late(course: Course, student: str, assignment: str) -> str:
     )
 
 
-def keep(
+def store(
     course: Course,
     student: str,
     assignment: str,
@@ -231,7 +231,7 @@ def adopt(course: Course, student: str, assignment: str, now: str) -> dict[str, 
         if path.is_symlink():
             raise LabkitError(f"{path.relative_to(course.root)} is a link; put a folder there")
     there = _by_digest(course, student, assignment)
-    ours, chosen = set(there), that_counts(course, student, assignment)
+    ours, chosen = set(there), counted_attempt(course, student, assignment)
     for path in sorted(folder.glob("*.ipynb")):
         if path.is_symlink() or not path.is_file():
             raise LabkitError(f"{path.relative_to(course.root)} is not a file; move it away")
@@ -247,7 +247,7 @@ def adopt(course: Course, student: str, assignment: str, now: str) -> dict[str, 
             exact = stated is not None
             hand_in = HandIn(when, BY_HAND, "", path.name, exact=exact, collected=now)
             secret = read_secret(folder) if new else None
-            keep(course, student, assignment, data, hand_in, secret, there)
+            store(course, student, assignment, data, hand_in, secret, there)
     return there
 
 
@@ -260,7 +260,7 @@ def install(course: Course, student: str, assignment: str) -> Counted | None:
     Raises:
         LabkitError: An attempt or its record is damaged.
     """
-    chosen = that_counts(course, student, assignment)
+    chosen = counted_attempt(course, student, assignment)
     if chosen is None:
         return None
     source, when = chosen.attempt.file, chosen.first.when
@@ -286,7 +286,7 @@ def install(course: Course, student: str, assignment: str) -> Counted | None:
     return chosen
 
 
-def called(file: str, assignment: str) -> bool:
+def named_for(file: str, assignment: str) -> bool:
     """Whether a file is called as the assignment, whatever number it has."""
     return _REPEATED.sub(".ipynb", file) == f"{assignment}.ipynb"
 
@@ -294,7 +294,7 @@ def called(file: str, assignment: str) -> bool:
 def _rank(hand_in: HandIn, assignment: str) -> tuple[bool, int, str]:
     """Which of several that were handed in together counts."""
     match = _REPEATED.search(hand_in.file)  # the number that a browser or platform put there
-    return called(hand_in.file, assignment), int(match[1]) if match else 0, hand_in.collected
+    return named_for(hand_in.file, assignment), int(match[1]) if match else 0, hand_in.collected
 
 
 def _by_digest(course: Course, student: str, assignment: str) -> dict[str, Attempt]:

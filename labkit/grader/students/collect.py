@@ -11,20 +11,21 @@ from collections.abc import Iterator, Sequence
 from contextlib import ExitStack
 from dataclasses import dataclass, replace
 from datetime import UTC, datetime
+from functools import partial
 from pathlib import Path
 
 from ...course.authoring.layout import Course
 from ...errors import LabkitError
-from ..clean import some
+from ..clean import few
 from ..each import Failure, for_student
 from ..submission import digest
-from .attempts import HandIn, adopt, called, install, keep, perhaps_late, that_counts
+from .attempts import HandIn, adopt, counted_attempt, install, named_for, perhaps_late, store
 from .exchange import in_exchange
-from .identity import all_lms_users, alone, places, remember
-from .owner import owner
+from .identity import all_lms_users, assign_folders, identity_lock, remember
+from .owner import find_owner
 from .platforms import File, Named, in_folder, in_zip, open_zip, reader
 from .roster import read_roster
-from .settle import settle
+from .settle import move_to_owners
 
 
 @dataclass(frozen=True)
@@ -94,7 +95,7 @@ def collect(
     if not (source.is_file() or source.is_dir()):  # a device or a pipe, which has no end
         raise LabkitError(f"{source} is neither a file nor a folder; give the download as it is")
     now = datetime.fromtimestamp(int(source.stat().st_mtime), UTC)
-    with alone(course):
+    with identity_lock(course):
         if named is not None:
             read = reader(named)
             others = [x for x in course.names() if x != assignment]
@@ -103,11 +104,13 @@ def collect(
                     files = list(in_folder(source, read))
                 else:
                     files = list(in_zip(stack.enter_context(open_zip(source)), now, read))
-                mine = [x for x in files if not any(called(Path(x.label).name, o) for o in others)]
-                yield from _take(course, assignment, source, [_made(x, at, True) for x in mine])
+                mine = [
+                    x for x in files if not any(map(partial(named_for, Path(x.label).name), others))
+                ]
+                yield from _collect(course, assignment, source, [_made(x, at, True) for x in mine])
         elif source.is_dir():
             files = list(in_exchange(source, assignment, unverified=unverified))
-            yield from _take(course, assignment, source, files)
+            yield from _collect(course, assignment, source, files)
         elif not zipfile.is_zipfile(source):
             raise LabkitError(
                 f"{source} is neither a folder nor a zip file; give the download as it is"
@@ -115,7 +118,7 @@ def collect(
         else:
             with open_zip(source) as archive:
                 files = [_made(file, at, False) for file in in_zip(archive, now)]
-                yield from _take(course, assignment, source, files)
+                yield from _collect(course, assignment, source, files)
 
 
 def _made(file: File, at: datetime | None, exact: bool) -> File:
@@ -123,7 +126,9 @@ def _made(file: File, at: datetime | None, exact: bool) -> File:
     return file if at is None else replace(file, when=at, exact=exact)
 
 
-def _take(course: Course, assignment: str, source: Path, files: Sequence[File]) -> Iterator[Taken]:
+def _collect(
+    course: Course, assignment: str, source: Path, files: Sequence[File]
+) -> Iterator[Taken]:
     if not files:
         kind = "the inbound folder of nbgrader's exchange" if source.is_dir() else "a zip"
         raise LabkitError(
@@ -131,18 +136,18 @@ def _take(course: Course, assignment: str, source: Path, files: Sequence[File]) 
             "from no platform need --named, such as --named 'paths-{student}/*.ipynb'"
         )
     roster = read_roster(course)
-    for left in settle(course, roster):
+    for left in move_to_owners(course, roster):
         yield Taken("", "", left.why, fine=False)
     known = all_lms_users(course)
     handed_in: list[_HandedIn] = []
     for file in files:
-        named = owner(file, roster)
+        named = find_owner(file, roster)
         if isinstance(named, str):
             yield Taken("", file.label, named, fine=False)
         else:
             handed_in.append((file, named))
     people = {named.who.key: named.who for _, named in handed_in}
-    found = places(people.values(), assignment, known, roster)
+    found = assign_folders(people.values(), assignment, known, roster)
     by_folder = {place.folder: people[key] for key, place in found.items()}
     if not roster.students:
         yield Taken("", "", _NO_LIST)
@@ -154,12 +159,12 @@ def _take(course: Course, assignment: str, source: Path, files: Sequence[File]) 
     for file, named in handed_in:
         by_student.setdefault(found[named.who.key].folder, []).append((file, named))
     for student, mine in sorted(by_student.items()):
-        yield from _keep(course, assignment, student, mine)
+        yield from _store(course, assignment, student, mine)
     if late := [x for x in sorted(by_student) if perhaps_late(course, x, assignment)]:
-        yield Taken("", "", _PERHAPS_LATE.format(who=f"{len(late)} ({some(late)})", of=assignment))
+        yield Taken("", "", _PERHAPS_LATE.format(who=f"{len(late)} ({few(late)})", of=assignment))
 
 
-def _keep(
+def _store(
     course: Course, assignment: str, student: str, mine: Sequence[_HandedIn]
 ) -> Iterator[Taken]:
     """Keep one student's notebooks, and let the right one count."""
@@ -167,9 +172,7 @@ def _keep(
     for _, named in mine:
         if says := _no_notebook(named):
             yield Taken(student, named.file, f"not taken; {says}", fine=bool(notebooks))
-    done = for_student(
-        student, lambda: list(_keep_notebooks(course, assignment, student, notebooks))
-    )
+    done = for_student(student, lambda: list(_store_each(course, assignment, student, notebooks)))
     if isinstance(done, Failure):
         done = [Taken(student, "", f"not taken; {done.why}", fine=False)]
     yield from done
@@ -184,12 +187,12 @@ def _no_notebook(named: Named) -> str:
     return "" if file.endswith(".ipynb") else "it is not a notebook"
 
 
-def _keep_notebooks(
+def _store_each(
     course: Course, assignment: str, student: str, notebooks: Sequence[_HandedIn]
 ) -> Iterator[Taken]:
     now = str(datetime.now(UTC))
     there = adopt(course, student, assignment, now)
-    before = that_counts(course, student, assignment)
+    before = counted_attempt(course, student, assignment)
     shown = max((file.when for file, _ in notebooks), default=datetime.now(UTC))
     done: list[tuple[HandIn, str, bool]] = []
     for file, named in notebooks:
@@ -200,7 +203,7 @@ def _keep_notebooks(
             continue
         when = file.when if file.exact else shown  # a download shows them all at once
         hand_in = HandIn(when, *named.who.key, named.file, file.exact, named.late, now)
-        new = keep(course, student, assignment, data, hand_in, secret, there)
+        new = store(course, student, assignment, data, hand_in, secret, there)
         done.append((hand_in, digest(data), new))
     after = install(course, student, assignment)
     beside = {x.when: x.file for x in after.attempt.hand_ins} if after else {}

@@ -16,15 +16,15 @@ from pathlib import Path
 
 from ...course.authoring.layout import Course
 from ...errors import LabkitError
-from ..clean import how_many, safe_name, some
+from ..clean import few, how_many, safe_name
 from ..seeds import seed_of
 from .arms import give_arms
 from .class_list import Entry, Student, read_list
-from .identity import all_lms_users, alone, places
+from .identity import all_lms_users, assign_folders, identity_lock
 from .list_remarks import about_namesakes, about_teams
 from .platforms import LmsUser
 from .roster import FILE, Roster, read_roster, same_name, save_roster, tell_gradebook
-from .settle import settle, strangers
+from .settle import move_to_owners, unlisted
 from .worksheet import keep_numbers, keep_times
 
 _Mark = tuple[str, object]
@@ -116,13 +116,13 @@ def import_list(
             f"{file} has no column 'Identifier'; give the grading worksheet of "
             f"{assignment}, in English: Submissions, Actions, Download grading worksheet"
         )
-    with alone(course):
+    with identity_lock(course):
         before = read_roster(course)
         done = enrol(before, entries, all_lms_users(course))
         save_roster(course, done.roster)
         tell_gradebook(course, done.roster)
         give_arms(course, done.roster, seed_of(course))
-        left = settle(course, done.roster)
+        left = move_to_owners(course, done.roster)
         times, not_taken = 0, list[str]()
         if assignment:
             left += keep_numbers(course, assignment, done.rows)
@@ -132,10 +132,10 @@ def import_list(
     everybody = how_many(len(done.roster.students), "student")
     summary = [f"{FILE}: {everybody}, {len(done.new)} of them new"]
     if absent:
-        still = f"{len(absent)} ({some(absent)})"
+        still = f"{len(absent)} ({few(absent)})"
         summary.append(f"not in this list, and still in the roster: {still}")
     named = {one.student for one in left}
-    others = [x for x in strangers(course, done.roster) if x not in named]
+    others = [x for x in unlisted(course, done.roster) if x not in named]
     if others:
         summary.append(
             f"work of nobody who is known to be in the roster: {', '.join(others)}; where it is a "
@@ -225,7 +225,7 @@ def _folders(
     """A folder for each new student, in which nobody else's work lies."""
     owners = {student.id.casefold(): {student.id} for student in everybody.students}
     for assignment, people in collected.items():
-        found = places(people.values(), assignment, collected, everybody)
+        found = assign_folders(people.values(), assignment, collected, everybody)
         for folder, one in people.items():
             owners.setdefault(folder.casefold(), set()).add(found[one.key].folder)
     alike = {student.id for group in everybody.namesakes() for student in group}

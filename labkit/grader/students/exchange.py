@@ -16,7 +16,7 @@ from functools import partial
 from pathlib import Path
 
 from ...course.authoring.layout import Course
-from ..clean import clean_line, some
+from ..clean import clean_line, few
 from ..each import Failure, for_student
 from ..submission import read_file
 from ..timestamp import TIMESTAMP, read_time
@@ -55,7 +55,7 @@ def in_exchange(folder: Path, assignment: str, *, unverified: bool) -> Iterator[
     unknown = [user for user in owners if person(user) == user and _number(user) is None]
     strangers = [] if unverified else unknown
     if strangers:
-        names = some([clean_line(name, 40) for name in strangers])
+        names = few([clean_line(name, 40) for name in strangers])
         yield File(names, (), datetime.now(UTC), bytes, refused=_STRANGERS)
     times = {
         path: Times.of(path, when)

@@ -94,7 +94,7 @@ def save_lms_users(course: Course, known: Mapping[str, Mapping[str, LmsUser]]) -
 
 
 @contextmanager
-def alone(course: Course) -> Iterator[None]:
+def identity_lock(course: Course) -> Iterator[None]:
     """Keep a second one away from the records of who is who.
 
     Raises:
@@ -125,7 +125,7 @@ class Place:
     doubt: str = ""
 
 
-def places(
+def assign_folders(
     people: Iterable[LmsUser],
     assignment: str,
     known: Mapping[str, Mapping[str, LmsUser]],
@@ -159,7 +159,7 @@ def places(
         ):
             found[key] = Place(students[0].id)
         else:
-            folder = folder or _apart(one, owners)
+            folder = folder or _own_folder(one, owners)
             owners.setdefault(folder.casefold(), set()).add(key)
             found[key] = Place(folder, _doubt(one, len(students)) if roster.students else "")
     return found
@@ -193,7 +193,7 @@ def _owners(
     return owners
 
 
-def _apart(one: LmsUser, owners: Mapping[str, Set[tuple[str, str]]]) -> str:
+def _own_folder(one: LmsUser, owners: Mapping[str, Set[tuple[str, str]]]) -> str:
     """A folder that nobody else has, called by the platform's number."""
     name, number = safe_name(one.name), one.number
     if one.system in {"moodle", "canvas"}:

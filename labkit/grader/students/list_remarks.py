@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections import Counter
 from collections.abc import Iterable, Iterator, Mapping
 
-from ..clean import how_many, some
+from ..clean import few, how_many
 from .platforms import LmsUser
 from .roster import FILE, Roster
 
@@ -16,7 +16,7 @@ def about_teams(named: Iterable[str]) -> Iterator[str]:
     if teams:
         most = how_many(max(teams.values()), "student")
         yield (
-            f"teams in this list: {len(teams)} ({some(sorted(teams))}), the largest of "
+            f"teams in this list: {len(teams)} ({few(sorted(teams))}), the largest of "
             f"{most}; a team has one arm and hands in one report. If "
             "these are other groups, such as tutorials, delete their column from the list, clear "
             f"the column team of {FILE}, and import the list again"

@@ -6,7 +6,7 @@ from .platforms import File, LmsUser, Named
 from .roster import Roster
 
 
-def owner(file: File, roster: Roster) -> Named | str:
+def find_owner(file: File, roster: Roster) -> Named | str:
     """The one reading of a file's name that is right, or why there is none."""
     if file.refused or not file.readings:
         return file.refused or "not taken; its name does not say whose it is"

@@ -13,14 +13,14 @@ from ..each import Failure
 from ..grading.results import Results
 from ..nbgrader.gradebook import open_gradebook
 from .attempts import FOLDER
-from .identity import all_lms_users, places, remember
+from .identity import all_lms_users, assign_folders, remember
 from .roster import Roster, read_roster
 
 _WORK = (FOLDER, "submitted")
 _MADE_OF_IT = ("autograded", "feedback")
 
 
-def settle(course: Course, roster: Roster) -> list[Failure]:
+def move_to_owners(course: Course, roster: Roster) -> list[Failure]:
     """Bring all work to those whom the roster has come to know since it was collected.
 
     Returns:
@@ -29,21 +29,21 @@ def settle(course: Course, roster: Roster) -> list[Failure]:
     left: list[Failure] = []
     collected = all_lms_users(course)
     for assignment, people in collected.items():
-        found = places(people.values(), assignment, collected, roster)
+        found = assign_folders(people.values(), assignment, collected, roster)
         moves = {old: found[one.key].folder for old, one in people.items()}
-        left += bring(course, assignment, moves)
+        left += move_work(course, assignment, moves)
         gone = [x for x in moves.items() if x[0] != x[1] and not _work(course, x[0], assignment)]
         remember(course, assignment, {new: people[old] for old, new in gone})
     return left
 
 
-def strangers(course: Course, roster: Roster) -> list[str]:
+def unlisted(course: Course, roster: Roster) -> list[str]:
     """Folders of work that are of nobody in the roster."""
     found = {path.parent.name for base in _WORK for path in (course.root / base).glob("*/*")}
     return sorted(name for name in found if name not in roster)
 
 
-def bring(course: Course, assignment: str, moves: Mapping[str, str]) -> list[Failure]:
+def move_work(course: Course, assignment: str, moves: Mapping[str, str]) -> list[Failure]:
     """Take work from one folder to another, and then its marks, also those by hand.
 
     Where both folders have work nothing moves: the two may be of two people, as who they are may be
@@ -72,7 +72,7 @@ def bring(course: Course, assignment: str, moves: Mapping[str, str]) -> list[Fai
                     source.parent.rmdir()
         if not _work(course, pair[0], assignment):
             moved |= [pair]
-    _bring_marks(course, assignment, moved)
+    _move_marks(course, assignment, moved)
     said: list[Failure] = []
     for old, new in moves.items():
         result = Results(course, assignment).path(old)
@@ -104,7 +104,7 @@ def _work(course: Course, student: str, assignment: str) -> list[Path]:
     return [path for path in folders if any(x.is_file() for x in path.rglob("*"))]
 
 
-def _bring_marks(course: Course, assignment: str, moves: Mapping[str, str]) -> None:
+def _move_marks(course: Course, assignment: str, moves: Mapping[str, str]) -> None:
     results = Results(course, assignment)
     for old, new in moves.items():
         result = results.get(old)
@@ -121,10 +121,10 @@ def _bring_marks(course: Course, assignment: str, moves: Mapping[str, str]) -> N
                 there[new].student = book.update_or_create_student(new)
                 book.db.commit()
         for old, new in moves.items():
-            _bring_the_rest(course, book, old, new)
+            _move_the_rest(course, book, old, new)
 
 
-def _bring_the_rest(course: Course, book: Any, old: str, new: str) -> None:
+def _move_the_rest(course: Course, book: Any, old: str, new: str) -> None:
     """What belongs to no file, such as the mark of a defence, and then the empty name."""
     if old not in {one.id for one in book.students} or old in read_roster(course):
         return

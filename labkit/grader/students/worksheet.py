@@ -8,15 +8,15 @@ from datetime import datetime
 from zoneinfo import ZoneInfo
 
 from ...course.authoring.layout import Course
-from ..clean import some
+from ..clean import few
 from ..each import Failure
 from ..rules import read_rules
 from ..timestamp import read_time
-from .attempts import Attempt, Counted, attempts, counts, install, keep
+from .attempts import Attempt, Counted, attempts, choose, install, store
 from .class_list import Entry, Student
 from .identity import lms_users, remember
 from .platforms import LmsUser
-from .settle import bring
+from .settle import move_work
 
 
 def keep_numbers(
@@ -30,7 +30,7 @@ def keep_numbers(
     mine = {s.id: LmsUser("moodle", e.participant, s.name) for e, s in rows if e.participant}
     before = {one.key: folder for folder, one in lms_users(course, assignment).items()}
     moves = {before[x.key]: id for id, x in mine.items() if x.key in before}
-    left = bring(course, assignment, moves)
+    left = move_work(course, assignment, moves)
     remember(course, assignment, mine)
     return left
 
@@ -49,7 +49,7 @@ def keep_times(
     waiting: list[str] = []
     for entry, student in rows:
         all = attempts(course, student.id, assignment)
-        chosen, said = counts(all, assignment), entry.handed_in.strip(" -")
+        chosen, said = choose(all, assignment), entry.handed_in.strip(" -")
         if chosen is None:
             waiting += [str(student)] * bool(said)
             continue
@@ -61,7 +61,7 @@ def keep_times(
             left.append(f"{student}: no hand-in time is set; the worksheet says {when}")
         elif when != first.when or not first.exact:
             data = chosen.attempt.file.read_bytes()
-            keep(course, student.id, assignment, data, replace(first, when=when, exact=True))
+            store(course, student.id, assignment, data, replace(first, when=when, exact=True))
             install(course, student.id, assignment)
             taken += 1
     if left and not any(entry.handed_in for entry, _ in rows):
@@ -71,7 +71,7 @@ def keep_times(
         ]
     if waiting:
         left.append(
-            f"{len(waiting)} handed in, and nothing of theirs was collected yet: {some(waiting)}; "
+            f"{len(waiting)} handed in, and nothing of theirs was collected yet: {few(waiting)}; "
             "collect the download, then import the worksheet again"
         )
     return taken, left

@@ -23,11 +23,11 @@ from ..pseudonyms import pseudonym
 from ..rules import FILE as RULES
 from ..rules import rules_in
 from ..students.identity import FILE as LMS
-from ..students.identity import all_lms_users, alone, save_lms_users
+from ..students.identity import all_lms_users, identity_lock, save_lms_users
 from ..students.roster import FILE as ROSTER
 from ..students.roster import Roster, read_roster, same_name, save_roster
-from ..students.settle import bring
-from ..submission import is_name, meant
+from ..students.settle import move_work
+from ..submission import did_you_mean, is_name
 from .older import relocate
 from .term import archives
 
@@ -41,7 +41,7 @@ _OF_A_STUDENT = (
 """Files and folders that are one student's, in the folder of a term, by the student's name."""
 
 
-def places_of(course: Course, student: str) -> list[Path]:
+def files_of(course: Course, student: str) -> list[Path]:
     """Files and folders that are one student's, in this term and in earlier ones.
 
     Raises:
@@ -87,7 +87,7 @@ def shared_reports(course: Course, student: str) -> list[tuple[Course, str, str]
 def forget(
     course: Course, found: Sequence[Path], entries: Sequence[Path] = (), student: str = ""
 ) -> None:
-    """Delete what `places_of` found, or archived terms, and what `entries_of` found.
+    """Delete what `files_of` found, or archived terms, and what `entries_of` found.
 
     A report from which others have their mark goes to the first of them before that.
 
@@ -95,9 +95,9 @@ def forget(
         LabkitError: Somebody is collecting, or a file of the whole class is damaged; or the team's
             report cannot be moved.
     """
-    with alone(course):
+    with identity_lock(course):
         for term, name, mate in shared_reports(course, student) if student else ():
-            if bring(term, name, {student: mate}):
+            if move_work(term, name, {student: mate}):
                 raise LabkitError(
                     f"{student} handed in {name} for {mate} too, who has other files in "
                     f"{term.root / 'attempts' / mate / name}; move these away and type it again"
@@ -144,7 +144,7 @@ def unknown(course: Course, student: str) -> LabkitError:
     folders = (path.name for term in _terms(course) for path in term.submitted.glob("*"))
     known = {name: name for name in folders if is_name(name)}
     known |= {one.id: str(one) for one in read_roster(course).students}
-    near = meant(student, known.values())
+    near = did_you_mean(student, known.values())
     return LabkitError(f"no student {student!r} in this term or an earlier one{near}")
 
 
