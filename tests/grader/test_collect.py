@@ -425,7 +425,7 @@ def test_a_name_that_only_looks_like_anothers_is_nobodys(bare, tmp_path, who):
     handed_in(tmp_path / "in", looks_like, "right", owner=NOBODY)
     handed_in(tmp_path / "in", who, "forged", "2026-03-05 10:00:00 UTC", owner=NOBODY + 1)
     (said,) = troubles(bare, tmp_path / "in", unverified=True)
-    assert "nobody can have such a name" in said
+    assert "no user can have such a name" in said
     assert counting(bare) == {looks_like: "right"}
 
 

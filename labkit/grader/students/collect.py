@@ -1,7 +1,7 @@
 """Collect: downloads from Moodle and Canvas, or nbgrader's exchange, into ``submitted/``.
 
-Whose a file is comes from the platform's own field (``platforms``) and from the roster (``owner``,
-``identity``); which of a student's notebooks counts is settled in ``attempts``.
+The owner of a file follows from the platform's own field (``platforms``) and from the roster
+(``owner``, ``identity``); ``attempts`` decides which of a student's notebooks counts.
 """
 
 from __future__ import annotations
@@ -30,13 +30,13 @@ from .settle import move_to_owners
 
 @dataclass(frozen=True)
 class Taken:
-    """One file, and what was done with it.
+    """A file, and what was done with it.
 
     Attributes:
-        student: Whose, as the folder is called; empty if nobody's.
-        file: Its name in the download; empty if it is of none in particular.
+        student: The name of the owner's folder; empty if the owner is not known.
+        file: The file's name in the download; empty if the remark concerns no single file.
         says: What was done.
-        fine: Whether nobody need look at it.
+        fine: Whether nobody needs to look at it.
     """
 
     student: str
@@ -58,7 +58,7 @@ _PERHAPS_LATE = (
     "WORKSHEET.csv --assignment {of}; with files of your own, collect with --at"
 )
 _HandedIn = tuple[File, Named]
-"""A file, and the one reading of its name that is right."""
+"""A file, and the correct reading of its name."""
 
 
 def collect(
@@ -70,29 +70,28 @@ def collect(
     named: str | None = None,
     at: datetime | None = None,
 ) -> Iterator[Taken]:
-    """Take notebooks from a download; the same once more changes nothing.
+    """Collect notebooks from a download; collecting it again changes nothing.
 
     Args:
         course: The course.
-        assignment: Which.
+        assignment: The assignment.
         source: A zip from Moodle or Canvas, or the inbound folder of nbgrader's exchange.
-        unverified: Whether users of the exchange whom this machine does not know are taken at
-            their word.
-        named: How files are named that come from no platform, such as
-            ``paths-{student}/*.ipynb``; then the source is a folder of them, or a zip.
-        at: When the source was made, if that is known: the hand-in time of files that come from no
-            platform.  What a platform's zip holds was handed in by then, nobody knows when.
+        unverified: Whether to collect from users of the exchange whom this machine does not know.
+        named: The pattern of the names of files that come from no platform, such as
+            ``paths-{student}/*.ipynb``; the source is then a folder or a zip of such files.
+        at: When the source was made, if that is known.  It is the hand-in time of files that come
+            from no platform, and the latest possible hand-in time for a platform's zip.
 
     Yields:
         What was done with each file.
 
     Raises:
-        LabkitError: It is neither, it is damaged, or it holds nothing; or a record of the course
-            is damaged.
+        LabkitError: The source is not of these kinds, is damaged, or holds nothing; or a record
+            of the course is damaged.
     """
     if not source.exists():
         raise LabkitError(f"there is no {source}")
-    if not (source.is_file() or source.is_dir()):  # a device or a pipe, which has no end
+    if not (source.is_file() or source.is_dir()):  # a device or pipe may never end
         raise LabkitError(f"{source} is neither a file nor a folder; give the download as it is")
     now = datetime.fromtimestamp(int(source.stat().st_mtime), UTC)
     with identity_lock(course):
@@ -122,7 +121,7 @@ def collect(
 
 
 def _made(file: File, at: datetime | None, exact: bool) -> File:
-    """A file of a source that was made at a known time, and whether it was handed in then."""
+    """The file with the time at which its source was made, if that is known."""
     return file if at is None else replace(file, when=at, exact=exact)
 
 
@@ -167,7 +166,7 @@ def _collect(
 def _store(
     course: Course, assignment: str, student: str, mine: Sequence[_HandedIn]
 ) -> Iterator[Taken]:
-    """Keep one student's notebooks, and let the right one count."""
+    """Store one student's notebooks, and copy the one that counts to ``submitted/``."""
     notebooks = [(file, named) for file, named in mine if not _no_notebook(named)]
     for _, named in mine:
         if says := _no_notebook(named):
