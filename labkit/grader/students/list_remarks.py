@@ -1,4 +1,4 @@
-"""What a person should know of a list of students that was imported, in sentences."""
+"""Remarks on a list of students that was imported, as sentences."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from .roster import FILE, Roster
 
 
 def about_teams(named: Iterable[str]) -> Iterator[str]:
-    """What follows from a list's teams, which may be groups that were made for something else."""
+    """A remark on a list's teams, which may be groups that were made for another purpose."""
     teams = Counter(named)
     if teams:
         most = how_many(max(teams.values()), "student")
@@ -24,7 +24,7 @@ def about_teams(named: Iterable[str]) -> Iterator[str]:
 
 
 def about_namesakes(roster: Roster, known: Mapping[str, Mapping[str, LmsUser]]) -> Iterator[str]:
-    """Who is called alike, and the assignments in which their numbers tell them apart."""
+    """Students with the same name, and the assignments in which their numbers differ."""
     for group in roster.namesakes():
         told_apart = [
             assignment

@@ -1,4 +1,4 @@
-"""Moodle's grading worksheet: whose each participant's number is, and when each handed in."""
+"""Moodle's grading worksheet: each student's participant number and hand-in time."""
 
 from __future__ import annotations
 
@@ -22,10 +22,10 @@ from .settle import move_work
 def keep_numbers(
     course: Course, assignment: str, rows: Iterable[tuple[Entry, Student]]
 ) -> list[Failure]:
-    """Keep whose each participant's number is, and bring earlier work to its owner.
+    """Record each student's participant number, and move earlier work to its owner.
 
     Returns:
-        Which folders stayed, and why.
+        The folders that stayed, and why.
     """
     mine = {s.id: LmsUser("moodle", e.participant, s.name) for e, s in rows if e.participant}
     before = {one.key: folder for folder, one in lms_users(course, assignment).items()}
@@ -38,10 +38,10 @@ def keep_numbers(
 def keep_times(
     course: Course, assignment: str, rows: Sequence[tuple[Entry, Student]]
 ) -> tuple[int, list[str]]:
-    """Keep when each handed in what counts, as Moodle's worksheet says.
+    """Record when each counted attempt was handed in, as Moodle's worksheet says.
 
     Returns:
-        How many times were taken; and which were not, a sentence each.
+        How many times were recorded; and a sentence for each that was not.
     """
     zone = ZoneInfo(read_rules(course).zone)
     taken = 0
@@ -78,7 +78,7 @@ def keep_times(
 
 
 def _time(said: str, zone: ZoneInfo, chosen: Counted, all: Sequence[Attempt]) -> datetime | str:
-    """When what counts was handed in; or what the worksheet says instead, and what to do."""
+    """The time of the attempt that counts; or why the worksheet gives none, and what to do."""
     when, first = read_time(said, zone), chosen.first.when
     others = [x.when for one in all if one is not chosen.attempt for x in one.hand_ins]
     earlier = max((x for x in others if x < first), default=None)
