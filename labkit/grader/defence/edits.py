@@ -1,4 +1,4 @@
-"""Known mistakes as edits: one place of somebody's own function, changed as people get it wrong.
+"""Edits that put a typical mistake into one place of a student's own function.
 
 Functions are shown as Python writes them out, without docstrings and comments; so neither the
 spacing nor a comment tells which line was changed.  Nothing of them runs here.
@@ -27,9 +27,9 @@ EXCHANGED = {
     "sin": "cos",
     "tip_jacobian": "body_jacobian",
 }
-"""Names that are taken for one another, such as the two Jacobians, or sine and cosine."""
+"""Names that students confuse, such as the two Jacobians, or sine and cosine."""
 MOST = 300
-"""So many mistakes are looked at in one cell; in functions that people write there are fewer."""
+"""The most mistakes that are tried in one cell; real functions have fewer."""
 _TURNED = {
     ast.Add: ast.Sub,
     ast.Sub: ast.Add,
@@ -47,10 +47,10 @@ class Edit:
 
     Attributes:
         cell: The cell with the mistake.
-        lines: Its functions alone, with the mistake.
-        at: Which of these lines has it, from 1.
+        lines: The lines of its functions, with the mistake.
+        at: The number of the line with the mistake, from 1.
         was: The same line without the mistake.
-        says: Which mistake it is, in a few words.
+        says: The mistake in a few words.
     """
 
     cell: str
@@ -66,7 +66,7 @@ class Edit:
 
 
 def edits(source: str) -> list[Edit]:
-    """All mistakes that fit into the functions of a cell, in order of their place.
+    """All mistakes that fit the functions of a cell, sorted by line.
 
     Args:
         source: The cell's text; one that Python cannot read has no functions.
@@ -99,7 +99,7 @@ def shown(source: str) -> list[str]:
 
 
 def _parsed(source: str) -> tuple[ast.Module, list[ast.FunctionDef]]:
-    """A cell, and the functions in it, which have lost their docstrings."""
+    """A cell and its functions, without their docstrings."""
     cell = deepcopy(parsed(source)[1])
     functions = [x for x in cell.body if isinstance(x, ast.FunctionDef)]
     for function in functions:
@@ -113,7 +113,7 @@ def _written(functions: list[ast.FunctionDef]) -> list[str]:
 
 
 def _places(functions: list[ast.FunctionDef]) -> Iterator[tuple[ast.AST, Callable[[Any], None]]]:
-    """All nodes in the functions' bodies, each with what puts another node in its place."""
+    """All nodes in the functions' bodies, each with a function that replaces it."""
     waiting: list[ast.AST] = [ast.Module(function.body, []) for function in functions]
     while waiting:
         parent = waiting.pop()
@@ -128,7 +128,7 @@ def _places(functions: list[ast.FunctionDef]) -> Iterator[tuple[ast.AST, Callabl
 
 
 def _mistakes(node: ast.AST) -> Iterator[tuple[ast.AST, str]]:
-    """The mistakes that fit into one place, each as the node that takes its place."""
+    """The mistakes that fit one node, each as the node that replaces it."""
     match node:
         case ast.If(test=ast.Name()) | ast.IfExp(test=ast.Name()):
             yield _with(node, test=ast.UnaryOp(ast.Not(), node.test)), "a condition is reversed"
@@ -168,7 +168,7 @@ def _with(node: ast.AST, **fields: Any) -> Any:
 
 
 def _operator_mistakes(node: ast.BinOp) -> Iterator[tuple[ast.AST, str]]:
-    """The mistakes with an operator: a sign, an order, a side that is left out."""
+    """Mistakes with an operator: a sign, an order, an operand that is left out."""
     left, right = node.left, node.right
     of_terms = isinstance(left, ast.BinOp) and isinstance(left.op, ast.Add | ast.Sub)
     match node.op:
@@ -191,7 +191,7 @@ def _operator_mistakes(node: ast.BinOp) -> Iterator[tuple[ast.AST, str]]:
 
 
 def _index_mistakes(part: ast.expr) -> Iterator[tuple[ast.expr, str]]:
-    """The mistakes with an index: the last one, or the other half of a vector."""
+    """Mistakes with an index: the last element, or the other part of a vector."""
     match part:
         case ast.Constant(value=int()) if not isinstance(part.value, bool):
             yield ast.Constant(-1), "the last one is taken (index -1)"
