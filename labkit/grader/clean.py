@@ -32,8 +32,8 @@ def clean_data(data: Any) -> Any:
 def safe_name(name: str) -> str:
     """A name as a folder's: letters and marks of any script, digits, and ``. _ @ -`` within.
 
-    It is short, in Unicode's composed form, never empty, never hidden, and no command takes it for
-    an option.
+    The result is short, in Unicode's composed form, never empty or hidden, and never looks like a
+    command's option.
     """
     text = re.sub("['’`]", "", unicodedata.normalize("NFC", name))  # as Moodle, O'Brien
     text = "".join(c if c in "._@" or unicodedata.category(c)[0] in "LMN" else "-" for c in text)
@@ -43,12 +43,12 @@ def safe_name(name: str) -> str:
 
 
 def no_formula(cell: str) -> str:
-    """A cell of a table that no spreadsheet runs: what could begin a formula gets a quote first."""
+    """A cell that no spreadsheet runs: one that could begin a formula gets a leading quote."""
     return f"'{cell}" if cell.lstrip("'")[:1] in _FORMULAS else cell
 
 
 def from_no_formula(cell: str) -> str:
-    """What `no_formula` was given."""
+    """The text from which `no_formula` made a cell."""
     return cell[1:] if cell[:1] == "'" and cell.lstrip("'")[:1] in _FORMULAS else cell
 
 

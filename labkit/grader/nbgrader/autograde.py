@@ -31,7 +31,7 @@ from .gradebook import recorded
 
 
 class FitNames(NotebookExporter):
-    """Has nbgrader leave out each folder whose name is not allowed, name it, and exit with 1.
+    """Makes nbgrader skip and name each folder whose name is not allowed, and exit with 1.
 
     nbgrader finds out whose a folder is by an expression that takes no line break, and ends where
     it does not match: one such name would keep the whole class from being graded.
@@ -115,7 +115,7 @@ _known: dict[tuple[str, str], Result] = {}
 
 
 def _grade(about: dict[str, Any]) -> Result:
-    """The result of the submission that nbgrader is at, graded once for both steps, and kept."""
+    """The result of the submission that nbgrader processes, graded once for both steps."""
     course = Course.here(Path.cwd())
     key = (about["assignment"], about["student"])
     result = _known.pop(key, None)
