@@ -1,4 +1,4 @@
-"""The command that writes tables of marks, what other platforms take, and the cup's board."""
+"""The command that writes tables of marks, files for other platforms, and the cup's board."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ if TYPE_CHECKING:
 TABLES = ("nbgrader", "questions", "canvas", "moodle", "moodle-worksheet")
 """Layouts of marks."""
 NAMED = ("canvas", "moodle")
-"""Layouts with a column that a platform knows by its name."""
+"""Layouts with a column whose name a platform must know."""
 QUIZZES = ("paper", "moodle-quiz", "canvas-quiz")
 """Layouts of the concept test."""
 
@@ -101,7 +101,7 @@ def export(
         return [] if all(mark.absent for mark in found) else found
 
     def filled(name: str, marks: list[Mark]) -> list[Mark]:
-        """The marks with a 0 for each who is absent, if that is asked for and certain."""
+        """The marks with a 0 for each absent student, if that is asked for and certain."""
         strangers = [m.student for m in marks if not (m.absent or m.listed)]
         if not absent_zero or not any(m.absent for m in marks):
             return marks
@@ -154,7 +154,7 @@ def _concept_test(
 
 
 def _autograder(course: Course, assignment: str | None, to: Path | None) -> int:
-    """Write the zip for Gradescope; name those whose own arm it cannot tell."""
+    """Write the zip for Gradescope; name the students whose own arm it cannot find."""
     from ..gradescope.setup_zip import autograder
 
     if assignment is None or to is None:

@@ -130,7 +130,7 @@ def _wait_for_marks(marks: Iterable[Mark]) -> None:
 
 
 def nobody(assignment: str, student: str | None, why: str = "") -> LabkitError:
-    """The error where nothing is graded yet, or ``why`` no result can be read."""
+    """The error if nothing is graded yet; ``why`` says why no result can be read."""
     who = f"{student} is not" if student else "nobody is"
     why = why or f"type: {MARKED_BY.get(assignment, f'labkit grade {assignment}')}"
     return LabkitError(f"{who} graded in {assignment}; {why}")

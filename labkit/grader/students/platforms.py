@@ -210,7 +210,7 @@ def _name(entry: zipfile.ZipInfo) -> str:
 
 
 def _refused(entry: zipfile.ZipInfo, name: str) -> str:
-    """Why an entry is refused, whoever its owner is; empty if it is accepted."""
+    """Why an entry is refused, regardless of its owner; empty if it is accepted."""
     if stat.S_ISLNK(entry.external_attr >> 16):
         return "not taken; it is a link"
     if entry.flag_bits & 1:
@@ -248,8 +248,8 @@ def reader(pattern: str) -> Reader:
     """A reader for names that all follow one pattern.
 
     Args:
-        pattern: Such as ``paths-{student}/*.ipynb``; ``*`` stands for anything within one name,
-            ``**`` for folders too.
+        pattern: A pattern such as ``paths-{student}/*.ipynb``; ``*`` stands for anything within
+            one name, ``**`` for folders too.
 
     Raises:
         LabkitError: The pattern does not have ``{student}`` exactly once.
