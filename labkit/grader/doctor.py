@@ -20,7 +20,7 @@ DOCKER = (
     "--cap-add=SYS_ADMIN",
     "--cap-add=NET_ADMIN",
 )
-"""The options of a container in which sandboxes can be made: for namespaces, mounts, and a network
+"""The options of a container in which sandboxes can be made, with namespaces, mounts, and a network
 that is only a loopback.  The sandbox has its own filter of system calls."""
 
 
