@@ -15,7 +15,7 @@ from datetime import UTC, datetime
 from pathlib import Path
 
 SLACK = 300.0
-"""The tolerance in [s]: nbgrader notes the time before it copies, and machines' clocks differ."""
+"""The tolerance in [s], as nbgrader notes the time before it copies, and clocks differ."""
 
 
 @dataclass(frozen=True)
