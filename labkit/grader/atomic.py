@@ -8,7 +8,7 @@ from pathlib import Path
 
 
 def write(path: Path, content: str | bytes) -> None:
-    """Write a file whole or not at all; what a run that was killed left unfinished goes."""
+    """Write a file whole or not at all, and delete what a killed run left unfinished."""
     path.parent.mkdir(parents=True, exist_ok=True)
     for left in path.parent.glob(f".{glob.escape(path.name)}.*.new"):
         if not Path("/proc", left.name.split(".")[-2]).exists():

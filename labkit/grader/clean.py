@@ -9,8 +9,8 @@ from typing import Any
 
 from .sandbox.clean import clean_line, clean_text
 
-__all__ = ["LONGEST", "clean_data", "clean_line", "clean_text", "from_no_formula",
-           "how_many", "no_formula", "safe_name", "some"]  # fmt: skip
+__all__ = ["LONGEST", "clean_data", "clean_line", "clean_text", "few", "from_no_formula",
+           "how_many", "no_formula", "safe_name"]  # fmt: skip
 
 _RESERVED = re.compile(r"(con|prn|aux|nul|com\d|lpt\d)(\..*)?", re.IGNORECASE)
 _FORMULAS = frozenset("=+-@\t\r")
@@ -32,8 +32,8 @@ def clean_data(data: Any) -> Any:
 def safe_name(name: str) -> str:
     """A name as a folder's: letters and marks of any script, digits, and ``. _ @ -`` within.
 
-    It is short, in Unicode's composed form, never empty, never hidden, and no command takes it for
-    an option.
+    The result is short, in Unicode's composed form, never empty or hidden, and never looks like a
+    command's option.
     """
     text = re.sub("['’`]", "", unicodedata.normalize("NFC", name))  # as Moodle, O'Brien
     text = "".join(c if c in "._@" or unicodedata.category(c)[0] in "LMN" else "-" for c in text)
@@ -43,12 +43,12 @@ def safe_name(name: str) -> str:
 
 
 def no_formula(cell: str) -> str:
-    """A cell of a table that no spreadsheet runs: what could begin a formula gets a quote first."""
+    """A cell that no spreadsheet runs: one that could begin a formula gets a leading quote."""
     return f"'{cell}" if cell.lstrip("'")[:1] in _FORMULAS else cell
 
 
 def from_no_formula(cell: str) -> str:
-    """What `no_formula` was given."""
+    """The text from which `no_formula` made a cell."""
     return cell[1:] if cell[:1] == "'" and cell.lstrip("'")[:1] in _FORMULAS else cell
 
 
@@ -57,6 +57,6 @@ def how_many(count: int, what: str) -> str:
     return f"{count} {what}{'s' * (count != 1)}"
 
 
-def some(names: Sequence[str]) -> str:
+def few(names: Sequence[str]) -> str:
     """The first few names, for a sentence."""
     return ", ".join(names[:5]) + ", ..." * (len(names) > 5)

@@ -1,4 +1,4 @@
-"""What isolation this machine gives, and how to get the rest."""
+"""Check which isolation this machine offers, and say how to get the rest."""
 
 from __future__ import annotations
 
@@ -20,19 +20,19 @@ DOCKER = (
     "--cap-add=SYS_ADMIN",
     "--cap-add=NET_ADMIN",
 )
-"""What a container needs in which sandboxes are made; namespaces, mounts, and a network that is a
-loopback without anything behind it.  The sandbox has a filter of system calls of its own."""
+"""The options of a container in which sandboxes can be made, with namespaces, mounts, and a network
+that is only a loopback.  The sandbox has its own filter of system calls."""
 
 
 @dataclass(frozen=True)
 class Finding:
-    """One thing that was looked at.
+    """One thing that was checked.
 
     Attributes:
-        what: The thing, in a few words.
-        fine: Whether it is as it should be.
+        what: The name of the thing, in a few words.
+        fine: Whether the check passed.
         says: What was found, or the command that repairs it.
-        needed: Whether grading refuses without it.
+        needed: Whether grading is impossible without it.
     """
 
     what: str
@@ -46,7 +46,7 @@ class Finding:
 
 
 def examine() -> Iterator[Finding]:
-    """Look at everything that grading needs, the sandbox last, by making one and trying it."""
+    """Check everything that grading needs; the sandbox last, by making one and trying it."""
     system = platform.system()
     says = f"{system} {platform.machine()}"
     if system != "Linux":
@@ -58,7 +58,7 @@ def examine() -> Iterator[Finding]:
 
 
 def _linux() -> Iterator[Finding]:
-    """Look at a Linux machine."""
+    """Check a Linux machine."""
     from .sandbox import seccomp  # not every system has what these import
     from .sandbox.limits import slowness
 
@@ -135,7 +135,7 @@ if bad:
 
 
 def elsewhere() -> str:
-    """How isolation is had in the places where people grade."""
+    """How to get isolation in the places where people grade."""
     options = " ".join([*DOCKER, "--memory=8g", "--pids-limit=500", "IMAGE"])
     lines = " \\\n    ".join(wrap(f"docker run {options}", 80, break_on_hyphens=False))
     rights = [x.removeprefix("--cap-add=") for x in DOCKER if x.startswith("--cap-add=")]

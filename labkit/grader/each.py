@@ -1,4 +1,4 @@
-"""Each student's step by itself: where one fails, the student is named and the others are done."""
+"""Do a step for each student separately: a failure is reported, and the others are done."""
 
 from __future__ import annotations
 
@@ -18,11 +18,11 @@ _OF_THE_MACHINE = {errno.ENOSPC, errno.EDQUOT, errno.EROFS, errno.EMFILE, errno.
 
 @dataclass(frozen=True)
 class Failure:
-    """What a step gives in the place of its result where it failed for one student.
+    """What takes the place of a result if a step failed for one student.
 
     Attributes:
-        student: For whom.
-        why: A sentence.
+        student: The student for whom the step failed.
+        why: The reason, in a sentence.
     """
 
     student: str
@@ -38,9 +38,9 @@ def for_student(
     """Do a step for one student.
 
     Args:
-        student: For whom.
-        step: What to do.
-        of_all: Exceptions that concern everybody, and are raised.
+        student: The student for whom the step is done.
+        step: The step.
+        of_all: Exceptions that concern all students, and are therefore raised.
 
     Returns:
         What the step returned, or why it failed.
@@ -64,10 +64,10 @@ def for_student(
 
 
 class Failures:
-    """What failed in a verb, and for whom; named on stderr when the verb ends.
+    """The failures of a command, which are printed on stderr when the command ends.
 
     Args:
-        at_once: Name it as it happens, in a verb that only the user ends.
+        at_once: Print each failure as it happens, for a command that only the user ends.
     """
 
     def __init__(self, *, at_once: bool = False) -> None:
@@ -80,17 +80,17 @@ class Failures:
         return 1 if self.sentences else 0
 
     def add(self, what: str, failed: Iterable[object]) -> None:
-        """Keep failures; ``what`` says what they mean, such as "not graded"."""
+        """Add failures; ``what`` says what they mean, such as "not graded"."""
         sentences = [f"{what}: {one}" for one in failed]
         self.sentences += sentences
         if self._at_once:
             _name(sentences)
 
     def sift(self, outcomes: Iterable[T | Failure], what: str) -> Iterator[T]:
-        """Yield what was done, and keep what failed.
+        """Yield the results, and collect the failures.
 
         Args:
-            outcomes: Of a step, one for each student.
+            outcomes: The outcomes of a step, one for each student.
             what: What a failure means, such as "not graded".
         """
         for one in outcomes:

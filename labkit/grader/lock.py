@@ -16,10 +16,10 @@ PATIENCE = 2.0
 
 @contextmanager
 def exclusive_run(results: Path) -> Iterator[None]:
-    """Keep other runs on an assignment away for a block.
+    """Exclude other runs on an assignment for the length of a block.
 
     Args:
-        results: The folder with the results of the assignment; made if need be.
+        results: The folder with the results of the assignment; it is made if needed.
 
     Raises:
         LabkitError: Another run is under way.
@@ -31,14 +31,14 @@ def exclusive_run(results: Path) -> Iterator[None]:
 
 @contextmanager
 def locked(file: Path, busy: str) -> Iterator[None]:
-    """Hold a lock for a block; it ends with the process that holds it.
+    """Hold a lock for the length of a block; the lock ends with its process.
 
     Args:
-        file: What is locked; made if need be, with its folder.
-        busy: The sentence that is raised where somebody else still holds it after `PATIENCE`.
+        file: The lock file; it is made if needed, with its folder.
+        busy: The message of the error if the lock is not free after `PATIENCE`.
 
     Raises:
-        LabkitError: Somebody else holds it.
+        LabkitError: Another process holds the lock.
     """
     file.parent.mkdir(parents=True, exist_ok=True)
     with open(file, "w") as mine:

@@ -1,4 +1,4 @@
-"""nbgrader's interface to a course, for whatever nbgrader itself is to do."""
+"""nbgrader's interface to a course, for the steps that nbgrader itself does."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from .clean import clean_line
 
 
 def nbgrader_api(course: Course) -> Any:
-    """The interface of nbgrader to this course, set up as its own ``nbgrader_config.py`` says.
+    """The interface of nbgrader, configured by the course's ``nbgrader_config.py``.
 
     Raises:
         LabkitError: That file cannot be run.
@@ -33,7 +33,7 @@ def nbgrader_api(course: Course) -> Any:
         config = PyFileConfigLoader("nbgrader_config.py", path=str(course.root)).load_config()
     except tomllib.TOMLDecodeError as error:  # the rules, which it reads
         raise LabkitError(f"{course.root / 'course.toml'}: {error}; correct that line") from None
-    except (Exception, SystemExit) as error:  # it is a program, the instructor's
+    except (Exception, SystemExit) as error:  # it is a program that the instructor wrote
         why = clean_line(f"{type(error).__name__}: {error}")
         raise LabkitError(f"nbgrader_config.py cannot be run: {why}; correct it") from None
     settings = Config(config)

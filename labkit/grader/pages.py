@@ -1,4 +1,4 @@
-"""The templates of what the grader writes; Jinja escapes every value in HTML and XML."""
+"""The templates for files that the grader writes; Jinja escapes values in HTML and XML."""
 
 from __future__ import annotations
 
@@ -37,11 +37,11 @@ def render_page(template: str, style: str = "", *, replays: bool = False, **valu
     """Fill the template of a page, which loads nothing but its own style and scripts.
 
     Args:
-        template: Such as "feedback.html.j2".
-        style: What the page adds to the style of all pages.
-        replays: Whether it shows any, and so needs the viewer and the robot.
-        values: What else the template names.  It has ``recorded_html`` for a motion, which
-            ``motion_of`` reads from the text in a result.
+        template: The name of the template, such as "feedback.html.j2".
+        style: A style that is added to the style of all pages.
+        replays: Whether the page shows replays, and so needs the viewer and the robot.
+        values: The other values that the template needs.  It also gets
+            ``recorded_html`` for a motion, which ``motion_of`` reads from the text in a result.
     """
     style, code = file("feedback.css") + style, scripts() if replays else ()
     return render(
@@ -63,7 +63,7 @@ def file(name: str) -> str:
 
 @cache
 def scripts() -> tuple[str, ...]:
-    """What shows replays on a page."""
+    """The scripts that show replays on a page."""
     return (*viewer_scripts(), file("feedback.js"))
 
 

@@ -1,4 +1,4 @@
-"""Names for students that stay the same and say nothing, even with the list of the class."""
+"""Stable names for students that reveal nothing, even to readers with the class list."""
 
 from __future__ import annotations
 
@@ -11,11 +11,11 @@ from ..course.authoring.layout import Course
 from .atomic import write
 
 FILE = "course_private/pseudonyms.key"
-"""Without it nobody can tell who is who; it goes with the term."""
+"""The key that links pseudonyms to students; it is archived with the term."""
 
 
 def pseudonyms(course: Course) -> Callable[[str], str]:
-    """Gives each student a name that only the holder of the course's key can make again."""
+    """A function that gives each student a name, which nobody can compute without the key."""
     file = course.root / FILE
     if not file.exists():
         write(file, secrets.token_hex(16) + "\n")
@@ -23,5 +23,5 @@ def pseudonyms(course: Course) -> Callable[[str], str]:
 
 
 def pseudonym(key: bytes, student: str) -> str:
-    """What a student is called under a term's key."""
+    """The pseudonym of a student under a term's key."""
     return f"S-{hmac.new(key, student.encode(), 'sha256').hexdigest()[:6]}"

@@ -1,8 +1,8 @@
 """The course's rules, in one file that a person reads and edits: ``course.toml``.
 
-What the course is called, when each assignment is due and what it weighs, who has longer, what late
-work loses, and which attempt counts.  Due dates and extensions are written into nbgrader's
-gradebook, where formgrader shows them, and late work loses its share by nbgrader's own plugin.
+The file gives the name of the course, the due date and weight of each assignment, extensions, the
+penalty for late work, and which attempt counts.  Due dates and extensions are written into the
+gradebook, where formgrader shows them, and nbgrader's own plugin deducts the penalty for late work.
 """
 
 from __future__ import annotations
@@ -36,10 +36,10 @@ class _Table(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
 
 
 class Late(_Table, frozen=True):
-    """What late work loses.
+    """The penalty for late work.
 
     Attributes:
-        percent_per_day: Of the points earned, for each day begun.
+        percent_per_day: Percentage of the points earned, for each day begun.
         at_most: The largest deduction, in percent.
         grace_minutes: Work that is late by no more than this counts as in time.
     """
@@ -49,7 +49,7 @@ class Late(_Table, frozen=True):
     grace_minutes: _Positive = 0.0
 
     def penalty(self, score: float, seconds: float) -> float:
-        """The points that are taken from ``score`` for work that came so late."""
+        """The points to deduct from ``score`` for work that was ``seconds`` late."""
         if seconds <= 60 * self.grace_minutes:
             return 0.0
         percent = min(self.at_most, self.percent_per_day * math.ceil(seconds / _DAY))
@@ -57,7 +57,7 @@ class Late(_Table, frozen=True):
 
 
 class Assignment(_Table, frozen=True):
-    """When an assignment is due, and what it weighs in the term."""
+    """The due date of an assignment, and its weight in the term."""
 
     due: datetime | None = None
     weight: _Positive = 1.0
@@ -68,7 +68,7 @@ class Assignment(_Table, frozen=True):
 
 
 class Extension(_Table, frozen=True):
-    """Longer time for one student, in one assignment or in all of them."""
+    """An extension for one student, in one assignment or in all of them."""
 
     student: str
     days: _Positive
@@ -76,16 +76,16 @@ class Extension(_Table, frozen=True):
 
 
 class Rules(_Table, frozen=True):
-    """All of the file.
+    """The contents of the file.
 
     Attributes:
-        name: What the course is called on pages.
-        id: What nbgrader calls it, in the exchange; in one word.
-        zone: In which due dates are that state none, such as "Europe/Berlin".
+        name: The name of the course on pages.
+        id: The name of the course in nbgrader's exchange, in one word.
+        zone: The time zone of due dates that state none, such as "Europe/Berlin".
         counts: Which attempt counts.
-        late: What late work loses.
-        assignments: By name.
-        extensions: Who has longer.
+        late: The penalty for late work.
+        assignments: The assignments by name.
+        extensions: The extensions.
     """
 
     name: str = ""
@@ -97,18 +97,18 @@ class Rules(_Table, frozen=True):
     extensions: tuple[Extension, ...] = ()
 
     def due(self, assignment: str) -> datetime | None:
-        """When an assignment is due for everybody, in UTC; None if it is not said."""
+        """When an assignment is due for everybody, in UTC; None if the rules do not say."""
         when = self.assignments.get(assignment, Assignment()).due
         if when is None:
             return None
         return (when if when.tzinfo else when.replace(tzinfo=ZoneInfo(self.zone))).astimezone(UTC)
 
     def weight(self, assignment: str) -> float:
-        """What an assignment weighs in the term."""
+        """The weight of an assignment in the term."""
         return self.assignments.get(assignment, Assignment()).weight
 
     def longer(self, student: str, assignment: str) -> timedelta:
-        """How much longer a student has; the longest of several extensions."""
+        """A student's extension; the longest if there are several."""
         days = [
             x.days
             for x in self.extensions
@@ -117,16 +117,16 @@ class Rules(_Table, frozen=True):
         return timedelta(days=max(days, default=0.0))
 
     def due_for(self, student: str, assignment: str) -> datetime | None:
-        """When it is due for one student, a moment of grace included."""
+        """When an assignment is due for one student, including the grace period."""
         due, grace = self.due(assignment), timedelta(minutes=self.late.grace_minutes)
         return due and due + self.longer(student, assignment) + grace
 
 
 def read_rules(course: Course) -> Rules:
-    """The course's rules; those that take nothing away where there is no file.
+    """The rules of the course; without a file, rules that deduct nothing.
 
     Raises:
-        LabkitError: The file is not TOML, or it says what nobody can follow.
+        LabkitError: The file is not TOML, or a rule in it is not valid.
     """
     path = course.root / FILE
     rules = rules_in(path)
@@ -144,7 +144,7 @@ def read_rules(course: Course) -> Rules:
 
 
 def rules_in(path: Path) -> Rules:
-    """The rules of a file, whatever assignments there are; `read_rules` says the rest."""
+    """The rules of a file; `read_rules` also checks the names of assignments."""
     try:
         rules = msgspec.convert(tomllib.loads(path.read_text(encoding="utf-8-sig")), Rules)
     except FileNotFoundError:
@@ -160,9 +160,9 @@ def rules_in(path: Path) -> Rules:
 
 
 def settle_lateness(course: Course, book: Any, assignment: str) -> None:
-    """Bring due date, extensions and penalties in the gradebook up to the rules as they are now.
+    """Update due date, extensions and penalties in the gradebook to the present rules.
 
-    Where the file names no due date, the one that was set in formgrader counts.
+    If the file has no due date, the one that was set in formgrader counts.
 
     Raises:
         LabkitError: The rules, or the course's own plugin for late work, cannot be used.
@@ -184,7 +184,7 @@ def settle_lateness(course: Course, book: Any, assignment: str) -> None:
 
 
 def _late_plugin(course: Course) -> Any:
-    """What nbgrader's settings name, also where it lies beside them as ``late.py``."""
+    """The plugin that nbgrader's settings name, which may be a file beside them."""
     config = nbgrader_api(course).config
     chosen = config.get("AssignLatePenalties", {}).get("plugin_class", LateSubmissionPlugin)
     if str(course.root) not in sys.path:

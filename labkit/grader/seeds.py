@@ -1,4 +1,4 @@
-"""The seed of a term's hidden cases, and of an assignment's."""
+"""The seeds of the hidden cases of a term and of an assignment."""
 
 from __future__ import annotations
 
@@ -30,8 +30,8 @@ def seed_of(course: Course) -> int:
 def seed_for(course: Course, assignment: str) -> int:
     """The seed of an assignment that is released without one.
 
-    It is the term's.  Where no term was begun, it is that of the last release, so that a
-    correction leaves hidden cases as they are; and the public one where that is the first.
+    It is the seed of the term.  If no term was begun, it is that of the last release, so that a
+    correction keeps the hidden cases; for a first release it is the public seed.
 
     Raises:
         LabkitError: The bundle of the last release is damaged, and its seed lost.
@@ -50,7 +50,7 @@ def seed_for(course: Course, assignment: str) -> int:
 
 
 def public_warning(seed: int) -> str:
-    """What to say of cases that are made with a seed; "" if it is not the public one."""
+    """A warning about cases made with the public seed; "" for any other seed."""
     if seed != PUBLIC_SEED:
         return ""
     return (

@@ -1,4 +1,4 @@
-"""Submissions: who handed in, and the files that came back, found and read with care."""
+"""Submissions: who handed in, and how their files are found and read safely."""
 
 from __future__ import annotations
 
@@ -12,11 +12,11 @@ from pathlib import Path
 
 from ..course.authoring.layout import Course
 from ..errors import LabkitError
-from .clean import clean_line, some
+from .clean import clean_line, few
 from .each import Failure
 
 NOTEBOOK = 200
-"""The largest notebook that is read, in [MiB]; pictures in it are dropped unread."""
+"""The largest notebook that is read, in [MiB]; pictures in it are not read."""
 
 
 @dataclass(frozen=True)
@@ -24,9 +24,9 @@ class Submission:
     """One student's files for one assignment.
 
     Attributes:
-        student: Whose.
-        assignment: Which.
-        folder: Where.
+        student: The student who handed it in.
+        assignment: The assignment.
+        folder: The folder of the files.
     """
 
     student: str
@@ -35,7 +35,7 @@ class Submission:
 
     @classmethod
     def of(cls, course: Course, assignment: str, student: str) -> Submission:
-        """Where nbgrader keeps it."""
+        """The submission in the folder where nbgrader keeps it."""
         return cls(student, assignment, course.submitted / student / assignment)
 
     def read(self) -> tuple[bytes, str, str]:
@@ -58,17 +58,17 @@ class Submission:
 
 
 def students(course: Course, name: str) -> list[str]:
-    """Who handed in an assignment, in order; only folders whose name is allowed."""
+    """The students who handed in an assignment, sorted; only those with an allowed name."""
     return [student for student in _folders(course, name) if is_name(student)]
 
 
 def misnamed(course: Course, name: str) -> list[Failure]:
-    """Folders whose name no database, page or terminal should be given; named in plain letters."""
-    return [unfit(student) for student in _folders(course, name) if not is_name(student)]
+    """A failure for each folder whose name is unsafe for a database, page or terminal."""
+    return [unfit_name(student) for student in _folders(course, name) if not is_name(student)]
 
 
-def unfit(student: str) -> Failure:
-    """What is said of such a folder."""
+def unfit_name(student: str) -> Failure:
+    """The failure for a folder whose name is not allowed."""
     return Failure(
         plain_name(student),
         "a folder in submitted/ has this name, in which a page would see markup or a terminal "
@@ -87,24 +87,24 @@ def plain_name(student: str) -> str:
 
 
 def none_of(course: Course, assignment: str, student: str | None = None) -> str:
-    """That somebody, or nobody at all, handed in an assignment, and what to do."""
+    """The message that a student, or everybody, has handed in nothing, and what to do."""
     found = students(course, assignment)
     if student and found:
-        return f"no submission of {student!r} for {assignment}{meant(student, found)}"
+        return f"no submission of {student!r} for {assignment}{did_you_mean(student, found)}"
     return (
         f"nothing was handed in for {assignment}; type: labkit collect {assignment} DOWNLOAD.zip, "
         "or put notebooks there as submitted/STUDENT/ASSIGNMENT/ASSIGNMENT.ipynb"
     )
 
 
-def meant(name: str, known: Iterable[str]) -> str:
-    """Whom an unknown name may mean, as the end of a sentence; "" where nobody is known."""
+def did_you_mean(name: str, known: Iterable[str]) -> str:
+    """Names similar to an unknown one, as the end of a sentence; "" if there are none."""
     plain = {one.casefold(): one for one in known}
     near = [one for key, one in plain.items() if name.casefold() in key]
     near = near or [plain[key] for key in get_close_matches(name.casefold(), plain)]
     if near:
         return f"; did you mean {', '.join(near[:5])}?"
-    return f"; there are {some(sorted(plain.values()))}" if plain else ""
+    return f"; there are {few(sorted(plain.values()))}" if plain else ""
 
 
 def _folders(course: Course, name: str) -> list[str]:
@@ -117,11 +117,11 @@ def read_file(path: Path, most: int = NOTEBOOK) -> bytes:
     Links are not followed: they could lead to somebody else's file.
 
     Args:
-        path: Where.
+        path: The path of the file.
         most: The largest size, in [MiB].
 
     Raises:
-        LabkitError: It is too large, is not a plain file, or cannot be read.
+        LabkitError: The file is too large, is not a plain file, or cannot be read.
     """
     name = path.name[:80]
     try:
@@ -141,7 +141,7 @@ def read_file(path: Path, most: int = NOTEBOOK) -> bytes:
 
 
 def digest(data: bytes) -> str:
-    """A name for the contents of a file."""
+    """The SHA-256 digest of a file's contents."""
     return hashlib.sha256(data).hexdigest()
 
 

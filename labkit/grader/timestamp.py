@@ -1,4 +1,4 @@
-"""The time of a hand-in, as the file beside it says."""
+"""The time of a hand-in, from the file beside it."""
 
 from __future__ import annotations
 
@@ -9,11 +9,11 @@ from pathlib import Path
 from zoneinfo import ZoneInfo
 
 TIMESTAMP = "timestamp.txt"
-"""Its name; nbgrader's exchange writes it."""
+"""The name of the file, which nbgrader's exchange writes."""
 
 
 def read_stamp(folder: Path) -> str:
-    """What the file beside a submission says of its time; empty where there is none."""
+    """The text of the time file beside a submission; empty if there is none."""
     path = folder / TIMESTAMP
     if path.is_symlink() or not path.is_file():
         return ""
@@ -22,11 +22,11 @@ def read_stamp(folder: Path) -> str:
 
 
 _TWO_DATES = re.compile(r"(?<!\d)\d{1,2}([./-])\d{1,2}\1\d{2,4}(?!\d)")
-"""Such as 01.03.2026 and 3/1/26, which are two dates, by where one lives."""
+"""Dates such as 01.03.2026 and 3/1/26, whose order of day and month is not certain."""
 
 
 def read_time(text: str, zone: tzinfo = UTC) -> datetime | None:
-    """A time as it is written, in a zone if it does not say; None if it is not one time."""
+    """The time in a text, in ``zone`` if the text names none; None if it is not clear."""
     from dateutil.parser import parse
 
     if _TWO_DATES.search(text) or not re.search(r"\d{4}", text):  # without a year it is today
@@ -40,7 +40,7 @@ def read_time(text: str, zone: tzinfo = UTC) -> datetime | None:
 
 
 def _zone(name: str | None, offset: int | None) -> tzinfo | int | None:
-    """The zone that a time names; nobody's is an error, and not this machine's."""
+    """The zone that a time names; an unknown name is an error, and never local time."""
     from dateutil.tz import tzlocal
 
     if name is None or offset is not None:

@@ -1,6 +1,6 @@
-"""Whys: a person marks two of a student's; each of the others has its points for being there.
+"""Whys: a person marks two of each student's; the others get full points if written.
 
-Nobody knows before the deadline which two, for they are drawn under the term's seed.
+Nobody knows before the deadline which two, because they are drawn under the term's seed.
 """
 
 from __future__ import annotations
@@ -15,20 +15,20 @@ from ..course.authoring.bundle import Bundle
 from ..course.authoring.layout import Course
 
 DRAWN = 2
-"""So many whys of each student a person marks, of all those that the term handed out."""
+"""The number of whys that a person marks, per student and term."""
 _WHY = re.compile(r'^# %% \[markdown\].*\bwhy="(\w+)"', re.MULTILINE)
 
 
 def drawn(
     seed: int, student: str, whys: Iterable[str], marked: Collection[str] = ()
 ) -> frozenset[str]:
-    """Which of these whys a person marks: those that are marked already, and then by lot."""
+    """The whys that a person marks: first those that are marked already, then by lot."""
     by_lot = sorted(whys, key=partial(rank, seed, student))
     return frozenset(sorted(by_lot, key=lambda name: name not in marked)[:DRAWN])
 
 
 def rank(seed: int, student: str, what: str) -> bytes:
-    """Where a thing stands when things are drawn for a student: HMAC-SHA256 under the seed."""
+    """The sort key of a thing that is drawn by lot for a student: HMAC-SHA256 under the seed."""
     return hmac.digest(str(seed).encode(), f"{student}/{what}".encode(), "sha256")
 
 

@@ -301,7 +301,7 @@ def test_an_attempt_that_was_changed_does_not_count_as_handed_in(bare, tmp_path)
     take(bare, source)
     (path,) = bare.root.glob("attempts/*/*/*/*.ipynb")
     path.write_text("better")
-    with pytest.raises(LabkitError, match="is not as it was handed in"):
+    with pytest.raises(LabkitError, match="was changed after it was handed in"):
         install(bare, "Ada-Lovelace-101", NAME)
 
 

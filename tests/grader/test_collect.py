@@ -47,7 +47,7 @@ from labkit.grader.students.identity import FILE, all_lms_users, lms_users, reme
 from labkit.grader.students.platforms import LmsUser
 from labkit.grader.students.roster import FILE as ROSTER
 from labkit.grader.students.roster import read_roster, save_roster
-from labkit.grader.students.settle import settle
+from labkit.grader.students.settle import move_to_owners
 from labkit.grader.students.worksheet import keep_numbers
 from labkit.grader.submission import read_file
 
@@ -152,7 +152,7 @@ def test_downloads_of_moodle_canvas_and_the_exchange(bare, tmp_path):
     told = take(bare, zipped(tmp_path / "moodle.zip", moodle))
     assert "Ada-Lovelace-101: notebook.ipynb: kept, but notebook(3).ipynb counts" in told
     assert "Bob-102: readme.txt: not taken; it is not a notebook" in told
-    assert "essay.ipynb: not taken; its name does not say whose it is" in told
+    assert "essay.ipynb: not taken; its name does not say who handed it in" in told
     entry = "hoppergrace_LATE_7_99_01_paths-1.ipynb"
     told = take(bare, zipped(tmp_path / "canvas.zip", [(entry, "3")]))
     assert told == [f"hoppergrace-7: 01_paths-1.ipynb: taken, as {NAME}.ipynb, late"]
@@ -188,7 +188,7 @@ def enrolled(course, path, assignment=None):
     """What `labkit students import` does, but for the gradebook."""
     done = enrol(read_roster(course), read_list(path), all_lms_users(course))
     save_roster(course, done.roster)
-    left = settle(course, done.roster)
+    left = move_to_owners(course, done.roster)
     return left + (keep_numbers(course, assignment, done.rows) if assignment else [])
 
 
@@ -425,7 +425,7 @@ def test_a_name_that_only_looks_like_anothers_is_nobodys(bare, tmp_path, who):
     handed_in(tmp_path / "in", looks_like, "right", owner=NOBODY)
     handed_in(tmp_path / "in", who, "forged", "2026-03-05 10:00:00 UTC", owner=NOBODY + 1)
     (said,) = troubles(bare, tmp_path / "in", unverified=True)
-    assert "nobody can have such a name" in said
+    assert "no user can have such a name" in said
     assert counting(bare) == {looks_like: "right"}
 
 
@@ -693,7 +693,7 @@ def test_the_command_says_what_wants_a_look_at_the_end(bare, tmp_path, capsys):
     assert main([*words, str(zipped(tmp_path / "2.zip", [("\x1b[2J.ipynb", ""), BOB]))]) == 1
     said = capsys.readouterr()
     assert "\x1b" not in said.out + said.err and "\x07" not in said.out + said.err
-    assert "[2J.ipynb: not taken; its name does not say whose it is" in said.err
+    assert "[2J.ipynb: not taken; its name does not say who handed it in" in said.err
     assert f"Bob-2: {NAME}.ipynb: taken" in said.out
 
 
@@ -724,7 +724,7 @@ def test_what_a_mac_puts_beside_files_is_passed_over(bare, tmp_path):
     odd = "x.DS_Store"
     source = zipped(tmp_path / "1.zip", [(name, "{}") for name in (mine, *beside, odd)])
     assert take(bare, source) == [
-        f"{odd}: not taken; its name does not say whose it is",
+        f"{odd}: not taken; its name does not say who handed it in",
         f"Bob-Hope-102: {NAME}.ipynb: taken",
     ]
     for name in ("bob/x.ipynb", "__MACOSX/._x.ipynb", "bob/.DS_Store"):

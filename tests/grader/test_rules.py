@@ -14,7 +14,7 @@ from labkit.__main__ import main
 from labkit.errors import LabkitError
 from labkit.grader.nbgrader.gradebook import open_gradebook
 from labkit.grader.rules import Late, read_rules
-from labkit.grader.students.attempts import HandIn, install, keep, that_counts
+from labkit.grader.students.attempts import HandIn, counted_attempt, install, store
 
 RULES = f"""
 name = "Robot control, winter 2026"
@@ -190,11 +190,11 @@ def test_the_latest_in_time_counts_where_the_rules_say_so(course):
     for day in (1, 5):
         when = datetime(2026, 11, day, tzinfo=UTC)
         hand_in = HandIn(when, "exchange", "ada", f"{NAME}.ipynb", exact=True)
-        keep(course, "ada", NAME, notebook_of(f"day {day}"), hand_in)
+        store(course, "ada", NAME, notebook_of(f"day {day}"), hand_in)
     (course.root / "course.toml").write_text(RULES)
-    assert that_counts(course, "ada", NAME).first.when.day == 5
+    assert counted_attempt(course, "ada", NAME).first.when.day == 5
     (course.root / "course.toml").write_text('counts = "latest in time"\n' + RULES)
-    assert that_counts(course, "ada", NAME).first.when.day == 1
+    assert counted_attempt(course, "ada", NAME).first.when.day == 1
     install(course, "ada", NAME)
     stamp = (course.submitted / "ada" / NAME / "timestamp.txt").read_text()
     assert stamp.startswith("2026-11-01")

@@ -53,7 +53,7 @@ def test_two_folders_of_one_student_are_named_and_collecting_again_keeps_both(
     assert counting(bare)["ada"] == expected
     assert kept(bare, "ada") == {"1", "2"}
     (_, said), _ = import_list(bare, tmp_path / "list.csv")
-    assert said.startswith("work of nobody who is known to be in the roster: Ada-Lovelace-42; ")
+    assert said.startswith("work in folders that belong to nobody in the roster: Ada-Lovelace-42; ")
 
 
 @pytest.mark.parametrize(
@@ -137,7 +137,7 @@ def test_a_folder_of_nobody_in_the_roster_is_named(bare, tmp_path):
     take(bare, from_moodle(tmp_path / "1.zip", people))
     (tmp_path / "list.csv").write_text("name,login\nAda Lovelace,ada\n")
     (_, said), _ = import_list(bare, tmp_path / "list.csv")
-    assert said.startswith("work of nobody who is known to be in the roster: Ada-King-2; where")
+    assert said.startswith("work in folders that belong to nobody in the roster: Ada-King-2; where")
     assert "perhaps theirs too" not in " ".join(left_by_hand(bare, "ada"))
 
 
@@ -151,7 +151,9 @@ def test_a_folder_is_named_though_a_sentence_has_its_name(bare, tmp_path):
     worksheet.write_text(f"{heads}\nParticipant 42,Ada Lovelace,ada,01/03/2026 10:00\n")
     said, (left,) = import_list(bare, worksheet, NAME)
     assert "01/03/2026" in left
-    assert any(x.startswith("work of nobody who is known to be in the roster: 03;") for x in said)
+    assert any(
+        x.startswith("work in folders that belong to nobody in the roster: 03;") for x in said
+    )
 
 
 def test_without_a_list_forget_names_who_is_called_alike(bare, tmp_path):

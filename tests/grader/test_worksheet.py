@@ -8,7 +8,7 @@ import pytest
 from downloaded import NAME, bare_course, from_moodle
 
 from labkit.__main__ import main
-from labkit.grader.students.attempts import perhaps_late, that_counts
+from labkit.grader.students.attempts import counted_attempt, perhaps_late
 from labkit.grader.students.collect import collect
 from labkit.grader.timestamp import read_time
 
@@ -40,7 +40,7 @@ def worksheet(course, tmp_path, capsys, when, head=TIMED):
 
 
 def handed_in(course, student="Ada-Lovelace"):
-    seen = that_counts(course, student, NAME).first
+    seen = counted_attempt(course, student, NAME).first
     return f"{seen.when:%d %H:%M}" if seen.exact else ""
 
 

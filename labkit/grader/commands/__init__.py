@@ -1,1 +1,1 @@
-"""What an instructor types: labkit's verbs, by the time of the term when they are used."""
+"""The commands that an instructor types, grouped by when in the term they are used."""

@@ -21,7 +21,7 @@ MARKED_BY = {
     CUP: "labkit export --layout cup --final",
     DEFENCE: "labkit defence STUDENT --mark A,B,C",
 }
-"""The command that gives the marks of an assignment that has no notebook of the course's."""
+"""The command that gives the marks of an assignment without a notebook."""
 
 
 def of_course(command: Callable[..., int]) -> Callable[..., int]:
@@ -69,8 +69,8 @@ names = click.argument("names", nargs=-1, metavar="[NAME]...")
 def release(course: Course, names: tuple[str, ...], seed: int | None) -> int:
     """Make the students' notebooks.
 
-    Each NAME is an assignment, such as 01_paths. Without a NAME all assignments are made. One that
-    is refused stops none of the others; the reasons come at the end, with exit code 1.
+    Each NAME is an assignment, such as 01_paths. Without a NAME all assignments are made. If one is
+    refused, the others are still made; the reasons come at the end, with exit code 1.
     """
     from ..each import Failures
     from ..seeds import public_warning, seed_for
@@ -140,7 +140,7 @@ def students(course: Course, action: str, file: Path, assignment: str | None) ->
 
     The list comes from Moodle or Canvas, or is any table with a row for each student.
 
-    Exit code: 0 if the list was imported, 1 if it was and something wants a look, such as a
+    Exit code: 0 if the list was imported, 1 if it was and something needs a look, such as a
     student's work in two folders (named at the end), 2 if the list was not imported.
     """
     from ..students.enrol import import_list

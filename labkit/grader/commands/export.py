@@ -1,4 +1,4 @@
-"""The command that writes tables of marks, what other platforms take, and the cup's board."""
+"""The command that writes tables of marks, files for other platforms, and the cup's board."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ import click
 from ...course.authoring.layout import CUP, UNRELEASED, Course
 from ...course.cli import verb
 from ...errors import LabkitError
-from ..clean import some
+from ..clean import few
 from ..each import Failure, Failures
 from .course import of_course
 from .pages import nobody, tell, to_file, write
@@ -25,7 +25,7 @@ if TYPE_CHECKING:
 TABLES = ("nbgrader", "questions", "canvas", "moodle", "moodle-worksheet")
 """Layouts of marks."""
 NAMED = ("canvas", "moodle")
-"""Layouts with a column that a platform knows by its name."""
+"""Layouts with a column whose name a platform must know."""
 QUIZZES = ("paper", "moodle-quiz", "canvas-quiz")
 """Layouts of the concept test."""
 
@@ -101,13 +101,13 @@ def export(
         return [] if all(mark.absent for mark in found) else found
 
     def filled(name: str, marks: list[Mark]) -> list[Mark]:
-        """The marks with a 0 for each who is absent, if that is asked for and certain."""
+        """The marks with a 0 for each absent student, if that is asked for and certain."""
         strangers = [m.student for m in marks if not (m.absent or m.listed)]
         if not absent_zero or not any(m.absent for m in marks):
             return marks
         if strangers:
             doubts.append(
-                f"{name}: no 0 is written, because {some(strangers)} handed in and are not in the "
+                f"{name}: no 0 is written, because {few(strangers)} handed in and are not in the "
                 "roster, and may be somebody who is; import a list that has them"
             )
             return marks
@@ -154,7 +154,7 @@ def _concept_test(
 
 
 def _autograder(course: Course, assignment: str | None, to: Path | None) -> int:
-    """Write the zip for Gradescope; name those whose own arm it cannot tell."""
+    """Write the zip for Gradescope; name the students whose own arm it cannot find."""
     from ..gradescope.setup_zip import autograder
 
     if assignment is None or to is None:

@@ -110,14 +110,14 @@ def grade(course: Course, assignment: str, student: str | None, as_json: bool, *
 
 
 def _other_notebooks(results: Iterable[Result]) -> Iterator[Failure]:
-    """Who handed in a notebook that does not belong here."""
+    """A failure for each student who handed in the notebook of another assignment."""
     for result in results:
         if result.unanswered and not result.rejected:
             yield Failure(result.student, f"{result.unanswered}; ask for the right one")
 
 
 def _on_top(course: Course, assignment: str) -> Iterator[str]:
-    """What the points that are printed leave out."""
+    """The points that are not included in the printed marks."""
     from ...course.authoring.bundle import Bundle
 
     if by_hand := Bundle.of(course, assignment).by_hand:

@@ -12,7 +12,7 @@ import click
 from ...course.authoring.layout import Course
 from ...course.cli import PATH, verb
 from ...errors import LabkitError
-from ..clean import how_many, some
+from ..clean import few, how_many
 from ..each import Failure, Failures
 from .course import MARKED_BY, of_assignment
 
@@ -123,14 +123,14 @@ def _wait_for_marks(marks: Iterable[Mark]) -> None:
     waiting = [f"{mark.student} ({', '.join(mark.open)})" for mark in open_ones]
     if waiting:
         raise LabkitError(
-            f"{some(waiting)}: these answers wait for a mark by hand, of "
+            f"{few(waiting)}: these answers wait for a mark by hand, of "
             f"{how_many(len(waiting), 'student')} in all; give it in formgrader, or add "
             "--unmarked to write the pages without these marks"
         )
 
 
 def nobody(assignment: str, student: str | None, why: str = "") -> LabkitError:
-    """The error where nothing is graded yet, or ``why`` no result can be read."""
+    """The error if nothing is graded yet; ``why`` says why no result can be read."""
     who = f"{student} is not" if student else "nobody is"
     why = why or f"type: {MARKED_BY.get(assignment, f'labkit grade {assignment}')}"
     return LabkitError(f"{who} graded in {assignment}; {why}")

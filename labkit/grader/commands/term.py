@@ -61,9 +61,9 @@ def term(
     """  # noqa: D301
     from ..terms.forget import (
         entries_of,
+        files_of,
         forget,
         left_by_hand,
-        places_of,
         shared_reports,
         unknown,
     )
@@ -101,7 +101,7 @@ def term(
             found = [one.folder for one in archives(course, older or 0.0)]
             by_hand = [str(one) for one in archives(course) if one.ended is None]
         else:
-            found, entries = places_of(course, student), entries_of(course, student)
+            found, entries = files_of(course, student), entries_of(course, student)
             if not (found or entries):
                 raise unknown(course, student)
             by_hand = list(left_by_hand(course, student))

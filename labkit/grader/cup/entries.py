@@ -43,11 +43,11 @@ from ..submission import Submission, digest, students
 from ..whys import rank
 
 FOLDER = "cup"
-"""In ``results/``, where each student has a file of entries."""
+"""The folder in ``results/`` with a file of entries for each student."""
 SEEDS = 3
-"""Runs of an entry, on the board as in the final."""
+"""The number of runs of an entry, on the board and in the final."""
 A_DAY = 3
-"""So many entries of a handle are run on the board in one day."""
+"""The most entries of one handle that are run on the board in a day."""
 LIMITS = Limits(question=60.0, wall=200.0)
 """A run asks a controller 3,000 times; it may take 60 s for all its answers."""
 _LAW, _BY_POSE = (Question(name, 0.0, "", Close(), ()) for name in ("cup_law", "cup_by_pose"))
@@ -64,17 +64,17 @@ if not hasattr(cup, "make"):
 
 @dataclass(frozen=True)
 class Entry:
-    """What came of one notebook.
+    """The outcome of one notebook.
 
     Attributes:
-        student: Who handed it in.
-        handle: By which the table knows the student, or the team.
-        notebook: Hash of the file.
-        day: On which it was run, as in 2026-11-22.
+        student: The student who handed it in.
+        handle: The handle of the student, or the team, in the table.
+        notebook: The hash of the file.
+        day: The day on which it was run, as in 2026-11-22.
         final: Whether it was run on the seeds of the final.
-        scores: In [mm] on each seed; None where the arm did not reach the end.
+        scores: The score on each seed, in [mm]; None if the arm did not reach the end.
         why: Why a run has no score; empty if all have one.
-        motion: The first run, as the viewer reads it; empty in all but the last entry.
+        motion: The first run in the viewer's format; empty in all but the last entry.
     """
 
     student: str
@@ -105,10 +105,10 @@ def seeds(course: Course, final: bool) -> tuple[int, ...]:
 
 
 def play(course: Course, today: date, final: bool) -> Iterator[Entry | Failure]:
-    """Run each notebook that was not run yet; of a handle at most `A_DAY` on the board in a day.
+    """Run each notebook that was not run yet, on the board at most `A_DAY` per handle and day.
 
     Yields:
-        Each entry that was run, or why one was not.
+        Each entry that was run, or why it was not.
 
     Raises:
         NoIsolation: No sandbox can be made here.
@@ -136,7 +136,7 @@ def play(course: Course, today: date, final: bool) -> Iterator[Entry | Failure]:
 
 
 def entries(course: Course) -> Iterator[Entry]:
-    """All that was run this term."""
+    """All entries that were run this term."""
     for path in sorted((course.results / FOLDER).glob("*.json")):
         yield from of_student(course, path.stem)
 
@@ -161,7 +161,7 @@ def latest(course: Course, final: bool) -> list[Entry]:
 
 
 def _run(new: Entry, data: bytes, limits: Limits, on: Sequence[int], sandbox: Sandbox) -> Entry:
-    """The entry with what came of it on some seeds."""
+    """The entry with its scores on some seeds."""
     cells = parse(data, sandbox, limits)
     if isinstance(cells, str):
         return replace(new, why=cells)
@@ -189,7 +189,7 @@ def _run(new: Entry, data: bytes, limits: Limits, on: Sequence[int], sandbox: Sa
 
 
 def _controller(session: Session) -> Controller:
-    """The entry's controller, asked in its sandbox."""
+    """The entry's controller, which runs in the sandbox."""
     law = RemoteFunction(_LAW, session)
 
     def controller(state: State, target: AnySample) -> Command:

@@ -14,7 +14,7 @@ from ..rules import read_rules
 from .entries import Entry
 
 BONUS = "benchmarks_beaten"
-"""What the gradebook calls it."""
+"""The name of the bonus in the gradebook."""
 
 
 def lines(found: Sequence[Entry]) -> Iterator[tuple[float, str, Entry | None]]:

@@ -1,8 +1,8 @@
 """The defence: three of a student's own accepted functions, each with a mistake put into it.
 
-The questions are drawn under the term's seed, so each student has their own, and has them again
-when the page is printed again.  A mistake is taken only if the question's checks reject the
-function with it; where the question lets an arm run, the arm must run worse than allowed.
+The questions are drawn under the term's seed, so each student has their own questions, which stay
+the same when the page is printed again.  A mistake is used only if the question's checks reject the
+function with it; if the question runs an arm, the arm must miss a limit.
 """
 
 from __future__ import annotations
@@ -30,29 +30,29 @@ from ..sandbox.limits import Limits, slowness
 from ..sandbox.session import RemoteFunction, Session
 from ..seeds import seed_of
 from ..students.roster import read_roster
-from ..submission import Submission, is_name, meant
+from ..submission import Submission, did_you_mean, is_name
 from ..whys import rank
 from .edits import Edit, edits, shown
 
 ASKED = 3
-"""Questions of one defence."""
+"""The number of questions in one defence."""
 FULL = 3
-"""Points of each."""
+"""The full marks for each question."""
 LONG = 24
-"""Functions of more lines are asked about only if there are no shorter ones."""
+"""Functions with more lines are chosen only if there are no shorter ones."""
 TRIES = 3
-"""So many mistakes of a function are tried, to find one that students are known to make."""
+"""The number of mistakes that are tried in a function to find a known misconception."""
 
 
 @dataclass(frozen=True)
 class Accepted:
-    """An answer that counts in full.
+    """An answer that earned full marks.
 
     Attributes:
-        bundle: Of its assignment, as it is for this student.
-        question: What was asked.
-        answer: What came of it.
-        right: The names of all answers in this notebook that count in full.
+        bundle: The bundle of its assignment, for this student.
+        question: The question.
+        answer: The answer with its verdict.
+        right: The names of all questions in this notebook that earned full marks.
     """
 
     bundle: Bundle
@@ -62,12 +62,12 @@ class Accepted:
 
     @property
     def assignment(self) -> str:
-        """In which assignment."""
+        """The name of its assignment."""
         return str(self.bundle.data["assignment"])
 
     @property
     def drives(self) -> bool:
-        """Whether an arm runs with it."""
+        """Whether the question runs an arm with the answer."""
         return any(isinstance(c, Loop | Tuned) for t in self.question.tests for c in t.cases)
 
 
@@ -76,12 +76,12 @@ class Asked:
     """One question of a defence.
 
     Attributes:
-        of: The answer that it is about.
+        of: The answer that the question is about.
         edit: The mistake, and the functions with it.
-        run: What the arm does now, if one runs.
-        own: What the arm did with the answer as it was handed in.
-        numbers: Otherwise, what is returned now beside what is expected.
-        known: The known mistake that answers alike, if there is one.
+        run: The run of the arm with the mistake, if the question has one.
+        own: The run of the arm with the answer as it was handed in.
+        numbers: Otherwise, the numbers returned with the mistake and those expected.
+        known: The known mistake that gives the same answers, if there is one.
     """
 
     of: Accepted
@@ -93,7 +93,7 @@ class Asked:
 
     @property
     def given(self) -> str:
-        """What the law is given in its run besides state and target, such as "(kp=40.0)"."""
+        """The arguments of the law in its run besides state and target, such as "(kp=40.0)"."""
         tests = [t for t in self.of.question.tests if self.run and t.name == self.run["test"]]
         loops = [case for test in tests for case in test.cases if isinstance(case, Loop)]
         return Call((), loops[0].kwargs).shown("") if loops and loops[0].kwargs else ""
@@ -103,8 +103,8 @@ def draw(course: Course, student: str) -> tuple[Asked, ...]:
     """The questions of a student's defence; fewer where fewer answers can be asked about.
 
     Raises:
-        LabkitError: Nobody has this name, nothing was handed in, or there are fewer because work
-            has no result.
+        LabkitError: There is no such student, nothing was handed in, or there are too few questions
+            because work has no result.
         NoIsolation: No sandbox can be made here.
     """
     answers, missing = accepted(course, student)
@@ -133,10 +133,10 @@ def draw(course: Course, student: str) -> tuple[Asked, ...]:
 
 
 def accepted(course: Course, student: str) -> tuple[list[Accepted], list[str]]:
-    """The answers of a student that count in full, and why work that was handed in has no result.
+    """A student's answers that earned full marks, and why other work has no result.
 
     Raises:
-        LabkitError: Nothing of theirs is here.
+        LabkitError: The student handed in nothing, or does not exist.
     """
     found: list[Accepted] = []
     missing: list[str] = []
@@ -165,7 +165,7 @@ def accepted(course: Course, student: str) -> tuple[list[Accepted], list[str]]:
         raise LabkitError(
             f"there is no student {student!r}: not in the roster, and nothing of theirs is in "
             "submitted/ or results/; give the name of the student's folder"
-            f"{meant(student, [*roster, *folders])}"
+            f"{did_you_mean(student, [*roster, *folders])}"
         )
     return found, missing
 
@@ -173,7 +173,7 @@ def accepted(course: Course, student: str) -> tuple[list[Accepted], list[str]]:
 def _ask(
     course: Course, student: str, one: Accepted, sandbox: Sandbox, limits: Limits
 ) -> Asked | None:
-    """A question about an answer: with a mistake that is known if one is found, else with another.
+    """A question about an answer, with a known mistake if possible, and otherwise with another.
 
     None if no mistake changes what the checks say.
     """
@@ -187,7 +187,7 @@ def _ask(
     source = todo.source(one.question.name)
     secret = partial(rank, seed_of(course), student)
     mistakes = sorted(edits(source), key=lambda e: secret(f"{one.question.name}/{e.at}/{e.now}"))
-    found = (_with(edit, one, todo, sandbox, limits) for edit in mistakes[:TRIES])
+    found = (_tried(edit, one, todo, sandbox, limits) for edit in mistakes[:TRIES])
     first: Asked | None = None
     for asked in filter(None, found):
         if asked.known:
@@ -196,7 +196,7 @@ def _ask(
     return first
 
 
-def _with(edit: Edit, one: Accepted, todo: Plan, sandbox: Sandbox, limits: Limits) -> Asked | None:
+def _tried(edit: Edit, one: Accepted, todo: Plan, sandbox: Sandbox, limits: Limits) -> Asked | None:
     """A question with this mistake; None if the checks accept it, or it only raises an error."""
     question = one.question
     place = todo.places[question.name]

@@ -1,4 +1,4 @@
-"""Known mistakes as edits: one place of somebody's own function, changed as people get it wrong.
+"""Edits that put a typical mistake into one place of a student's own function.
 
 Functions are shown as Python writes them out, without docstrings and comments; so neither the
 spacing nor a comment tells which line was changed.  Nothing of them runs here.
@@ -27,9 +27,9 @@ EXCHANGED = {
     "sin": "cos",
     "tip_jacobian": "body_jacobian",
 }
-"""Names that are taken for one another, such as the two Jacobians, or sine and cosine."""
+"""Names that students confuse, such as the two Jacobians, or sine and cosine."""
 MOST = 300
-"""So many mistakes are looked at in one cell; in functions that people write there are fewer."""
+"""The most mistakes that are tried in one cell; real functions have fewer."""
 _TURNED = {
     ast.Add: ast.Sub,
     ast.Sub: ast.Add,
@@ -47,10 +47,10 @@ class Edit:
 
     Attributes:
         cell: The cell with the mistake.
-        lines: Its functions alone, with the mistake.
-        at: Which of these lines has it, from 1.
+        lines: The lines of its functions, with the mistake.
+        at: The number of the line with the mistake, from 1.
         was: The same line without the mistake.
-        says: Which mistake it is, in a few words.
+        says: The mistake in a few words.
     """
 
     cell: str
@@ -66,7 +66,7 @@ class Edit:
 
 
 def edits(source: str) -> list[Edit]:
-    """All mistakes that fit into the functions of a cell, in order of their place.
+    """All mistakes that fit the functions of a cell, sorted by line.
 
     Args:
         source: The cell's text; one that Python cannot read has no functions.
@@ -99,7 +99,7 @@ def shown(source: str) -> list[str]:
 
 
 def _parsed(source: str) -> tuple[ast.Module, list[ast.FunctionDef]]:
-    """A cell, and the functions in it, which have lost their docstrings."""
+    """A cell and its functions, without their docstrings."""
     cell = deepcopy(parsed(source)[1])
     functions = [x for x in cell.body if isinstance(x, ast.FunctionDef)]
     for function in functions:
@@ -113,7 +113,7 @@ def _written(functions: list[ast.FunctionDef]) -> list[str]:
 
 
 def _places(functions: list[ast.FunctionDef]) -> Iterator[tuple[ast.AST, Callable[[Any], None]]]:
-    """All nodes in the functions' bodies, each with what puts another node in its place."""
+    """All nodes in the functions' bodies, each with a function that replaces it."""
     waiting: list[ast.AST] = [ast.Module(function.body, []) for function in functions]
     while waiting:
         parent = waiting.pop()
@@ -128,38 +128,38 @@ def _places(functions: list[ast.FunctionDef]) -> Iterator[tuple[ast.AST, Callabl
 
 
 def _mistakes(node: ast.AST) -> Iterator[tuple[ast.AST, str]]:
-    """The mistakes that fit into one place, each as the node that takes its place."""
+    """The mistakes that fit one node, each as the node that replaces it."""
     match node:
         case ast.If(test=ast.Name()) | ast.IfExp(test=ast.Name()):
-            yield _but(node, test=ast.UnaryOp(ast.Not(), node.test)), "a condition is reversed"
+            yield _with(node, test=ast.UnaryOp(ast.Not(), node.test)), "a condition is reversed"
         case ast.UnaryOp(op=ast.Not()):
             yield node.operand, "a condition is reversed"
         case ast.UnaryOp(op=ast.USub()):
             yield node.operand, "a sign is left out"
         case ast.AugAssign(op=ast.Add() | ast.Sub()):
-            yield _but(node, op=_TURNED[type(node.op)]()), "the sign of a term is reversed"
+            yield _with(node, op=_TURNED[type(node.op)]()), "the sign of a term is reversed"
         case ast.Compare(ops=[op]) if type(op) in _TURNED:
-            yield _but(node, ops=[_TURNED[type(op)]()]), "a comparison is reversed"
+            yield _with(node, ops=[_TURNED[type(op)]()]), "a comparison is reversed"
         case ast.BinOp():
-            yield from _of_two(node)
+            yield from _operator_mistakes(node)
         case ast.Attribute(attr="T"):
             yield node.value, "a transpose is left out"
         case ast.Attribute(attr=name) if name in EXCHANGED:
-            yield _but(node, attr=EXCHANGED[name]), f"{EXCHANGED[name]} stands for {name}"
+            yield _with(node, attr=EXCHANGED[name]), f"{EXCHANGED[name]} stands for {name}"
         case ast.Call(func=ast.Name(id=name)) if name in EXCHANGED:
             func = ast.Name(EXCHANGED[name])
-            yield _but(node, func=func), f"{EXCHANGED[name]} stands for {name}"
+            yield _with(node, func=func), f"{EXCHANGED[name]} stands for {name}"
         case ast.Subscript(slice=ast.Tuple(elts=parts) as indices):
             for k, part in enumerate(parts):
-                for wrong, says in _of_index(part):
+                for wrong, says in _index_mistakes(part):
                     elts = [*parts[:k], wrong, *parts[k + 1 :]]
-                    yield _but(node, slice=_but(indices, elts=elts)), says
+                    yield _with(node, slice=_with(indices, elts=elts)), says
         case ast.Subscript():
-            for wrong, says in _of_index(node.slice):
-                yield _but(node, slice=wrong), says
+            for wrong, says in _index_mistakes(node.slice):
+                yield _with(node, slice=wrong), says
 
 
-def _but(node: ast.AST, **fields: Any) -> Any:
+def _with(node: ast.AST, **fields: Any) -> Any:
     """A node with some fields changed."""
     new = copy(node)
     for name, value in fields.items():
@@ -167,18 +167,18 @@ def _but(node: ast.AST, **fields: Any) -> Any:
     return new
 
 
-def _of_two(node: ast.BinOp) -> Iterator[tuple[ast.AST, str]]:
-    """The mistakes with an operator: a sign, an order, a side that is left out."""
+def _operator_mistakes(node: ast.BinOp) -> Iterator[tuple[ast.AST, str]]:
+    """Mistakes with an operator: a sign, an order, an operand that is left out."""
     left, right = node.left, node.right
     of_terms = isinstance(left, ast.BinOp) and isinstance(left.op, ast.Add | ast.Sub)
     match node.op:
         case ast.Add() | ast.Sub() if of_terms or isinstance(node.op, ast.Add):
-            yield _but(node, op=_TURNED[type(node.op)]()), "the sign of a term is reversed"
+            yield _with(node, op=_TURNED[type(node.op)]()), "the sign of a term is reversed"
             yield left, "a term is left out"
             if not of_terms:
                 yield right, "a term is left out"
         case ast.Sub():
-            yield _but(node, left=right, right=left), "a difference is reversed"
+            yield _with(node, left=right, right=left), "a difference is reversed"
             yield ast.UnaryOp(ast.USub(), right), "a term is left out"
         case ast.Mult():
             yield right, "a factor is left out"
@@ -190,8 +190,8 @@ def _of_two(node: ast.BinOp) -> Iterator[tuple[ast.AST, str]]:
             yield left, "an exponent is left out"
 
 
-def _of_index(part: ast.expr) -> Iterator[tuple[ast.expr, str]]:
-    """The mistakes with an index: the last one, or the other half of a vector."""
+def _index_mistakes(part: ast.expr) -> Iterator[tuple[ast.expr, str]]:
+    """Mistakes with an index: the last element, or the other part of a vector."""
     match part:
         case ast.Constant(value=int()) if not isinstance(part.value, bool):
             yield ast.Constant(-1), "the last one is taken (index -1)"

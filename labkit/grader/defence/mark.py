@@ -14,13 +14,13 @@ from ..nbgrader.unreleased import enter
 from .draw import ASKED, FULL, Asked
 
 LINES = tuple(f"question_{k + 1}" for k in range(ASKED))
-"""What the gradebook calls the questions."""
+"""The names of the questions in the gradebook."""
 OWN_WORK = "Work of the student's own that you choose, as fewer functions were accepted."
-"""A question for which there is no accepted function."""
+"""The text of a question without an accepted function."""
 
 
 def await_mark(course: Course, student: str, asked: Sequence[Asked]) -> None:
-    """Let a defence wait for its mark, in formgrader too; a mark that was given stays."""
+    """Enter a defence in the gradebook, to be marked by hand; a mark that was given stays."""
     texts = dict.fromkeys(LINES, OWN_WORK) | {
         LINES[k]: _text(k, one) for k, one in enumerate(asked)
     }
@@ -34,7 +34,7 @@ def give_mark(course: Course, student: str, points: Sequence[int]) -> None:
     """Write the points of a defence that was held, one number for each question.
 
     Raises:
-        LabkitError: There is another number of them, one is too high, or no page was printed.
+        LabkitError: The number of points is wrong, one is too high, or no page was printed.
     """
     if len(points) != ASKED or not all(0 <= x <= FULL for x in points):
         raise LabkitError(

@@ -18,9 +18,9 @@ RUBRIC = (
     "says what the arm will do, or what is returned, before the answer is shown",
     "explains the picture by the line: which term, which sign, which frame",
 )
-"""A point for each."""
+"""The criteria for each question, at one point each."""
 WIDTH, ROOM = 95, 400.0
-"""Characters in a line of code in print; the height that is left for all lines, in [pt] of type."""
+"""The characters in a printed line of code; the height for all lines, in [pt]."""
 
 
 def write_page(course: Course, student: str, asked: Sequence[Asked]) -> Path:
@@ -46,13 +46,13 @@ def write_page(course: Course, student: str, asked: Sequence[Asked]) -> Path:
 
 
 def _print_size(asked: Sequence[Asked]) -> str:
-    """The size of code in print with which all functions fit one side of A4."""
+    """The style with a print size of code at which all functions fit one side of A4."""
     lines = sum(1 + len(line) // WIDTH for one in asked for line in one.edit.lines)
     return f"@media print {{ .code {{ font-size: {min(8.0, ROOM / max(1, lines)):.2f}pt }} }}"
 
 
 def rows(one: Asked) -> Iterator[tuple[str, str, str, str]]:
-    """Each measure that has a limit: its words, now, as handed in, at most."""
+    """Each measure with a limit: its words, the value now, the value as handed in, the limit."""
     now, own = (
         {} if run is None else {x.words: x for x in measures(run)} for run in (one.run, one.own)
     )

@@ -32,7 +32,7 @@ from ..sandbox.mounts import Isolation
 from ..submission import Submission
 
 PLACE = "LABKIT_AUTOGRADER"
-"""The variable by which a test says that the folder is not ``/autograder``."""
+"""The variable with which a test replaces the folder ``/autograder``."""
 SECONDS = 540.0
 """After so long the watchdog ends grading, a minute before Gradescope would."""
 LIMITS = replace(Limits().scaled(2.5), memory=384)
@@ -41,7 +41,7 @@ BY_HAND = "A person marks this answer; its points are not among those of the aut
 
 
 def main() -> None:
-    """What ``run_autograder`` does: report at once, grade in another process, watch over it."""
+    """Report at once, grade in another process, and stop that process if it takes too long."""
     place = Path(os.environ.get(PLACE, "/autograder"))
     if "--try" in sys.argv:
         with Sandbox(isolation=Isolation.USER) as sandbox, sandbox.spawn("student", LIMITS):
@@ -90,7 +90,7 @@ def _grade(bundle: Bundle, place: Path, results: Path) -> None:
 
 
 def _student(path: Path, bundle: Bundle) -> tuple[str, str]:
-    """Who handed in, by address; and what is to be said of that."""
+    """The address of the student who handed in, and a remark if it is not known."""
     users = json.loads(path.read_text()).get("users", []) if path.exists() else []
     mails = [clean_line(str(user.get("email", ""))).casefold() for user in users] or [""]
     known = [mail for mail in mails if mail in bundle.arms.handles]
@@ -108,9 +108,9 @@ def gradescope_results(
 
     Args:
         bundle: What was asked.
-        verdicts: Those reached so far.
-        result: What came of the whole, once it is there.
-        says: What to say of the whole.
+        verdicts: The verdicts reached so far.
+        result: The whole result, once grading has ended.
+        says: A remark on the whole submission.
     """
     notes = {x.verdict.name: x.notes for x in result.questions} if result else {}
     written = result.written if result else {}

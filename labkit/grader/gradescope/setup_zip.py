@@ -22,14 +22,14 @@ def autograder(course: Course, assignment: str, to: Path) -> list[Student]:
 
     Args:
         course: The course.
-        assignment: Which.
+        assignment: The assignment.
         to: The file to write.
 
     Returns:
-        Students whose own arm Gradescope cannot tell, as the roster has no address of theirs.
+        Students whose own arm Gradescope cannot find, as the roster has no address for them.
 
     Raises:
-        LabkitError: It was not released, or the wheel could not be built.
+        LabkitError: The assignment was not released, or the wheel could not be built.
     """
     bundle = Bundle.of(course, assignment)
     files = {f"build/course/bundle/{assignment}.json": json.dumps(bundle.data)}

@@ -1,19 +1,19 @@
-"""Marks as tables: nbgrader's, one column per question, and what Canvas and Moodle read.
+"""Marks as tables: for nbgrader, Canvas and Moodle, and with one column per question.
 
 Canvas: the first columns are Student, ID, SIS User ID, SIS Login ID, Section, in this order; a row
-whose first cell holds "Points Possible" gives full marks; a student is known by ID, else by SIS ID,
-else by login, else by name; an assignment's column is called ``TITLE (NUMBER)``, and a title that
-Canvas does not know makes a new assignment (github.com/instructure/canvas-lms,
+whose first cell holds "Points Possible" gives full marks; a student is found by ID, else by SIS ID,
+else by login, else by name; an assignment's column is named ``TITLE (NUMBER)``, and a title that
+Canvas does not know creates an assignment (github.com/instructure/canvas-lms,
 ``lib/gradebook_importer.rb``; the columns also at
 teaching.resources.osu.edu, "Import CSV File to Carmen Grades").
 
-Moodle has two doors.  The gradebook's import (docs.moodle.org/en/Grade_import) asks which column to
-know users by: "Email address" goes to ``useremail``, "ID number" to ``useridnumber``.  The
+Moodle has two imports.  The gradebook's import (docs.moodle.org/en/Grade_import) asks which column
+identifies users: "Email address" goes to ``useremail``, "ID number" to ``useridnumber``.  The
 assignment's own grading worksheet needs the columns Identifier, Grade and Last modified (grade);
-the identifier is "Participant" and the number that the download of submissions bears
+the identifier is "Participant" and the number in the download of submissions
 (github.com/moodle/moodle, ``mod/assign/feedback/offline/importgradeslib.php``).
 
-Names, addresses and numbers are the roster's, where there is one.
+Names, addresses and numbers come from the roster, if there is one.
 """
 
 from __future__ import annotations
@@ -26,7 +26,7 @@ from collections.abc import Callable, Iterator, Mapping, Sequence
 from typing import Any
 
 from ...course.authoring.layout import DEFENCE
-from ..clean import no_formula, some
+from ..clean import few, no_formula
 from .mark import Mark
 
 
@@ -44,7 +44,7 @@ def nbgrader(assignment: str, marks: Sequence[Mark]) -> list[list[Any]]:
 
 
 def questions(assignment: str, marks: Sequence[Mark]) -> list[list[Any]]:
-    """One column for each question, and remarks; the second line says what full marks are."""
+    """One column for each question, and remarks; the second line has the full marks."""
     names = list(dict.fromkeys(name for r in marks for name in r.questions))
     most = {name: r.questions[name][1] for r in marks for name in r.questions}
     table: list[list[Any]] = [["student", *names, "penalty", "score", "remark"]]
@@ -57,7 +57,7 @@ def questions(assignment: str, marks: Sequence[Mark]) -> list[list[Any]]:
 
 
 def canvas(column: str, marks: Sequence[Mark]) -> list[list[Any]]:
-    """What Canvas's gradebook imports; ``column`` as Canvas calls it, "Paths (4711)"."""
+    """The table for Canvas's gradebook; ``column`` is Canvas's name, as in "Paths (4711)"."""
     table: list[list[Any]] = [["Student", "ID", "SIS User ID", "SIS Login ID", "Section", column]]
     table.append(["    Points Possible", "", "", "", "", marks[0].full if marks else ""])
     for r in marks:
@@ -68,20 +68,20 @@ def canvas(column: str, marks: Sequence[Mark]) -> list[list[Any]]:
 
 
 def moodle(column: str, marks: Sequence[Mark]) -> list[list[Any]]:
-    """What Moodle's gradebook imports: columns to know the user by, and the grade."""
+    """The table for Moodle's gradebook: columns that identify the user, and the grade."""
     table: list[list[Any]] = [
         ["First name", "Last name", "ID number", "Username", "Email address", column]
     ]
     for r in marks:
         who = r.person
         keys = (who.id_number, r.login, who.email)
-        if any(keys):  # otherwise the mark would be nobody's
+        if any(keys):  # otherwise Moodle could not find the student
             table.append([who.first_name, who.last_name, *keys, r.score])
     return table
 
 
 def moodle_worksheet(column: str, marks: Sequence[Mark]) -> list[list[Any]]:
-    """What a Moodle assignment reads as its grading worksheet: who came in its download."""
+    """The grading worksheet for a Moodle assignment: the participants in its download."""
     table: list[list[Any]] = [
         ["Identifier", "Full name", "Grade", "Maximum Grade", "Last modified (grade)"]
     ]
@@ -100,24 +100,24 @@ _NEEDS = {
     "moodle-worksheet": "participant's number (labkit collect NAME MOODLE.zip, or labkit students "
     "import WORKSHEET.csv --assignment NAME)",
 }
-"""By what a platform knows a student, and where it comes from."""
+"""What identifies a student on each platform, and the command that provides it."""
 
 
 def _participants(marks: Sequence[Mark]) -> set[str]:
-    """Moodle's numbers that are one student's alone; others would get two marks."""
+    """The participant numbers that belong to one student alone; others would get two marks."""
     numbers = Counter(r.number("moodle") for r in marks)
     return {number for number, count in numbers.items() if number and count == 1}
 
 
 def of_term(marks: Mapping[str, Sequence[Mark]], weights: Mapping[str, float]) -> list[list[Any]]:
-    """All assignments side by side, and what they come to, in percent.
+    """All assignments side by side, with the total in percent.
 
-    What has no full marks, such as the cup, is a bonus: it adds its points, times its weight, to
-    the percentage.  A student who had no defence yet has the percentage of all else.
+    An assignment without full marks, such as the cup, is a bonus: its points, times its weight, are
+    added to the percentage.  Without a defence yet, the percentage is that of everything else.
 
     Args:
-        marks: By assignment, the same students in each or not.
-        weights: Of each assignment in the whole.
+        marks: The marks by assignment; the students may differ between assignments.
+        weights: The weight of each assignment in the total.
     """
     known = {mark.student: mark.person for each in marks.values() for mark in each}
     cells = {(name, m.student): m for name, each in marks.items() for m in each}
@@ -140,21 +140,21 @@ def of_term(marks: Mapping[str, Sequence[Mark]], weights: Mapping[str, float]) -
 
 
 def remarks(layout: str, marks: Sequence[Mark], assignment: str = "") -> Iterator[str]:
-    """What should be known of a table: who has no mark, and whom the platform will not know."""
+    """Remarks on a table: who has no mark, and whom the platform cannot identify."""
     for mark in marks:
         if mark.missing:
             yield f"no mark: {mark.student}: {mark.missing}"
         elif mark.remark and not (mark.absent or mark.author):
             yield f"{mark.student}: {mark.remark}"
     if team := [f"{mark.student} ({mark.author})" for mark in marks if mark.author]:
-        yield f"{len(team)} have the mark of a report that their team handed in: {some(team)}"
+        yield f"{len(team)} have the mark of a report that their team handed in: {few(team)}"
     if absent := [mark.student for mark in marks if mark.absent]:
         nothing = "with no defence yet" if assignment == DEFENCE else "handed in nothing"
-        yield f"{len(absent)} {nothing}: {some(absent)}"
+        yield f"{len(absent)} {nothing}: {few(absent)}"
     if layout == "canvas" and (lost := [m.student for m in marks if not (m.absent or m.canvas)]):
         yield (
             f"{len(lost)} have no Canvas ID, so Canvas must find them by SIS ID or login: "
-            f"{some(lost)}; import Canvas's own list (Grades, Export), which has the IDs"
+            f"{few(lost)}; import Canvas's own list (Grades, Export), which has the IDs"
         )
     yield from filter(None, [left_out(layout, marks)])
 
@@ -167,7 +167,7 @@ def left_out(layout: str, marks: Sequence[Mark]) -> str:
             f"nobody can import this table: it has no {_NEEDS[layout]} of the {count} who handed in"
         )
     who = f"{len(lost)} of the {count} who handed in"
-    return f"{who} cannot be matched by this table: {some(lost)}" if lost else ""
+    return f"{who} cannot be matched by this table: {few(lost)}" if lost else ""
 
 
 def unmatched(layout: str, marks: Sequence[Mark]) -> tuple[list[str], int]:
@@ -204,9 +204,9 @@ _PLAIN = re.compile(r"[\w.@+-]*")
 def as_csv(table: Sequence[Sequence[Any]]) -> str:
     """A table as text; nothing in it can become a formula in a spreadsheet.
 
-    What could begin a formula gets a quotation mark in front.  An identity gets one only if it
-    holds more than letters, digits and ``. _ @ + -``, as the platform would not know it any more;
-    `left_out` names such a student.
+    A cell that could begin a formula gets a leading quotation mark.  An identity gets one only if
+    it holds more than letters, digits and ``. _ @ + -``, as the platform would no longer recognize
+    it; `left_out` names such a student.
     """
     identity = [head in IDENTITIES for head in table[0]]
     rows = [[_cell(x, known) for x, known in zip(r, identity, strict=True)] for r in table]

@@ -1,4 +1,4 @@
-"""What one student has for an assignment, line by line: a value, as every page shows it."""
+"""One student's mark for an assignment, line by line, as every page shows it."""
 
 from __future__ import annotations
 
@@ -13,16 +13,16 @@ from ..submission import is_name
 
 @dataclass(frozen=True)
 class MarkLine:
-    """What one question brings, and where that comes from.
+    """The points for one question, and where they come from.
 
     Attributes:
-        name: The question.
+        name: The name of the question.
         points: Full marks.
-        automatic: What the machine gave; None where a person marks.
-        by_hand: What a person gave, which counts instead.
+        automatic: The points that the grader gave; None if a person marks the question.
+        by_hand: The points that a person gave, which count instead; None if there are none.
         extra: Extra credit.
-        comment: What a person wrote.
-        open: Whether a person has to mark it still, or once more.
+        comment: The comment that a person wrote.
+        open: Whether a person still has to mark the question, or to look at it again.
     """
 
     name: str
@@ -35,13 +35,13 @@ class MarkLine:
 
     @property
     def score(self) -> float | None:
-        """What counts; None where nobody marked it."""
+        """The points that count; None if the question is not marked yet."""
         given = self.automatic if self.by_hand is None else self.by_hand
         return None if given is None else round(given + self.extra, 4)
 
     @property
     def origin(self) -> str:
-        """Where the score comes from, in words; empty if it is the machine's alone."""
+        """Where the score comes from, in words; empty if it is the grader's alone."""
         said = []
         if self.by_hand is not None:
             instead = "" if self.automatic is None else f", instead of {self.automatic:g}"
@@ -58,19 +58,19 @@ class Mark:
     """One student's mark for an assignment.
 
     Attributes:
-        person: The student, as the roster knows them, or else the gradebook.
-        listed: Whether they are in the roster.
-        when: When it came in, as text.
-        due: When it was due, as text.
-        lines: One for each question; none where no mark counts.
-        raw: Points before late rules; None where no mark counts.
-        penalty: What late rules take.
-        points: What full marks would be; 0 where neither gradebook nor release says so.
-        late: How late it came, in words; empty if it came in time.
-        user: How the platform knows the student from which the work was collected, or None.
-        result: What the grader found; None where there is no whole result.
-        missing: Why no mark counts, and what to do; empty where one does, or nothing came.
-        remark: What else should be known of the mark, such as that the file was rejected.
+        person: The student, as described by the roster or, failing that, by the gradebook.
+        listed: Whether the student is in the roster.
+        when: When the work was handed in, as text.
+        due: When the work was due, as text.
+        lines: One for each question; none if no mark counts.
+        raw: Points before deductions for lateness; None if no mark counts.
+        penalty: Points deducted for lateness.
+        points: Full marks; 0 if neither the gradebook nor the release says what they are.
+        late: How late the work was, in words; empty if it was in time.
+        user: The student as the platform knows them from which the work was collected, or None.
+        result: The result of grading; None if there is no complete one.
+        missing: Why no mark counts, and what to do; empty if one does, or nothing was handed in.
+        remark: Anything else to know about the mark, such as that the file was rejected.
         author: Who handed in the team's report, if that was another member of the team.
     """
 
@@ -96,45 +96,45 @@ class Mark:
 
     @property
     def absent(self) -> bool:
-        """Whether the student is in the roster, and nothing came."""
+        """Whether the student handed in nothing."""
         return self.raw is None and not self.missing
 
     @property
     def open(self) -> tuple[str, ...]:
-        """Questions that a person has to mark still."""
+        """The questions that a person still has to mark."""
         return tuple(line.name for line in self.lines if line.open)
 
     @property
     def questions(self) -> Mapping[str, tuple[float, float]]:
-        """Points of each question, with their maximum; none where no mark counts."""
+        """The points of each question, with their maximum; none if no mark counts."""
         return {x.name: (x.score or 0.0, x.points) for x in self.lines if self.raw is not None}
 
     @property
     def score(self) -> float | str:
-        """What counts; an empty cell where nothing does."""
+        """The points that count; an empty cell if no mark does."""
         return "" if self.raw is None else round(max(0.0, self.raw - self.penalty), 4)
 
     @property
     def full(self) -> float | str:
-        """What full marks would be; an empty cell where nobody knows."""
+        """Full marks; an empty cell if they are not known."""
         return self.points or ""
 
     @property
     def cells(self) -> tuple[float | str, float | str, float | str]:
-        """Points before late rules, what these take, and what counts; or three empty cells."""
+        """Points before deductions, the deduction, and the score; or three empty cells."""
         return ("", "", "") if self.raw is None else (self.raw, self.penalty, self.score)
 
     @property
     def login(self) -> str:
-        """Their login: the name of the folder, unless that was made from a download or is unfit."""
+        """The login; by default the name of the folder, if it is one that could be a login."""
         made = self.user or self.listed or not is_name(self.student)
         return self.person.login or (self.number("exchange") if made else self.student)
 
     @property
     def canvas(self) -> str:
-        """Their number in Canvas, empty if it is not known."""
+        """The student's number in Canvas; empty if it is not known."""
         return self.number("canvas") or self.person.lms_user_id
 
     def number(self, system: str) -> str:
-        """Their number in a platform, empty if it is not known."""
+        """The student's number on a platform; empty if it is not known."""
         return self.user.number if self.user and self.user.system == system else ""

@@ -1,8 +1,8 @@
-"""The mark of each student, the one that every page and every table shows.
+"""The mark of each student, as every page and every table shows it.
 
-It comes from the gradebook, so what was changed by hand, extra credit and what late rules took away
-count.  Where there is none, or where it differs from the result, there is no mark but the reason
-why: nobody is given a 0 that they did not earn.
+A mark comes from the gradebook, so it includes changes by hand, extra credit and deductions for
+lateness.  If the gradebook has no mark, or if it differs from the result, the reason is given
+instead of a mark: nobody gets a 0 that they did not earn.
 """
 
 from __future__ import annotations
@@ -26,18 +26,18 @@ from ..students.attempts import perhaps_late
 from ..students.class_list import Student
 from ..students.identity import lms_users
 from ..students.roster import read_roster
-from ..submission import meant, plain_name, students
+from ..submission import did_you_mean, plain_name, students
 from ..whys import settle_whys
 from .mark import Mark, MarkLine
 
 
 def marks_of(course: Course, assignment: str, only: str | None = None) -> Iterator[Mark]:
-    """Everybody in the roster, and all others who handed in or are graded, in order of name.
+    """The marks of everybody in the roster and of all others who handed in, sorted by name.
 
     Args:
         course: The course.
-        assignment: Which.
-        only: One student, by what they handed in themselves; by default all.
+        assignment: The assignment.
+        only: One student, by that student's own hand-in; by default all students.
     """
     rows = _own_marks(course, assignment, only)
     released = not only and (course.bundle / f"{assignment}.json").exists()
@@ -46,7 +46,7 @@ def marks_of(course: Course, assignment: str, only: str | None = None) -> Iterat
 
 
 def _of_teams(rows: Sequence[Mark]) -> Iterator[Mark]:
-    """What one member of a team handed in counts for each who handed in nothing."""
+    """A team member's hand-in counts for each of the others who handed in nothing."""
     reports: dict[str, Mark] = {}
     for row in rows:
         if row.person.team and not row.absent:
@@ -93,16 +93,16 @@ def _own_marks(course: Course, assignment: str, only: str | None) -> Iterator[Ma
 
 
 def unknown_extensions(course: Course) -> Iterator[str]:
-    """Who has longer by the rules and is not a student, a sentence each."""
+    """A sentence for each extension whose student does not exist."""
     known = {student.id for student in read_roster(course).students}
     known |= {path.name for path in course.submitted.glob("*")}
     for name in sorted({x.student for x in read_rules(course).extensions} - known):
         said = f"an extension for {clean_line(name, 60)!r}, who is not a student"
-        yield f"{RULES} has {said}{meant(name, known)}"
+        yield f"{RULES} has {said}{did_you_mean(name, known)}"
 
 
 def mark_of(result: Result) -> Mark:
-    """What a result is worth, where no gradebook has been asked."""
+    """The mark for a result by itself, without the gradebook."""
     verdicts = [question.verdict for question in result.questions]
     lines = tuple(MarkLine(v.name, v.points, v.earned) for v in verdicts)
     who = Student(result.student)
@@ -110,7 +110,7 @@ def mark_of(result: Result) -> Mark:
 
 
 def _marked(row: Mark, submission: Any, one: Result | Failure | None, assignment: str) -> Mark:
-    """A row with what the gradebook says, or why that does not count."""
+    """The row with the mark in the gradebook, or with the reason why it does not count."""
     if isinstance(one, Failure):
         row = replace(row, missing=one.why)
     elif one is not None:
@@ -166,7 +166,7 @@ def _lines(submission: Any) -> Iterator[MarkLine]:
 
 
 def _differs(assignment: str, row: Mark, lines: tuple[MarkLine, ...]) -> str:
-    """Where result and gradebook do not say the same, and what to do; empty if they do."""
+    """Where result and gradebook disagree, and what to do; empty if they agree."""
     if row.result is None:
         return ""
     earned = {q.verdict.name: q.verdict.earned for q in row.result.questions}
@@ -181,7 +181,7 @@ def _differs(assignment: str, row: Mark, lines: tuple[MarkLine, ...]) -> str:
 
 
 def _span(seconds: float) -> str:
-    """A time in words; empty if there is none."""
+    """A duration in words; empty if it is not positive."""
     if seconds <= 0:
         return ""
     days, rest = divmod(int(seconds), 86400)

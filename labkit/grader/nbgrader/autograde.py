@@ -25,13 +25,13 @@ from ..each import Failure, for_student
 from ..grading.batch import GradeOptions, grade_without_saving, keep_unless_lower
 from ..grading.results import Result, Results
 from ..lock import exclusive_run
-from ..submission import Submission, is_name, unfit
+from ..submission import Submission, is_name, unfit_name
 from .autograded_notebook import in_release_form, release_source, with_verdicts
 from .gradebook import recorded
 
 
 class FitNames(NotebookExporter):
-    """Has nbgrader leave out each folder whose name is not allowed, name it, and exit with 1.
+    """Makes nbgrader skip and name each folder whose name is not allowed, and exit with 1.
 
     nbgrader finds out whose a folder is by an expression that takes no line break, and ends where
     it does not match: one such name would keep the whole class from being graded.
@@ -49,7 +49,7 @@ class FitNames(NotebookExporter):
                 grade_all()
             finally:
                 for name in bad:
-                    parent.log.error("not graded: %s", unfit(name))
+                    parent.log.error("not graded: %s", unfit_name(name))
             raise NbGraderException("some folders have names that are not allowed")
 
         if bad:
@@ -115,7 +115,7 @@ _known: dict[tuple[str, str], Result] = {}
 
 
 def _grade(about: dict[str, Any]) -> Result:
-    """The result of the submission that nbgrader is at, graded once for both steps, and kept."""
+    """The result of the submission that nbgrader processes, graded once for both steps."""
     course = Course.here(Path.cwd())
     key = (about["assignment"], about["student"])
     result = _known.pop(key, None)

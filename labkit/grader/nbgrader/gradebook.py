@@ -36,11 +36,11 @@ def record(course: Course, assignment: str, results: Iterable[Result]) -> list[s
 
     Args:
         course: The course.
-        assignment: Which.
-        results: Of its students.
+        assignment: The assignment.
+        results: The results of its students.
 
     Returns:
-        What a person should look at, a sentence each; and whose scores could not be written.
+        Sentences on what a person should look at, and a failure for each student not written.
 
     Raises:
         LabkitError: The gradebook does not know the assignment, or cannot be used.
@@ -89,7 +89,7 @@ def _record(course: Course, book: Any, source: Any, result: Result) -> list[str]
 
 
 def recorded(course: Course, assignment: str, student: str) -> dict[str, float]:
-    """What a student's questions earned by the machine, as it was recorded last."""
+    """The automatic scores of a student's questions, as they were last recorded."""
     with open_gradebook(course) as book:
         mine = [x for x in book.assignment_submissions(assignment) if x.student_id == student]
         grades = [grade for x in mine for notebook in x.notebooks for grade in notebook.grades]
@@ -97,7 +97,7 @@ def recorded(course: Course, assignment: str, student: str) -> dict[str, float]:
 
 
 def _changed(path: Path, notebook: Any) -> set[str]:
-    """Cells marked by hand that say something else than when they were last recorded."""
+    """Cells marked by hand whose text has changed since they were last recorded."""
     try:
         before = {grade_id(cell): cell["source"] for cell in read_cells(path)}
     except LabkitError:
@@ -108,9 +108,9 @@ def _changed(path: Path, notebook: Any) -> set[str]:
 
 @contextmanager
 def open_gradebook(course: Course) -> Iterator[Any]:
-    """The gradebook as nbgrader sees it; whatever is wrong, nothing is written by halves.
+    """Open the gradebook as nbgrader sees it; after an error nothing is half written.
 
-    A second one, in another terminal, waits until the first is closed.
+    A second process that opens the gradebook waits until the first has closed it.
 
     Raises:
         LabkitError: The file is damaged, or cannot be read or written now.
@@ -148,7 +148,7 @@ def _damaged(why: object) -> LabkitError:
 
 @contextmanager
 def quiet_database() -> Iterator[None]:
-    """Keep back what SQLAlchemy warns of in nbgrader's queries; nobody here can change them."""
+    """Suppress SQLAlchemy's warnings about nbgrader's queries, which labkit cannot change."""
     with warnings.catch_warnings():
         warnings.filterwarnings("ignore", category=SAWarning)
         yield
@@ -165,7 +165,7 @@ def timestamp(course: Course, result: Result) -> tuple[datetime | None, str]:
 def automatic_scores(notebook: Any, result: Result) -> dict[str, float | None]:
     """The automatic score of each cell of the gradebook; None for what a person must mark.
 
-    An answer that is as it was handed out earns 0 by itself.
+    An unchanged answer automatically earns 0.
 
     Args:
         notebook: The submission in the release's form.

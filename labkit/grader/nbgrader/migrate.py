@@ -1,4 +1,4 @@
-"""A new release in the gradebook: other questions, where some have handed in."""
+"""Update the gradebook for a release with other questions after students have handed in."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from .gradebook import open_gradebook
 
 
 def migrate(course: Course, assignment: str, source: Any) -> list[str]:
-    """Bring the gradebook's cells into line with a new release, where some have handed in.
+    """Update the gradebook's cells to a new release after students have handed in.
 
     nbgrader's ``SaveCells`` refuses such a release, "Cannot add or remove cells for notebook ...
     because there are submissions associated with it", rather than lose marks.  Here the cells that
@@ -21,14 +21,14 @@ def migrate(course: Course, assignment: str, source: Any) -> list[str]:
 
     Args:
         course: The course.
-        assignment: Which.
+        assignment: The assignment.
         source: The new release's notebook, with its metadata.
 
     Returns:
-        The questions that are new to those who have handed in; none where nobody has.
+        The questions that are new to students who have handed in; none if nobody has.
 
     Raises:
-        LabkitError: A question would go that somebody has marked or commented on by hand.
+        LabkitError: A question that was marked or commented on by hand would be deleted.
     """
     from nbgrader.api import GradeCell, MissingEntry, SolutionCell, SourceCell, TaskCell
 
@@ -71,7 +71,7 @@ def migrate(course: Course, assignment: str, source: Any) -> list[str]:
 
 
 def _add(db: Any, cell: Any, submissions: Iterable[Any]) -> None:
-    """A cell, with an empty row for it in every submission."""
+    """Add a cell, with an empty row for it in every submission."""
     from nbgrader.api import Comment, Grade, GradeCell, SolutionCell
 
     db.add(cell)

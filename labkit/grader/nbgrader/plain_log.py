@@ -15,7 +15,7 @@ from ..clean import clean_text
 
 
 class PlainFormatter(LogFormatter):
-    """Writes a log as nbgrader does, but for what a student could have a terminal obey."""
+    """Writes a log as nbgrader does, without terminal commands in a student's text."""
 
     def format(self, record: Any) -> str:
         """The record as text, its message cleaned, see `clean_text`."""

@@ -20,10 +20,10 @@ def enter(
     Args:
         course: The course.
         book: Its gradebook.
-        assignment: Which.
-        student: Whose.
-        texts: By the name of the task.
-        full: Points of each.
+        assignment: The assignment.
+        student: The student.
+        texts: The text of each task, by its name.
+        full: Full marks for each task.
 
     Returns:
         The grades of the tasks, in order; those that were there before are kept.

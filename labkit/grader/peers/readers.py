@@ -1,8 +1,8 @@
-"""Peer review: who reads whose report, and what readers said, without their names.
+"""Peer review: which reports each student reads, and the reviews without names.
 
 A reader's sheet is made by `sheet.hand_out`.  The course's copy of it, in ``feedback/``, is the
-record of which two reports somebody was given; what the student hands in is read cell by cell
-against it.
+record of the two reports that a student was given.  The sheet that the student hands in is compared
+with it cell by cell.
 """
 
 from __future__ import annotations
@@ -24,27 +24,27 @@ from ..submission import Submission, students
 from ..whys import rank
 
 EACH = 2
-"""So many reports each student reads."""
+"""The number of reports that each student reads."""
 LEAST_NAME = 3
-"""A name with fewer letters stays in a text; "An" and "Li" are words and symbols too."""
+"""Shorter names are not removed from a text, as "An" and "Li" are words and symbols too."""
 LEAST_NUMBER = 5
-"""A number with fewer digits stays too; a report has many numbers."""
+"""Shorter numbers are not removed from a text, as a report has many numbers."""
 LONGEST_COMMENT = 2000
 _FORM = re.compile(r"^\s*level\s*[:=]\s*([0-3])\b.*?^\s*comment\s*[:=](.*)", re.I | re.M | re.S)
 
 
 def sheet_of(assignment: str) -> str:
-    """What the sheet of a report's readers is called, as a file and as something to collect."""
+    """The name of a review sheet, as a file and as an assignment to collect."""
     return f"{assignment}_review"
 
 
 @dataclass(frozen=True)
 class Review:
-    """What one reader said of one report.
+    """One reader's review of one report.
 
     Attributes:
-        levels: By row of the rubric.
-        comments: By row of the rubric; may be empty.
+        levels: The level for each row of the rubric.
+        comments: The comment on each row of the rubric; may be empty.
     """
 
     levels: Mapping[str, int]
@@ -54,18 +54,18 @@ class Review:
 def readers(
     seed: int, reports: Mapping[str, str], people: Mapping[str, str]
 ) -> dict[str, tuple[str, ...]]:
-    """Whose reports each student reads, by HMAC-SHA256 under the term's seed.
+    """Choose the reports that each student reads, by HMAC-SHA256 under the term's seed.
 
     The reports form a circle.  The members of a team take the reports after their own, two by
     two, so each report has at least two readers, and nobody reads a report of their own team.
 
     Args:
-        seed: The term's.
-        reports: By team, who handed in its report.
-        people: By student, their team.
+        seed: The seed of the term.
+        reports: The student who handed in the report, by team.
+        people: The team of each student.
 
     Returns:
-        By student, the authors of two reports.
+        The authors of two reports, for each student.
 
     Raises:
         LabkitError: There are fewer than three reports.
@@ -91,7 +91,7 @@ def readers(
 
 
 def of_class(course: Course, assignment: str) -> tuple[dict[str, str], dict[str, str], list[str]]:
-    """Reports by team, everybody's team, and those whose report is not their team's first."""
+    """Reports by team, the team of each student, and the authors of a team's further reports."""
     authors, roster = students(course, assignment), read_roster(course)
     people = {one.id: one.team or one.id for one in roster.students}
     people |= {author: author for author in authors if author not in people}
@@ -102,15 +102,15 @@ def of_class(course: Course, assignment: str) -> tuple[dict[str, str], dict[str,
 
 
 def team_of(author: str, people: Mapping[str, str], roster: Roster) -> list[Student]:
-    """Those who wrote a report."""
+    """The members of the team that wrote a report."""
     team = [name for name in sorted(people) if people[name] == people[author]]
     return [roster.get(name) or Student(name) for name in team]
 
 
 def without_names(text: str, people: Sequence[Student], who: str) -> str:
-    """A text in which each of some people is called ``who`` and a number.
+    """Replace the names of people in a text by ``who`` and a number.
 
-    Names, logins, addresses and numbers go, whatever their letters' case.
+    Names, logins, addresses and numbers are replaced, whether in upper or lower case.
     """
     for number, one in enumerate(people, 1):
         text = re.sub(
@@ -120,10 +120,10 @@ def without_names(text: str, people: Sequence[Student], who: str) -> str:
 
 
 def names_of_class(people: Iterable[Student]) -> re.Pattern[str]:
-    """Finds what names anybody of a class.
+    """A pattern that finds the names of all people in a class.
 
     One word alone, such as "Mark" or the login "force", is a name where it begins with a capital
-    letter or is in quotation marks; all else, such as a whole name, whatever its letters' case.
+    letter or is in quotation marks; anything else, such as a whole name, is found in any case.
     """
     known = {x for one in people for x in _known(replace(one, team=""))}
     words = {x for x in known if x.isalpha()}
@@ -133,25 +133,25 @@ def names_of_class(people: Iterable[Student]) -> re.Pattern[str]:
 
 
 def _known(one: Student) -> set[str]:
-    """What a student is known by and a text is searched for."""
+    """The names and numbers of a student that a text is searched for."""
     names = [one.id, one.login, one.email, one.id_number, one.lms_user_id, one.github, one.name]
     names += [one.team, one.first_name, one.last_name, *re.split(r"[\W_]+", one.id)]
     return {x for x in names if len(x) >= (LEAST_NUMBER if x.isdigit() else LEAST_NAME)}
 
 
 def _any_of(names: Iterable[str]) -> str:
-    """A pattern for any of some texts, the longest first; for none, one that finds nothing."""
+    """A pattern for any of these texts, the longest first; without texts it finds nothing."""
     return "|".join(map(re.escape, sorted(names, key=len, reverse=True))) or "(?!)"
 
 
 def handed_out(course: Course, assignment: str, student: str) -> Path:
-    """Where the course keeps the sheet that a student was given."""
+    """The path of the course's copy of the sheet that a student was given."""
     name = sheet_of(assignment)
     return course.root / "feedback" / student / name / f"{name}.ipynb"
 
 
 def reviews(course: Course, assignment: str) -> tuple[dict[str, list[Review]], list[str]]:
-    """What readers said, by the author of the report; and who has not read both, a sentence each.
+    """The reviews by author of the report, and a sentence for each student who has not done both.
 
     A review counts when every row of the rubric has a level.
 
@@ -185,7 +185,7 @@ def reviews(course: Course, assignment: str) -> tuple[dict[str, list[Review]], l
 
 
 def _sheet_texts(course: Course, name: str, student: str) -> tuple[dict[str, str], str]:
-    """The texts of a student's sheet by their cells' names; and why there are none."""
+    """The texts of a student's sheet by cell name, or why there are none."""
     submission = Submission.of(course, name, student)
     if not submission.folder.exists():
         return {}, "handed in no review"

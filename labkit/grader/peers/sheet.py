@@ -1,7 +1,7 @@
-"""The sheet of a reader: two reports without names, and the rubric to fill in, as a notebook.
+"""A reader's sheet, a notebook with two reports without names and the rubric to fill in.
 
-A report is somebody else's: its code is shown as text, of its outputs only pictures are kept, and
-nothing in its text makes a browser fetch anything.
+A report comes from another student: its code is shown as text, only pictures are kept of its
+outputs, and nothing in its text makes a browser fetch anything.
 """
 
 from __future__ import annotations
@@ -51,10 +51,10 @@ _BASE64 = re.compile(r"[A-Za-z0-9+/=\s]+")
 
 
 def hand_out(course: Course, assignment: str) -> Iterator[str | Failure]:
-    """Write a sheet for each student who has none yet; what somebody was given stays.
+    """Write a sheet for each student who has none yet; existing sheets stay as they are.
 
     Yields:
-        What a person should know, a sentence each; and for whom no sheet could be made.
+        Sentences for the instructor, and a failure for each student without a sheet.
 
     Raises:
         LabkitError: There are fewer than three reports that can be read.
@@ -92,7 +92,7 @@ def hand_out(course: Course, assignment: str) -> Iterator[str | Failure]:
 def _sheet(
     parts: Sequence[tuple[str, Sequence[dict[str, Any]]]], rubric: Mapping[str, str]
 ) -> Notebook:
-    """Reports, each by its pseudonym with its cells, and after each the rubric to fill in."""
+    """The reports, each with its pseudonym and cells, and after each the rubric to fill in."""
     cells = [v4.new_markdown_cell(HEAD, id="head")]
     for number, (name, report) in enumerate(parts, 1):
         cells.append(v4.new_markdown_cell(f"## Report {number}", id=f"report-{number}"))
@@ -111,7 +111,7 @@ def _report(
     anybody: re.Pattern[str],
     released: Iterable[Mapping[str, Any]],
 ) -> list[dict[str, Any]]:
-    """What a team wrote: the cells that are not the release's, and the headings between them."""
+    """The cells that a team wrote, and the release's headings between them."""
     data, _, wrong = Submission.of(course, assignment, author).read()
     if wrong:
         raise LabkitError(f"{wrong}; nobody can read this report")
@@ -137,7 +137,7 @@ def _report(
 
 
 def _pictures(cell: Mapping[str, Any], code: bool) -> Iterator[tuple[str, dict[str, str]]]:
-    """The PNGs of a cell: a code cell's outputs, a text's attachments."""
+    """The PNG pictures of a cell, from a code cell's outputs or a text cell's attachments."""
     if code:
         outputs = cell.get("outputs")
         parts = outputs if isinstance(outputs, list) else []

@@ -1,1 +1,1 @@
-"""Who is in the class, what they handed in, and which attempt counts."""
+"""The students of the class, what they handed in, and which attempt counts."""

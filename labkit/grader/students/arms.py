@@ -1,4 +1,4 @@
-"""Gives each student of the roster, or each team, an arm of their own."""
+"""Give each student of the roster, or each team, an arm of their own."""
 
 from __future__ import annotations
 
@@ -13,14 +13,14 @@ from .roster import Roster
 
 
 def give_arms(course: Course, roster: Roster, secret: int) -> None:
-    """Keep for grading whose arm is whose, and lay the sealed arms beside what is released.
+    """Record which student has which arm, and put the sealed arms beside released notebooks.
 
-    Students of one team have one arm. An arm follows from the secret and the handle alone, so an
-    arm that was given stays the same when others join the class.
+    The students of a team share one arm. An arm depends only on the secret and the handle, so it
+    stays the same when others join the class.
 
     Args:
         course: The course.
-        roster: Its students.
+        roster: The students of the course.
         secret: The term's seed.
     """
     handles = {student.id: student.team or student.id for student in roster.students}
@@ -30,14 +30,14 @@ def give_arms(course: Course, roster: Roster, secret: int) -> None:
 
 
 def lay_arms(course: Course, name: str) -> None:
-    """Lay the sealed arms beside a released notebook that asks about one's own arm."""
+    """Put the sealed arms beside a released notebook that asks about the student's own arm."""
     arms, folder = Arms.of(course.root), course.release / name
     if arms.handles and _asks(course, name) and folder.is_dir():
         write(folder / FILE, json.dumps(arms.sealed(), indent=1) + "\n")
 
 
 def without_arms(course: Course, names: Sequence[str]) -> str:
-    """Which of these notebooks ask about one's own arm and have only the public one."""
+    """A warning about notebooks that ask about one's own arm but have only the public arm."""
     lacking = [x for x in names if _asks(course, x) and not (course.release / x / FILE).exists()]
     if not lacking:
         return ""

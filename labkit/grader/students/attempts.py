@@ -1,21 +1,21 @@
-"""Attempts: every notebook that was handed in, and the rule by which one of them counts.
+"""Attempts: every notebook that was handed in, and the rule that decides which one counts.
 
-Each is kept in ``attempts/STUDENT/ASSIGNMENT/TIME-HASH/`` as it was handed in.  Beside it
-``attempt.json`` says when it was handed in, or a platform showed it, and what it was called.
-Nothing there is ever overwritten or deleted; the same content is the same attempt, however often it
-comes.
+Each attempt is kept unchanged in ``attempts/STUDENT/ASSIGNMENT/TIME-HASH/``.  The file
+``attempt.json`` beside it records the name of the notebook and when it was handed in, or when a
+platform showed it.  Nothing there is ever overwritten or deleted.  Identical content is the same
+attempt, however often it is handed in.
 
-**What counts** is the latest hand-in.  The exchange says when that was.  Moodle and Canvas write no
-hand-in times into a download, only when it was made; so a hand-in is as old as the first download
-that shows it, and an older download never takes the place of a newer hand-in.  Of several notebooks
-that were handed in together the one that is called as the assignment counts, and of those the one
-with the highest number, ``01_paths(2).ipynb``; then the one that was collected last.  A notebook
-that somebody put into ``submitted/`` by hand is a hand-in of the moment at which the file was
-written.  Where ``course.toml`` says ``counts = "latest in time"``, the latest that came before it
-was due counts, and a late one only where there is no other.
+**The latest hand-in counts.**  The exchange records its time.  A download from Moodle or Canvas has
+no hand-in times, only the time of the download itself.  Such a hand-in is therefore dated by the
+first download that shows it, and an older download never replaces a newer hand-in.  If several
+notebooks were handed in together, the one that is named after the assignment counts; among several
+of those, the one with the highest number, such as ``01_paths(2).ipynb``; then the one that was
+collected last.  A notebook that somebody put into ``submitted/`` by hand is dated by the time at
+which the file was written.  If ``course.toml`` says ``counts = "latest in time"``, the latest
+hand-in before the due date counts, and a late one counts only if there is no other.
 
-The one that counts is copied to ``submitted/STUDENT/ASSIGNMENT/ASSIGNMENT.ipynb``, which nbgrader
-reads.
+The attempt that counts is copied to ``submitted/STUDENT/ASSIGNMENT/ASSIGNMENT.ipynb``, where
+nbgrader reads it.
 """
 
 from __future__ import annotations
@@ -48,16 +48,16 @@ _REPEATED = re.compile(r" ?[(-](\d{1,9})\)?\.ipynb$")
 
 @dataclass(frozen=True)
 class HandIn:
-    """One time at which a notebook was handed in, or shown by a download.
+    """One time at which a notebook was handed in, or at which a download showed it.
 
     Attributes:
-        when: That time.
+        when: The time.
         origin: "moodle", "canvas", "exchange", or "by hand".
-        number: The student, as the platform knows them.
-        file: What the student called it.
-        exact: Whether this is the hand-in's own time, and not only the download's.
-        late: Whether the platform calls it late.
-        collected: When it was taken, in ISO 8601.
+        number: The number or name by which the platform knows the student.
+        file: The name that the student gave the file.
+        exact: Whether the time is that of the hand-in itself and not of the download.
+        late: Whether the platform marks the hand-in as late.
+        collected: When it was collected, in ISO 8601.
     """
 
     when: Annotated[datetime, msgspec.Meta(tz=True)]
@@ -70,12 +70,12 @@ class HandIn:
 
 
 class Attempt(msgspec.Struct, frozen=True):
-    """One notebook, as it was handed in; ``attempt.json`` holds it, with the name of the file.
+    """One notebook as it was handed in; ``attempt.json`` stores it, with the name of the file.
 
     Attributes:
-        file: The file.
+        file: The notebook.
         sha256: The digest of its bytes.
-        hand_ins: When and where it was handed in or shown, each time.
+        hand_ins: Each time and place at which it was handed in or shown.
     """
 
     file: Path
@@ -89,7 +89,7 @@ class Counted:
 
     Attributes:
         attempt: The attempt.
-        first: When it was handed in, or first shown by a download after every other attempt.
+        first: The hand-in that made it the latest, or the first download that showed it as such.
     """
 
     attempt: Attempt
@@ -97,17 +97,17 @@ class Counted:
 
 
 def attempts(course: Course, student: str, assignment: str) -> tuple[Attempt, ...]:
-    """All attempts of a student, in the order of their folders' names.
+    """All attempts of a student, sorted by the names of their folders.
 
     Raises:
-        LabkitError: The record of one is damaged.
+        LabkitError: The record of an attempt is damaged.
     """
     place = course.root / FOLDER / student / assignment
     return tuple(_read(path) for path in sorted(place.glob(f"*/{_RECORD}")))
 
 
-def counts(all: Sequence[Attempt], assignment: str) -> Counted | None:
-    """The attempt that counts; None if there is none."""
+def choose(all: Sequence[Attempt], assignment: str) -> Counted | None:
+    """The attempt that counts, by the latest hand-in; None if there are no attempts."""
     found: list[Counted] = []
     for origin in sorted({x.origin for one in all for x in one.hand_ins}):
         shown = [(x, one) for one in all for x in one.hand_ins if x.origin == origin]
@@ -122,32 +122,32 @@ def counts(all: Sequence[Attempt], assignment: str) -> Counted | None:
     return max(found, key=lambda x: (x.first.when, x.first.origin == BY_HAND), default=None)
 
 
-def that_counts(course: Course, student: str, assignment: str) -> Counted | None:
-    """The attempt of a student that counts by the rules of the course; None if there is none.
+def counted_attempt(course: Course, student: str, assignment: str) -> Counted | None:
+    """A student's attempt that counts under the rules of the course; None if there is none.
 
     Raises:
-        LabkitError: A record is damaged, or the rules are.
+        LabkitError: A record or the rules file is damaged.
     """
     all, rules = attempts(course, student, assignment), read_rules(course)
     due = rules.due_for(student, assignment)
     if due is None or rules.counts == "latest":
-        return counts(all, assignment)
+        return choose(all, assignment)
     shown = (
         replace(one, hand_ins=tuple(x for x in one.hand_ins if x.when <= due and not x.late))
         for one in all
     )
-    return counts([one for one in shown if one.hand_ins], assignment) or counts(all, assignment)
+    return choose([one for one in shown if one.hand_ins], assignment) or choose(all, assignment)
 
 
 def perhaps_late(course: Course, student: str, assignment: str) -> str:
-    """What to know of work that a download showed after it was due; empty if all is known.
+    """A remark on work that may be late, as its time is not known exactly; "" if there is no doubt.
 
-    Canvas calls late work late, and the exchange has times of its own.
+    Canvas marks late work as late, and the exchange records the times of hand-ins.
     """
     due = read_rules(course).due_for(student, assignment)
     try:
-        chosen = that_counts(course, student, assignment)
-    except LabkitError:  # a damaged record, which is named where work is collected
+        chosen = counted_attempt(course, student, assignment)
+    except LabkitError:  # collecting names a damaged record
         return ""
     if chosen is None or due is None or chosen.first.when <= due:
         return ""
@@ -161,7 +161,7 @@ def perhaps_late(course: Course, student: str, assignment: str) -> str:
     )
 
 
-def keep(
+def store(
     course: Course,
     student: str,
     assignment: str,
@@ -170,20 +170,20 @@ def keep(
     secret: bytes | None = None,
     there: dict[str, Attempt] | None = None,
 ) -> bool:
-    """Keep a notebook as an attempt.
+    """Store a notebook as an attempt.
 
     Args:
         course: The course.
-        student: Whose.
-        assignment: Which.
+        student: The student who handed it in.
+        assignment: The assignment.
         data: The notebook.
         hand_in: When and where it was handed in or shown.
-        secret: What the exchange knows the hand-in by.
-        there: The student's attempts as `adopt` returns them, to which this one is added; they are
-            read by default.
+        secret: The secret by which the exchange identifies the hand-in.
+        there: The student's attempts as `adopt` returns them, to which this one is added; by
+            default they are read from the disk.
 
     Returns:
-        Whether it is a new one, and not the same content as another.
+        Whether the attempt is new; False if another one has the same content.
 
     Raises:
         LabkitError: The record of an attempt is damaged.
@@ -212,26 +212,26 @@ def keep(
 
 
 def adopt(course: Course, student: str, assignment: str, now: str) -> dict[str, Attempt]:
-    """Keep what somebody else put into ``submitted/``: a person, nbgrader, or an older labkit.
+    """Store what a person, nbgrader or an older labkit put into ``submitted/``.
 
     Args:
         course: The course.
-        student: Whose.
-        assignment: Which.
-        now: The time, in ISO 8601.
+        student: The student whose folder is searched.
+        assignment: The assignment.
+        now: The present time, in ISO 8601.
 
     Returns:
-        All attempts of the student, by the digest of their bytes.
+        All attempts of the student, by SHA-256 digest.
 
     Raises:
-        LabkitError: It cannot be read, or a record is damaged.
+        LabkitError: A file cannot be read, or a record is damaged.
     """
     folder = course.submitted / student / assignment
     for path in (folder.parent, folder):
         if path.is_symlink():
             raise LabkitError(f"{path.relative_to(course.root)} is a link; put a folder there")
     there = _by_digest(course, student, assignment)
-    ours, chosen = set(there), that_counts(course, student, assignment)
+    ours, chosen = set(there), counted_attempt(course, student, assignment)
     for path in sorted(folder.glob("*.ipynb")):
         if path.is_symlink() or not path.is_file():
             raise LabkitError(f"{path.relative_to(course.root)} is not a file; move it away")
@@ -247,54 +247,54 @@ def adopt(course: Course, student: str, assignment: str, now: str) -> dict[str, 
             exact = stated is not None
             hand_in = HandIn(when, BY_HAND, "", path.name, exact=exact, collected=now)
             secret = read_secret(folder) if new else None
-            keep(course, student, assignment, data, hand_in, secret, there)
+            store(course, student, assignment, data, hand_in, secret, there)
     return there
 
 
 def install(course: Course, student: str, assignment: str) -> Counted | None:
-    """Copy the attempt that counts to where nbgrader reads it.
+    """Copy the attempt that counts to the folder where nbgrader reads it.
 
     Returns:
-        That attempt; None if there is none.
+        The attempt that counts; None if there is none.
 
     Raises:
         LabkitError: An attempt or its record is damaged.
     """
-    chosen = that_counts(course, student, assignment)
+    chosen = counted_attempt(course, student, assignment)
     if chosen is None:
         return None
     source, when = chosen.attempt.file, chosen.first.when
     data = source.read_bytes()
     if digest(data) != chosen.attempt.sha256:
-        raise LabkitError(f"{source} is not as it was handed in; restore it")
+        raise LabkitError(f"{source} was changed after it was handed in; restore it")
     folder = course.submitted / student / assignment
     path = folder / f"{assignment}.ipynb"
     same = path.is_file() and path.read_bytes() == data
     secret = read_secret(source.parent)
     stated = [x.when for x in (chosen.first, *chosen.attempt.hand_ins) if x.exact]
-    if not stated and chosen.first.late:  # no earlier than this, as far as the platform says
+    if not stated and chosen.first.late:  # the platform gives no earlier time
         stated = [chosen.first.when]
     stamp = str(stated[0]).encode() if stated else None
     for name, content in ((TIMESTAMP, stamp), (SECRET, secret)):
         if content is not None:
             _put(folder / name, content)
         elif not same:
-            (folder / name).unlink(missing_ok=True)  # the attempt that it came with has it
+            (folder / name).unlink(missing_ok=True)  # its own attempt still has a copy
     if not same:
         _put(path, data)
         os.utime(path, (when.timestamp(), when.timestamp()))
     return chosen
 
 
-def called(file: str, assignment: str) -> bool:
-    """Whether a file is called as the assignment, whatever number it has."""
+def named_for(file: str, assignment: str) -> bool:
+    """Whether a file is named after the assignment, with or without a number."""
     return _REPEATED.sub(".ipynb", file) == f"{assignment}.ipynb"
 
 
 def _rank(hand_in: HandIn, assignment: str) -> tuple[bool, int, str]:
-    """Which of several that were handed in together counts."""
-    match = _REPEATED.search(hand_in.file)  # the number that a browser or platform put there
-    return called(hand_in.file, assignment), int(match[1]) if match else 0, hand_in.collected
+    """The sort key of notebooks that were handed in together; the highest counts."""
+    match = _REPEATED.search(hand_in.file)  # a browser or platform added it
+    return named_for(hand_in.file, assignment), int(match[1]) if match else 0, hand_in.collected
 
 
 def _by_digest(course: Course, student: str, assignment: str) -> dict[str, Attempt]:
@@ -314,6 +314,6 @@ def _read(path: Path) -> Attempt:
 
 
 def _put(path: Path, data: bytes) -> None:
-    """Write a file unless it holds this already; then it keeps its time."""
+    """Write a file, unless it already has this content; then its modification time stays."""
     if not path.is_file() or path.read_bytes() != data:
         write(path, data)

@@ -1,8 +1,8 @@
-"""Reads lists of students: Moodle's and Canvas's exports, or any table with a row for each.
+"""Read lists of students: exports of Moodle and Canvas, or any table with a row per student.
 
 Canvas: *Grades, Export*; its columns are Student ("Last, First"), ID, SIS User ID, SIS Login ID and
 Section.  Moodle: *Participants*, select all, *Download table data as CSV*; or the grading worksheet
-of an assignment, which alone says which participant number is whose.
+of an assignment, the only list that has the participant numbers.
 """
 
 from __future__ import annotations
@@ -19,7 +19,7 @@ from ..submission import check_size
 from .platforms import person
 
 LARGEST = 20
-"""Of a list, in [MiB]."""
+"""The largest list that is read, in [MiB]."""
 HEADS = {
     "login": "login, login name, username, user name, sis login id, anmeldename, nutzername, "
     "benutzername",
@@ -37,14 +37,14 @@ HEADS = {
     "participant": "identifier",
     "handed_in": "last modified (submission)",
 }
-"""What a column may be called, by what it holds; a column "id" is settled by its neighbours."""
+"""The headings of each field; what a column "id" means depends on the other columns."""
 _FIELDS = {head: field for field, heads in HEADS.items() for head in heads.split(", ")}
 _NOT_A_STUDENT = "points possible"
 _NO_TEAM = {"no groups", "keine gruppen"}
-"""What Moodle's column Groups says of a student who is in none."""
+"""Entries in Moodle's column Groups for a student who is in no group."""
 _PARTICIPANT = re.compile(r"[^\d]*([0-9]{1,19})")
 _LONG_LINE = 100_000
-"""Characters of the first line by which the delimiter is found out; a cell may have few more."""
+"""The part of the first line that is searched for the delimiter, in characters."""
 
 
 @dataclass(frozen=True)
@@ -52,15 +52,15 @@ class Student:
     """One student; all but ``id`` may be empty.
 
     Attributes:
-        id: The name of their folder, and nbgrader's name for them.
+        id: The name of the student's folder, which is also the student's id in nbgrader.
         first_name: First name.
         last_name: Last name.
-        email: Address.
-        lms_user_id: Canvas's number of the user.
-        login: The name that they log in with.
-        id_number: The university's number.
-        github: The name on GitHub.
-        team: Those who have the same one share an arm.
+        email: E-mail address.
+        lms_user_id: Canvas's number for the user.
+        login: Login name.
+        id_number: Student number at the university.
+        github: User name on GitHub.
+        team: Name of the team; the students of a team share an arm.
     """
 
     id: str
@@ -84,14 +84,14 @@ class Student:
 
 @dataclass(frozen=True)
 class Entry:
-    """One row of a list; what it does not say is empty.
+    """One row of a list; what the list does not say is empty.
 
     Attributes:
-        line: Where it ends in the file, as an editor counts.
-        student: Who it is; without an ``id``, which is for the roster to give.
-        participant: Moodle's number of the participant in one assignment.
+        line: The number of its last line in the file.
+        student: The student, without an ``id``, which the roster assigns.
+        participant: Moodle's number for the participant in one assignment.
         handed_in: When the participant handed in, as Moodle's worksheet writes it.
-        guessed: Whether first and last name are a guess from one column.
+        guessed: Whether first and last name were guessed from one column.
     """
 
     line: int
@@ -102,7 +102,7 @@ class Entry:
 
     @property
     def is_canvas_test_student(self) -> bool:
-        """Whether it is "Student, Test", which Canvas makes so that one can look as a student."""
+        """Whether this is Canvas's "Student, Test", with which teachers see the student view."""
         return bool(self.student.lms_user_id) and self.student.name == "Test Student"
 
 
@@ -110,10 +110,10 @@ def read_list(path: Path) -> tuple[Entry, ...]:
     """Read a list of students.
 
     Args:
-        path: A CSV file; its delimiter and its encoding are found out.
+        path: A CSV file; its delimiter and its encoding are detected.
 
     Raises:
-        LabkitError: It is not a table, a needed column is missing, or a row does not fit.
+        LabkitError: The file is not a table, a column is missing, or a row does not fit.
     """
     heads, rows = read_table(path)
     columns = _columns(heads)
@@ -128,10 +128,10 @@ def read_list(path: Path) -> tuple[Entry, ...]:
 
 
 def read_table(path: Path) -> tuple[list[str], list[tuple[int, list[str]]]]:
-    """The first row of a CSV file, cleaned, and the others with their lines' numbers.
+    """The first row of a CSV file, cleaned, and the other rows with their line numbers.
 
     Raises:
-        LabkitError: It is not a table.
+        LabkitError: The file is not a table.
     """
     text = _read_text(path).replace("\r\n", "\n").replace("\r", "\n")
     first = text.partition("\n")[0][:_LONG_LINE]
@@ -150,7 +150,7 @@ def read_table(path: Path) -> tuple[list[str], list[tuple[int, list[str]]]]:
 def refuse_long_rows(
     path: Path, heads: Sequence[str], rows: Sequence[tuple[int, list[str]]]
 ) -> None:
-    """Refuse a table in which a comma may have moved somebody's cells.
+    """Refuse a table in which an unquoted comma may have shifted the cells of a row.
 
     Raises:
         LabkitError: A row has more cells than there are columns.
@@ -164,7 +164,7 @@ def refuse_long_rows(
 
 
 def _read_text(path: Path) -> str:
-    """A text in any encoding that spreadsheets write."""
+    """The text of a file, in any encoding that spreadsheets write."""
     if not path.is_file():
         raise LabkitError(f"there is no file {path}")
     check_size(path.stat().st_size, LARGEST)
@@ -183,7 +183,7 @@ def _read_text(path: Path) -> str:
 
 
 def _columns(heads: Sequence[str]) -> dict[str, int]:
-    """Where each field stands."""
+    """The index of the column of each field."""
     plain = [re.sub(r"[\s_]+", " ", person(head).casefold()).strip(' *"') for head in heads]
     found: dict[str, int] = {}
     for at, head in enumerate(plain):
@@ -220,7 +220,7 @@ def _entries(
 
 
 def _split(name: str, first_is_first: bool) -> tuple[str, str]:
-    """First and last name: "Davis, Jr., Sammy" of Canvas's, "Sammy Davis, Jr." of Moodle's."""
+    """First and last name, from "Davis, Jr., Sammy" (Canvas) or "Sammy Davis, Jr." (Moodle)."""
     last, comma, first = name.rpartition(",")
     if comma and not first_is_first:
         return first.strip(), last.strip()

@@ -1,7 +1,7 @@
 """Collect: downloads from Moodle and Canvas, or nbgrader's exchange, into ``submitted/``.
 
-Whose a file is comes from the platform's own field (``platforms``) and from the roster (``owner``,
-``identity``); which of a student's notebooks counts is settled in ``attempts``.
+The owner of a file follows from the platform's own field (``platforms``) and from the roster
+(``owner``, ``identity``); ``attempts`` decides which of a student's notebooks counts.
 """
 
 from __future__ import annotations
@@ -11,31 +11,32 @@ from collections.abc import Iterator, Sequence
 from contextlib import ExitStack
 from dataclasses import dataclass, replace
 from datetime import UTC, datetime
+from functools import partial
 from pathlib import Path
 
 from ...course.authoring.layout import Course
 from ...errors import LabkitError
-from ..clean import some
+from ..clean import few
 from ..each import Failure, for_student
 from ..submission import digest
-from .attempts import HandIn, adopt, called, install, keep, perhaps_late, that_counts
+from .attempts import HandIn, adopt, counted_attempt, install, named_for, perhaps_late, store
 from .exchange import in_exchange
-from .identity import all_lms_users, alone, places, remember
-from .owner import owner
+from .identity import all_lms_users, assign_folders, identity_lock, remember
+from .owner import find_owner
 from .platforms import File, Named, in_folder, in_zip, open_zip, reader
 from .roster import read_roster
-from .settle import settle
+from .settle import move_to_owners
 
 
 @dataclass(frozen=True)
 class Taken:
-    """One file, and what was done with it.
+    """A file, and what was done with it.
 
     Attributes:
-        student: Whose, as the folder is called; empty if nobody's.
-        file: Its name in the download; empty if it is of none in particular.
+        student: The name of the owner's folder; empty if the owner is not known.
+        file: The file's name in the download; empty if the remark concerns no single file.
         says: What was done.
-        fine: Whether nobody need look at it.
+        fine: Whether nobody needs to look at it.
     """
 
     student: str
@@ -57,7 +58,7 @@ _PERHAPS_LATE = (
     "WORKSHEET.csv --assignment {of}; with files of your own, collect with --at"
 )
 _HandedIn = tuple[File, Named]
-"""A file, and the one reading of its name that is right."""
+"""A file, and the correct reading of its name."""
 
 
 def collect(
@@ -69,32 +70,31 @@ def collect(
     named: str | None = None,
     at: datetime | None = None,
 ) -> Iterator[Taken]:
-    """Take notebooks from a download; the same once more changes nothing.
+    """Collect notebooks from a download; collecting it again changes nothing.
 
     Args:
         course: The course.
-        assignment: Which.
+        assignment: The assignment.
         source: A zip from Moodle or Canvas, or the inbound folder of nbgrader's exchange.
-        unverified: Whether users of the exchange whom this machine does not know are taken at
-            their word.
-        named: How files are named that come from no platform, such as
-            ``paths-{student}/*.ipynb``; then the source is a folder of them, or a zip.
-        at: When the source was made, if that is known: the hand-in time of files that come from no
-            platform.  What a platform's zip holds was handed in by then, nobody knows when.
+        unverified: Whether to collect from users of the exchange whom this machine does not know.
+        named: The pattern of the names of files that come from no platform, such as
+            ``paths-{student}/*.ipynb``; the source is then a folder or a zip of such files.
+        at: When the source was made, if that is known.  It is the hand-in time of files that come
+            from no platform, and the latest possible hand-in time for a platform's zip.
 
     Yields:
         What was done with each file.
 
     Raises:
-        LabkitError: It is neither, it is damaged, or it holds nothing; or a record of the course
-            is damaged.
+        LabkitError: The source is not of these kinds, is damaged, or holds nothing; or a record
+            of the course is damaged.
     """
     if not source.exists():
         raise LabkitError(f"there is no {source}")
-    if not (source.is_file() or source.is_dir()):  # a device or a pipe, which has no end
+    if not (source.is_file() or source.is_dir()):  # a device or pipe may never end
         raise LabkitError(f"{source} is neither a file nor a folder; give the download as it is")
     now = datetime.fromtimestamp(int(source.stat().st_mtime), UTC)
-    with alone(course):
+    with identity_lock(course):
         if named is not None:
             read = reader(named)
             others = [x for x in course.names() if x != assignment]
@@ -103,11 +103,13 @@ def collect(
                     files = list(in_folder(source, read))
                 else:
                     files = list(in_zip(stack.enter_context(open_zip(source)), now, read))
-                mine = [x for x in files if not any(called(Path(x.label).name, o) for o in others)]
-                yield from _take(course, assignment, source, [_made(x, at, True) for x in mine])
+                mine = [
+                    x for x in files if not any(map(partial(named_for, Path(x.label).name), others))
+                ]
+                yield from _collect(course, assignment, source, [_made(x, at, True) for x in mine])
         elif source.is_dir():
             files = list(in_exchange(source, assignment, unverified=unverified))
-            yield from _take(course, assignment, source, files)
+            yield from _collect(course, assignment, source, files)
         elif not zipfile.is_zipfile(source):
             raise LabkitError(
                 f"{source} is neither a folder nor a zip file; give the download as it is"
@@ -115,15 +117,17 @@ def collect(
         else:
             with open_zip(source) as archive:
                 files = [_made(file, at, False) for file in in_zip(archive, now)]
-                yield from _take(course, assignment, source, files)
+                yield from _collect(course, assignment, source, files)
 
 
 def _made(file: File, at: datetime | None, exact: bool) -> File:
-    """A file of a source that was made at a known time, and whether it was handed in then."""
+    """The file with the time at which its source was made, if that is known."""
     return file if at is None else replace(file, when=at, exact=exact)
 
 
-def _take(course: Course, assignment: str, source: Path, files: Sequence[File]) -> Iterator[Taken]:
+def _collect(
+    course: Course, assignment: str, source: Path, files: Sequence[File]
+) -> Iterator[Taken]:
     if not files:
         kind = "the inbound folder of nbgrader's exchange" if source.is_dir() else "a zip"
         raise LabkitError(
@@ -131,18 +135,18 @@ def _take(course: Course, assignment: str, source: Path, files: Sequence[File]) 
             "from no platform need --named, such as --named 'paths-{student}/*.ipynb'"
         )
     roster = read_roster(course)
-    for left in settle(course, roster):
+    for left in move_to_owners(course, roster):
         yield Taken("", "", left.why, fine=False)
     known = all_lms_users(course)
     handed_in: list[_HandedIn] = []
     for file in files:
-        named = owner(file, roster)
+        named = find_owner(file, roster)
         if isinstance(named, str):
             yield Taken("", file.label, named, fine=False)
         else:
             handed_in.append((file, named))
     people = {named.who.key: named.who for _, named in handed_in}
-    found = places(people.values(), assignment, known, roster)
+    found = assign_folders(people.values(), assignment, known, roster)
     by_folder = {place.folder: people[key] for key, place in found.items()}
     if not roster.students:
         yield Taken("", "", _NO_LIST)
@@ -154,22 +158,20 @@ def _take(course: Course, assignment: str, source: Path, files: Sequence[File]) 
     for file, named in handed_in:
         by_student.setdefault(found[named.who.key].folder, []).append((file, named))
     for student, mine in sorted(by_student.items()):
-        yield from _keep(course, assignment, student, mine)
+        yield from _store(course, assignment, student, mine)
     if late := [x for x in sorted(by_student) if perhaps_late(course, x, assignment)]:
-        yield Taken("", "", _PERHAPS_LATE.format(who=f"{len(late)} ({some(late)})", of=assignment))
+        yield Taken("", "", _PERHAPS_LATE.format(who=f"{len(late)} ({few(late)})", of=assignment))
 
 
-def _keep(
+def _store(
     course: Course, assignment: str, student: str, mine: Sequence[_HandedIn]
 ) -> Iterator[Taken]:
-    """Keep one student's notebooks, and let the right one count."""
+    """Store one student's notebooks, and copy the one that counts to ``submitted/``."""
     notebooks = [(file, named) for file, named in mine if not _no_notebook(named)]
     for _, named in mine:
         if says := _no_notebook(named):
             yield Taken(student, named.file, f"not taken; {says}", fine=bool(notebooks))
-    done = for_student(
-        student, lambda: list(_keep_notebooks(course, assignment, student, notebooks))
-    )
+    done = for_student(student, lambda: list(_store_each(course, assignment, student, notebooks)))
     if isinstance(done, Failure):
         done = [Taken(student, "", f"not taken; {done.why}", fine=False)]
     yield from done
@@ -184,12 +186,12 @@ def _no_notebook(named: Named) -> str:
     return "" if file.endswith(".ipynb") else "it is not a notebook"
 
 
-def _keep_notebooks(
+def _store_each(
     course: Course, assignment: str, student: str, notebooks: Sequence[_HandedIn]
 ) -> Iterator[Taken]:
     now = str(datetime.now(UTC))
     there = adopt(course, student, assignment, now)
-    before = that_counts(course, student, assignment)
+    before = counted_attempt(course, student, assignment)
     shown = max((file.when for file, _ in notebooks), default=datetime.now(UTC))
     done: list[tuple[HandIn, str, bool]] = []
     for file, named in notebooks:
@@ -200,7 +202,7 @@ def _keep_notebooks(
             continue
         when = file.when if file.exact else shown  # a download shows them all at once
         hand_in = HandIn(when, *named.who.key, named.file, file.exact, named.late, now)
-        new = keep(course, student, assignment, data, hand_in, secret, there)
+        new = store(course, student, assignment, data, hand_in, secret, there)
         done.append((hand_in, digest(data), new))
     after = install(course, student, assignment)
     beside = {x.when: x.file for x in after.attempt.hand_ins} if after else {}

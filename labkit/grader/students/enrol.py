@@ -1,9 +1,9 @@
-"""Takes a list of students into the roster: who is new, and who is there already.
+"""Merge a list of students into the roster.
 
-A row is a student of the roster if they share a login, an address or a number; or the name, if
-nobody else has it and nothing speaks against it.  Nobody leaves the roster by a list that does not
-name them.  Who is new gets a folder in which nobody else's work lies, and work of theirs that was
-collected before goes there (``settle``).
+A row matches a student of the roster if they share a login, an address or a number; or a name, if
+it is unique and nothing contradicts the match.  A student whom a list does not name stays in the
+roster.  A new student gets a folder of their own, and their work that was collected earlier moves
+there (``settle``).
 """
 
 from __future__ import annotations
@@ -16,15 +16,15 @@ from pathlib import Path
 
 from ...course.authoring.layout import Course
 from ...errors import LabkitError
-from ..clean import how_many, safe_name, some
+from ..clean import few, how_many, safe_name
 from ..seeds import seed_of
 from .arms import give_arms
 from .class_list import Entry, Student, read_list
-from .identity import all_lms_users, alone, places
+from .identity import all_lms_users, assign_folders, identity_lock
 from .list_remarks import about_namesakes, about_teams
 from .platforms import LmsUser
 from .roster import FILE, Roster, read_roster, same_name, save_roster, tell_gradebook
-from .settle import settle, strangers
+from .settle import move_to_owners, unlisted
 from .worksheet import keep_numbers, keep_times
 
 _Mark = tuple[str, object]
@@ -34,12 +34,12 @@ _FIELDS = ("first_name", "last_name", "team", *_KEYS)
 
 @dataclass(frozen=True)
 class Enrolled:
-    """What came of a list.
+    """The result of merging a list.
 
     Attributes:
-        roster: With the list's students in it.
-        rows: Each row of the list with its student.
-        new: Those who were not there before.
+        roster: The roster with the students of the list.
+        rows: Each row of the list, with its student.
+        new: The students who were not in the roster before.
     """
 
     roster: Roster
@@ -50,12 +50,12 @@ class Enrolled:
 def enrol(
     roster: Roster, entries: Sequence[Entry], collected: Mapping[str, Mapping[str, LmsUser]]
 ) -> Enrolled:
-    """Take a list into the roster.
+    """Merge a list into the roster.
 
     Args:
-        roster: As it was.
-        entries: The list's rows.
-        collected: Whose work was collected before, by assignment, then by folder.
+        roster: The roster so far.
+        entries: The rows of the list.
+        collected: The users whose work was collected before, by assignment, then by folder.
 
     Raises:
         LabkitError: Two rows, or a row and the roster, contradict each other.
@@ -70,7 +70,7 @@ def enrol(
     before: dict[object, list[Entry]] = {}
     for entry in entries:
         unique = names[same_name(entry.student.name)] == 1
-        # who is new is known by their line until `_folders`; no folder's name has a space
+        # `_folders` replaces the line as the id of a new student; no folder's name has a space
         id = _find(entry, unique, students, by_mark) or f"line {entry.line}"
         student = students.get(id, Student(id))
         known = ("first_name", "last_name") if entry.guessed and student.name else ()
@@ -92,19 +92,19 @@ def enrol(
 def import_list(
     course: Course, file: Path, assignment: str | None = None
 ) -> tuple[list[str], list[str]]:
-    """Take a list of students into the course's roster, and bring earlier work to its owners.
+    """Merge a list of students into the course's roster, and move earlier work to its owners.
 
     Args:
         course: The course.
         file: A CSV file; see `read_list`.
-        assignment: Where the file is Moodle's grading worksheet of this assignment.
+        assignment: The assignment, if the file is Moodle's grading worksheet.
 
     Returns:
-        What was done; and what a person should look at, such as work of one student in two folders
-        and hand-in times that are not set.  A sentence each.
+        Two lists of sentences: what was done; and what a person should look at, such as one
+        student's work in two folders, or hand-in times that are not set.
 
     Raises:
-        LabkitError: The list does not fit the roster or itself, or it is not a list.
+        LabkitError: The list contradicts the roster or itself, or the file is not a list.
     """
     if assignment:
         course.notebook_source(assignment)
@@ -116,13 +116,13 @@ def import_list(
             f"{file} has no column 'Identifier'; give the grading worksheet of "
             f"{assignment}, in English: Submissions, Actions, Download grading worksheet"
         )
-    with alone(course):
+    with identity_lock(course):
         before = read_roster(course)
         done = enrol(before, entries, all_lms_users(course))
         save_roster(course, done.roster)
         tell_gradebook(course, done.roster)
         give_arms(course, done.roster, seed_of(course))
-        left = settle(course, done.roster)
+        left = move_to_owners(course, done.roster)
         times, not_taken = 0, list[str]()
         if assignment:
             left += keep_numbers(course, assignment, done.rows)
@@ -132,19 +132,19 @@ def import_list(
     everybody = how_many(len(done.roster.students), "student")
     summary = [f"{FILE}: {everybody}, {len(done.new)} of them new"]
     if absent:
-        still = f"{len(absent)} ({some(absent)})"
+        still = f"{len(absent)} ({few(absent)})"
         summary.append(f"not in this list, and still in the roster: {still}")
     named = {one.student for one in left}
-    others = [x for x in strangers(course, done.roster) if x not in named]
+    others = [x for x in unlisted(course, done.roster) if x not in named]
     if others:
         summary.append(
-            f"work of nobody who is known to be in the roster: {', '.join(others)}; where it is a "
-            "listed student's, copy the notebook that is to count to "
+            f"work in folders that belong to nobody in the roster: {', '.join(others)}; where it "
+            "is a listed student's, copy the notebook that is to count to "
             "submitted/STUDENT/ASSIGNMENT/ASSIGNMENT.ipynb"
         )
     if len(entries) < len(rows):
         summary.append(
-            "not taken: Test Student, whom Canvas makes for an instructor's view as a student"
+            "not taken: Test Student, whom Canvas adds for the instructor's student view"
         )
     summary += about_teams(who for entry in entries if (who := entry.student.team))
     if assignment:
@@ -160,18 +160,18 @@ def import_list(
 
 
 def _marks(one: Student) -> dict[str, str]:
-    """What tells a student from others, as far as it is known."""
+    """The known data that identify a student, by field."""
     return {key: mark.casefold() for key in _KEYS if (mark := getattr(one, key))}
 
 
 def _shared(one: Student, other: Student) -> list[bool]:
-    """For each key that both have, whether it is the same."""
+    """For each key that both students have, whether the values agree."""
     a, b = _marks(one), _marks(other)
     return [a[key] == b[key] for key in a.keys() & b.keys()]
 
 
 def _refuse_contradictions(entry: Entry, id: str, rows: dict[object, list[Entry]]) -> None:
-    """Refuse a row that contradicts an earlier one, and add it to these."""
+    """Refuse a row that contradicts an earlier one; otherwise add it to the rows."""
     who, name, number = entry.student, same_name(entry.student.name), entry.participant
     for other in rows.setdefault(("participant", number), []) if number else ():
         raise LabkitError(
@@ -205,7 +205,7 @@ def _index(student: Student, by_mark: dict[_Mark, set[str]]) -> None:
 def _find(
     entry: Entry, unique: bool, students: Mapping[str, Student], by_mark: Mapping[_Mark, set[str]]
 ) -> str:
-    """The student whom a row means; empty if they are new."""
+    """The id of the student whom a row means; empty if the student is new."""
     found = set().union(*(by_mark.get(mark, set()) for mark in _marks(entry.student).items()))
     if len(found) > 1:
         people = " or ".join(str(students[id]) for id in sorted(found))
@@ -222,10 +222,10 @@ def _find(
 def _folders(
     everybody: Roster, new: Set[str], collected: Mapping[str, Mapping[str, LmsUser]]
 ) -> dict[str, str]:
-    """A folder for each new student, in which nobody else's work lies."""
+    """The name of a folder for each new student; it holds nobody else's work."""
     owners = {student.id.casefold(): {student.id} for student in everybody.students}
     for assignment, people in collected.items():
-        found = places(people.values(), assignment, collected, everybody)
+        found = assign_folders(people.values(), assignment, collected, everybody)
         for folder, one in people.items():
             owners.setdefault(folder.casefold(), set()).add(found[one.key].folder)
     alike = {student.id for group in everybody.namesakes() for student in group}

@@ -1,9 +1,9 @@
-"""nbgrader's exchange: hand-ins from its inbound folder, and feedback back to them.
+"""nbgrader's exchange: collect from its inbound folder, and prepare feedback to return.
 
-A student's own process makes the folder ``USER+ASSIGNMENT+TIME+RANDOM``, so USER is only what
-somebody says; whose it is says its owner, whom the system knows.  TIME is what they say too
-(``exchange_times``).  The exchange knows a hand-in by a secret that came with it
-(``nbgrader.exchange``).
+A student's own process makes the folder ``USER+ASSIGNMENT+TIME+RANDOM``, so USER and TIME are only
+claims.  USER is checked against the owner of the folder, whom the system knows, and TIME against
+the times on the disk (``exchange_times``).  The exchange identifies a hand-in by a secret that came
+with it (``nbgrader.exchange``).
 """
 
 from __future__ import annotations
@@ -16,7 +16,7 @@ from functools import partial
 from pathlib import Path
 
 from ...course.authoring.layout import Course
-from ..clean import clean_line, some
+from ..clean import clean_line, few
 from ..each import Failure, for_student
 from ..submission import read_file
 from ..timestamp import TIMESTAMP, read_time
@@ -25,7 +25,7 @@ from .platforms import File, LmsUser, Named, person
 
 SECRET = "submission_secret.txt"
 _LARGEST = 1
-"""Of a file beside a submission, in [MiB]."""
+"""The largest size of a file beside a submission, in [MiB]."""
 _STRANGERS = (
     "not taken; this machine has no such users, so it cannot be told whether they handed this in "
     "themselves; if your hub sees to that, add --unverified"
@@ -39,13 +39,13 @@ _BACKDATED = (
 def in_exchange(folder: Path, assignment: str, *, unverified: bool) -> Iterator[File]:
     """The notebooks in the inbound folder of nbgrader's exchange.
 
-    A folder that was written later than its name says counts from then, and is named.
+    A folder that was written later than its name says is dated by that later time, and is named.
 
     Args:
         folder: The inbound folder.
-        assignment: Which is collected.
-        unverified: Whether users whom this machine does not know are taken at their word, as long
-            as nobody else hands in under the same name.
+        assignment: The assignment to collect.
+        unverified: Whether to collect from users whom this machine does not know, as long as all
+            folders under that name have one owner.
     """
     parts = {path: path.name.rsplit("+", 3) for path in sorted(folder.iterdir())}
     mine = {path: x for path, x in parts.items() if len(x) > 2 and x[1] == assignment}
@@ -55,7 +55,7 @@ def in_exchange(folder: Path, assignment: str, *, unverified: bool) -> Iterator[
     unknown = [user for user in owners if person(user) == user and _number(user) is None]
     strangers = [] if unverified else unknown
     if strangers:
-        names = some([clean_line(name, 40) for name in strangers])
+        names = few([clean_line(name, 40) for name in strangers])
         yield File(names, (), datetime.now(UTC), bytes, refused=_STRANGERS)
     times = {
         path: Times.of(path, when)
@@ -94,9 +94,9 @@ def _not_a_hand_in(path: Path) -> str:
 
 
 def _not_theirs(user: str, path: Path, owners: set[int]) -> str:
-    """Why a folder is not that of the user whose name it bears; empty if it is."""
+    """Why a folder does not belong to the user in its name; empty if it does."""
     if not user or person(user) != user:
-        return "nobody can have such a name"
+        return "no user can have such a name"
     uid, expected = path.lstat().st_uid, _number(user)
     if expected is not None and uid != expected:
         return (
@@ -110,7 +110,7 @@ def _not_theirs(user: str, path: Path, owners: set[int]) -> str:
 
 
 def _number(user: str) -> int | None:
-    """The number of a user of this machine."""
+    """The number of a user of this machine; None if there is no such user."""
     try:
         return pwd.getpwnam(user).pw_uid
     except KeyError:
@@ -125,25 +125,25 @@ def _user(uid: int) -> str:
 
 
 def read_secret(folder: Path) -> bytes | None:
-    """What the exchange put beside a submission; None where it came from elsewhere.
+    """The secret beside a submission; None if it did not come through the exchange.
 
     Raises:
-        LabkitError: It is a link, or too large: somebody else's doing.
+        LabkitError: The file is a link, or too large.
     """
     path = folder / SECRET
     return read_file(path, _LARGEST) if path.exists() or path.is_symlink() else None
 
 
 def for_exchange(course: Course, assignment: str, pages: Iterable[Path]) -> list[bool | Failure]:
-    """Lay beside students' pages what ``nbgrader release_feedback`` asks for.
+    """Put the files that ``nbgrader release_feedback`` needs beside the students' pages.
 
     Args:
         course: The course.
-        assignment: Which.
-        pages: ``feedback/STUDENT/ASSIGNMENT/NAME.html``.
+        assignment: The assignment.
+        pages: The pages, as ``feedback/STUDENT/ASSIGNMENT/NAME.html``.
 
     Returns:
-        For each, whether the submission came through the exchange; or what failed.
+        For each page, whether the submission came through the exchange; or what failed.
     """
 
     def lay(page: Path, submitted: Path) -> bool:

@@ -1,10 +1,10 @@
-"""Which student a user of a platform is: users by the folder that holds their work.
+"""Which student a user of a platform is, recorded by the folder that holds their work.
 
-A student of the roster has the folder that the roster says, all term.  Who is not in it, or could
-be two of its students, has a folder of their own, and is named.  Such a folder is called by the
-platform's number of the user, so that nobody is taken for somebody else by a name, which people can
-change.  Canvas's users and those of the exchange keep theirs all term; Moodle's participants have
-another number in each assignment, and nothing but a roster joins them.
+A student of the roster keeps the folder that the roster names for the whole term.  A user who is
+not in the roster, or who could be either of two students, gets a separate folder and is reported.
+That folder is named after the platform's number for the user, because people can change their names
+and so be mistaken for others.  Users of Canvas and of the exchange keep their numbers all term.
+Moodle's participants have another number in each assignment, so only a roster can connect them.
 
 ``course_private/lms.json`` lists the users whose work was collected, by assignment and by folder.
 Git ignores the file, and it goes with the term.
@@ -36,12 +36,12 @@ _TOLD_APART = {
     "exchange": "you import a list with each student's login",
     "files": "the file is named by the student's login, address or number, and collected again",
 }
-"""What distinguishes people whom a platform calls alike."""
+"""What distinguishes people who have the same name on a platform."""
 _READ_GREEDILY = re.compile(r"([^_/]*)_([0-9]+)_assignsubmission_file")
 
 
 def lms_users(course: Course, assignment: str) -> dict[str, LmsUser]:
-    """Who was collected from a platform, by the name of their folder.
+    """The users whose work was collected for an assignment, by the name of their folder.
 
     Raises:
         LabkitError: The record is damaged.
@@ -50,7 +50,7 @@ def lms_users(course: Course, assignment: str) -> dict[str, LmsUser]:
 
 
 def all_lms_users(course: Course) -> dict[str, dict[str, LmsUser]]:
-    """Who was collected, by assignment and by the name of their folder.
+    """The users whose work was collected, by assignment and by the name of their folder.
 
     Raises:
         LabkitError: The record is damaged.
@@ -69,7 +69,7 @@ def all_lms_users(course: Course) -> dict[str, dict[str, LmsUser]]:
 
 
 def remember(course: Course, assignment: str, found: Mapping[str, LmsUser]) -> None:
-    """Add to what is known, by the name of the folder; nobody is left in two folders.
+    """Record users by the name of their folder; nobody is left in two folders.
 
     Raises:
         LabkitError: The record is damaged.
@@ -80,7 +80,7 @@ def remember(course: Course, assignment: str, found: Mapping[str, LmsUser]) -> N
     mine = known.get(assignment, {})
     now = {one.key for one in found.values()}
     kept = {folder: one for folder, one in mine.items() if one.key not in now}
-    for folder, one in found.items():  # a platform's number is needed later
+    for folder, one in found.items():  # export needs a platform's number
         if one.system in {"moodle", "canvas"} or folder not in kept:
             kept[folder] = one
     if kept != mine:
@@ -88,17 +88,17 @@ def remember(course: Course, assignment: str, found: Mapping[str, LmsUser]) -> N
 
 
 def save_lms_users(course: Course, known: Mapping[str, Mapping[str, LmsUser]]) -> None:
-    """Write who was collected, as `all_lms_users` reads it."""
+    """Write the users whose work was collected, as `all_lms_users` reads them."""
     data = msgspec.json.encode(known, order="sorted")
     write(course.root / FILE, msgspec.json.format(data, indent=1) + b"\n")
 
 
 @contextmanager
-def alone(course: Course) -> Iterator[None]:
-    """Keep a second one away from the records of who is who.
+def identity_lock(course: Course) -> Iterator[None]:
+    """Hold the lock on the roster and the records of users, so that one command changes them.
 
     Raises:
-        LabkitError: Somebody else is at it.
+        LabkitError: Another command holds the lock.
     """
     busy = "somebody else is collecting or changes who is in the class; wait for it to end"
     with locked(course.root / "course_private" / ".identity", busy):
@@ -106,7 +106,7 @@ def alone(course: Course) -> Iterator[None]:
 
 
 def _cleaned(user: LmsUser) -> LmsUser:
-    """One entry; of those that an older labkit read greedily, the name is the first person's."""
+    """A cleaned entry; names that an older labkit read too greedily are cut back to the first."""
     greedy = _READ_GREEDILY.match(user.name) if user.system == "moodle" else None
     number, name = (greedy[2], greedy[1]) if greedy else (user.number, user.name)
     return LmsUser(*map(clean_line, (user.system, number, name)))
@@ -118,29 +118,29 @@ class Place:
 
     Attributes:
         folder: The name of the folder.
-        doubt: Why it is not certain whose it is, empty if it is certain.
+        doubt: Why the owner is not certain; empty if there is no doubt.
     """
 
     folder: str
     doubt: str = ""
 
 
-def places(
+def assign_folders(
     people: Iterable[LmsUser],
     assignment: str,
     known: Mapping[str, Mapping[str, LmsUser]],
     roster: Roster,
 ) -> dict[tuple[str, str], Place]:
-    """Where each person's work goes, by `LmsUser.key`.
+    """Choose the folder for each person's work, by `LmsUser.key`.
 
     Args:
-        people: Those of one download.
-        assignment: Which was handed in.
-        known: What is known from earlier downloads, by assignment, then by folder.
-        roster: The course's; an empty one if none was imported.
+        people: The people in one download.
+        assignment: The assignment that was handed in.
+        known: The users of earlier downloads, by assignment, then by folder.
+        roster: The roster of the course; empty if none was imported.
     """
     named = {one.key: one for one in people}
-    before = {  # Moodle's numbers are those of one assignment
+    before = {  # Moodle's numbers hold for one assignment only
         one.key: folder
         for name in (*known, assignment)
         for folder, one in known.get(name, {}).items()
@@ -159,14 +159,14 @@ def places(
         ):
             found[key] = Place(students[0].id)
         else:
-            folder = folder or _apart(one, owners)
+            folder = folder or _own_folder(one, owners)
             owners.setdefault(folder.casefold(), set()).add(key)
             found[key] = Place(folder, _doubt(one, len(students)) if roster.students else "")
     return found
 
 
 def _claim(one: LmsUser, folder: str, roster: Roster) -> tuple[str, ...]:
-    """Which student of the roster a person of a platform is, or claims to be by name."""
+    """The students of the roster that a user of a platform is, or may be by name."""
     return (one.system, *([folder] if folder in roster else [s.id for s in roster.whose(one)]))
 
 
@@ -185,7 +185,7 @@ def _doubt(one: LmsUser, students: int) -> str:
 def _owners(
     known: Mapping[str, Mapping[str, LmsUser]], roster: Roster
 ) -> dict[str, set[tuple[str, str]]]:
-    """Whose each folder is; file systems may not tell capitals from small letters."""
+    """The owners of each folder, in lower case, as some file systems ignore case."""
     owners = {student.id.casefold(): {("roster", student.id)} for student in roster.students}
     for people in known.values():
         for folder, one in people.items():
@@ -193,8 +193,8 @@ def _owners(
     return owners
 
 
-def _apart(one: LmsUser, owners: Mapping[str, Set[tuple[str, str]]]) -> str:
-    """A folder that nobody else has, called by the platform's number."""
+def _own_folder(one: LmsUser, owners: Mapping[str, Set[tuple[str, str]]]) -> str:
+    """The name of a folder that nobody else has, made from the platform's number."""
     name, number = safe_name(one.name), one.number
     if one.system in {"moodle", "canvas"}:
         folder = f"{name}-{number}"

@@ -1,22 +1,22 @@
-"""What a person should know of a list of students that was imported, in sentences."""
+"""Remarks on a list of students that was imported, as sentences."""
 
 from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Iterable, Iterator, Mapping
 
-from ..clean import how_many, some
+from ..clean import few, how_many
 from .platforms import LmsUser
 from .roster import FILE, Roster
 
 
 def about_teams(named: Iterable[str]) -> Iterator[str]:
-    """What follows from a list's teams, which may be groups that were made for something else."""
+    """A remark on a list's teams, which may be groups that were made for another purpose."""
     teams = Counter(named)
     if teams:
         most = how_many(max(teams.values()), "student")
         yield (
-            f"teams in this list: {len(teams)} ({some(sorted(teams))}), the largest of "
+            f"teams in this list: {len(teams)} ({few(sorted(teams))}), the largest of "
             f"{most}; a team has one arm and hands in one report. If "
             "these are other groups, such as tutorials, delete their column from the list, clear "
             f"the column team of {FILE}, and import the list again"
@@ -24,7 +24,7 @@ def about_teams(named: Iterable[str]) -> Iterator[str]:
 
 
 def about_namesakes(roster: Roster, known: Mapping[str, Mapping[str, LmsUser]]) -> Iterator[str]:
-    """Who is called alike, and the assignments in which their numbers tell them apart."""
+    """Students with the same name, and the assignments in which their numbers differ."""
     for group in roster.namesakes():
         told_apart = [
             assignment

@@ -1,4 +1,4 @@
-"""Whose a file of a download is, by its name and the roster."""
+"""Find the owner of a file in a download, by its name and the roster."""
 
 from __future__ import annotations
 
@@ -6,10 +6,10 @@ from .platforms import File, LmsUser, Named
 from .roster import Roster
 
 
-def owner(file: File, roster: Roster) -> Named | str:
-    """The one reading of a file's name that is right, or why there is none."""
+def find_owner(file: File, roster: Roster) -> Named | str:
+    """The correct reading of a file's name, or why there is none."""
     if file.refused or not file.readings:
-        return file.refused or "not taken; its name does not say whose it is"
+        return file.refused or "not taken; its name does not say who handed it in"
     if len(file.readings) == 1:
         who = file.readings[0].who
         if who.system == "files" and roster.students and len(roster.whose(who)) != 1:
@@ -23,15 +23,15 @@ def owner(file: File, roster: Roster) -> Named | str:
     if len(fits) == 1:
         return fits[0]
     people = " or ".join(str(named.who) for named in file.readings)
-    return f"not taken; it is of {people}; the roster does not say which"
+    return f"not taken; it may belong to {people}; the roster does not say which"
 
 
 def _is_called_so(who: LmsUser, roster: Roster) -> bool:
-    """Whether the roster has this user of Canvas, under this name."""
+    """Whether the roster has this Canvas user under this name."""
     names = [f"{s.last_name}{s.first_name}" for s in roster.whose(who)]
     return letters(who.name) in map(letters, names)
 
 
 def letters(name: str) -> str:
-    """A name as it is left where a platform takes out spaces, signs and capitals."""
+    """A name reduced to lower-case letters and digits, as some platforms write it."""
     return "".join(c for c in name.casefold() if c.isalnum())

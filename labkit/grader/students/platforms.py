@@ -1,27 +1,27 @@
-"""Reads zips and folders: each file, and whose it is by the name that the platform gave it.
+"""Read zips and folders: each file, and its owner by the name that the platform gave it.
 
-Moodle and Canvas put what they know of the person first and the student's own name of the file
-last, so a name is read from its beginning, and nothing that a student calls a file changes whose it
-is.
+Moodle and Canvas put what they know about the person first, and the student's own file name last.
+A name is therefore read from its beginning, and no file name that a student chooses can change the
+owner.
 
 Moodle writes ``NAME_PARTICIPANT_assignsubmission_file`` and then ``/FILE``, with the student's own
-folders between, or ``_FILE``.  It makes spaces of the underscores in NAME, so the first number is
-the participant's; a name with an underscore in front is a team's, or somebody else's work
+folders between, or ``_FILE``.  It replaces underscores in NAME by spaces, so the first number
+is the participant's; a name with a leading underscore is a team's, or belongs to somebody else
 (github.com/moodle/moodle, ``mod/assign/classes/downloader.php``).
 
 Canvas writes ``NAME_[LATE_]USER_ATTACHMENT_FILE``.  NAME is in small letters, without spaces, and
-may end in an underscore and a number; then the name can be read in two ways if the file's own name
-begins with a number too (github.com/instructure/canvas-lms, ``lib/content_zipper.rb``).  Canvas
+may end in an underscore and a number; then there are two readings if the file's own name begins
+with a number too (github.com/instructure/canvas-lms, ``lib/content_zipper.rb``).  Canvas
 counts the attachments of a whole school, so a number below 100 belongs to the file's own name, as
 in ``10_cup.ipynb``.
 
-Every file comes with all ways to read whose it is, and with the reason for which it is refused.
-Nothing is unpacked, so a name in a download leads nowhere.
+Every file comes with all possible readings of its owner, and with the reason if it is refused.
+Nothing is unpacked to disk, so a path in a download can do no harm.
 
-Folders and zips that no platform named are read by a pattern of the instructor's: the clones of
-GitHub Classroom, ``paths-ada/01_paths.ipynb``, or files from anywhere, ``01_paths_4711.ipynb``.
-What stands for the student must be known to the roster: a login, an address, a number, the name on
-GitHub, or the student's own name.
+Folders and zips without a platform's names are read by a pattern that the instructor gives: clones
+of GitHub Classroom, ``paths-ada/01_paths.ipynb``, or any other files, ``01_paths_4711.ipynb``.  The
+part that stands for the student must be in the roster: a login, an address, a number, the user name
+on GitHub, or the student's own name.
 """
 
 from __future__ import annotations
@@ -54,7 +54,7 @@ _CANVAS = re.compile(
 )
 _NUMBER_FIRST = re.compile(r"([0-9]{3,})_([^/]+)")
 _OF_A_MAC = re.compile(r"(^|/)(__MACOSX/|\.DS_Store$|\._[^/]*$)")
-"""What a Mac puts beside files; it is nobody's work."""
+"""Files that macOS adds to a zip, which nobody handed in."""
 _ID = re.compile(r"[1-9][0-9]{0,18}")
 _DAMAGED = (
     *(zipfile.BadZipFile, zlib.error, lzma.LZMAError, struct.error),
@@ -67,10 +67,10 @@ class LmsUser:
     """A person as a platform's download names them.
 
     Attributes:
-        system: "moodle", "canvas", "exchange", or "files" of no platform.
-        number: Canvas's number of the user; Moodle's of the participant, one for each assignment;
-            the name of the user in the exchange, or the text of a file's name.
-        name: As the download writes it.
+        system: "moodle", "canvas", "exchange", or "files" if they come from no platform.
+        number: Canvas's number for the user; Moodle's for the participant, one per assignment; the
+            user name in the exchange; or the text in a file's name.
+        name: The person's name, as the download writes it.
     """
 
     system: str
@@ -79,7 +79,7 @@ class LmsUser:
 
     @property
     def key(self) -> tuple[str, str]:
-        """What tells this person from all others in one assignment."""
+        """The key that identifies this person within one assignment."""
         return self.system, self.number
 
     def __str__(self) -> str:
@@ -89,12 +89,12 @@ class LmsUser:
 
 @dataclass(frozen=True)
 class Named:
-    """One way to read the name of a file in a download.
+    """One reading of the name of a file in a download.
 
     Attributes:
         who: The person.
-        file: What the student called the file.
-        late: Whether Canvas counts it as late.
+        file: The name that the student gave the file.
+        late: Whether Canvas marks it as late.
         kind: How it was handed in, in Moodle's words: "file", or another, such as "onlinetext".
     """
 
@@ -105,11 +105,11 @@ class Named:
 
 
 Reader = Callable[[str], tuple[Named, ...]]
-"""Reads whose a file is by its name, with folders."""
+"""Finds the possible owners of a file by its name, which includes its folders."""
 
 
 def readings(entry: str) -> tuple[Named, ...]:
-    """The ways to read a name: none if it is nobody's, two if it could be either of two people's.
+    """The possible readings of a name: none if it has no owner, two if it may have either of two.
 
     Args:
         entry: The name of the file with its folders, as the download writes it.
@@ -132,7 +132,7 @@ def readings(entry: str) -> tuple[Named, ...]:
 
 
 def person(name: str) -> str:
-    """A person's name in one form, however it was typed."""
+    """A person's name in a normal form, however it was typed."""
     return unicodedata.normalize("NFC", clean_line(name, 200))
 
 
@@ -141,13 +141,13 @@ class File:
     """One file of a download.
 
     Attributes:
-        label: Its name in the download, as it can be shown.
-        readings: The ways to read whose it is.
-        when: When it was handed in, or shown by the platform.
-        read: Its bytes; late, as a class's files need not fit into memory together.
-        exact: Whether ``when`` is the hand-in's own time, and not only the download's.
+        label: Its name in the download, safe to show.
+        readings: The possible readings of its owner.
+        when: When it was handed in, or when the platform showed it.
+        read: Reads its bytes when called, as a whole class's files may not fit into memory.
+        exact: Whether ``when`` is the time of the hand-in itself and not of the download.
         refused: What is wrong with it, in a sentence; empty if it can be taken.
-        secret: What the exchange knows the hand-in by.
+        secret: Reads the secret by which the exchange identifies the hand-in.
     """
 
     label: str
@@ -164,7 +164,7 @@ def open_zip(path: Path) -> Iterator[zipfile.ZipFile]:
     """Open a zip.
 
     Raises:
-        LabkitError: It is damaged, or a name is not in the encoding that it states.
+        LabkitError: The zip is damaged, or a name is not in the encoding that it states.
     """
     try:
         archive = zipfile.ZipFile(path)
@@ -181,7 +181,7 @@ def in_zip(archive: zipfile.ZipFile, made: datetime, read: Reader = readings) ->
     Args:
         archive: The zip.
         made: When it was downloaded, for entries without a time.
-        read: Tells whose a file is by its name; by default as Moodle and Canvas write it.
+        read: Finds the owner of a file by its name; by default as Moodle and Canvas write it.
     """
     names: set[str] = set()
     for entry in archive.infolist():
@@ -210,7 +210,7 @@ def _name(entry: zipfile.ZipInfo) -> str:
 
 
 def _refused(entry: zipfile.ZipInfo, name: str) -> str:
-    """What is wrong with an entry, no matter whose it is."""
+    """Why an entry is refused, regardless of its owner; empty if it is accepted."""
     if stat.S_ISLNK(entry.external_attr >> 16):
         return "not taken; it is a link"
     if entry.flag_bits & 1:
@@ -221,7 +221,7 @@ def _refused(entry: zipfile.ZipInfo, name: str) -> str:
 
 
 def _when(entry: zipfile.ZipInfo, made: datetime) -> datetime:
-    """An entry's time, which is that of this machine's clock on the wall."""
+    """An entry's time, which zips store as local time without a zone."""
     try:
         when = datetime(*entry.date_time)
     except ValueError:
@@ -230,7 +230,7 @@ def _when(entry: zipfile.ZipInfo, made: datetime) -> datetime:
 
 
 def _read(archive: zipfile.ZipFile, entry: zipfile.ZipInfo) -> bytes:
-    """Unpack an entry in memory, no further than is allowed, whatever it says of its size."""
+    """Unpack an entry in memory up to the size limit, whatever size it states."""
     check_size(entry.file_size, NOTEBOOK)
     try:
         with archive.open(entry) as file:
@@ -245,14 +245,14 @@ _PARTS = {"{student}": "(?P<student>[^/]+?)", "**": ".*", "*": "[^/]*"}
 
 
 def reader(pattern: str) -> Reader:
-    """A reader for names that are all made alike.
+    """A reader for names that all follow one pattern.
 
     Args:
-        pattern: Such as ``paths-{student}/*.ipynb``; ``*`` stands for anything within one name,
-            ``**`` for folders too.
+        pattern: A pattern such as ``paths-{student}/*.ipynb``; ``*`` stands for anything within
+            one name, ``**`` for folders too.
 
     Raises:
-        LabkitError: It does not say once where the student stands.
+        LabkitError: The pattern does not have ``{student}`` exactly once.
     """
     if pattern.count("{student}") != 1:
         raise LabkitError(

@@ -1,7 +1,7 @@
-"""The roster: who is in the class, and how platforms know them.
+"""The roster: the students of the class, and how platforms identify them.
 
 It is kept in ``course_private/roster.csv``, which git ignores, with the columns of nbgrader's own
-list of students and two more; a person can read and edit it.  It goes with the term.
+list of students and more; a person can read and edit it.  It is archived with the term.
 """
 
 from __future__ import annotations
@@ -34,11 +34,11 @@ class Roster:
         return id in self._by_id
 
     def get(self, id: str) -> Student | None:
-        """The student who has a folder."""
+        """The student with this id, which is the name of their folder."""
         return self._by_id.get(id)
 
     def whose(self, one: LmsUser) -> tuple[Student, ...]:
-        """The students that a platform may mean: none, one, or all who have the same name."""
+        """The students whom a platform may mean: none, one, or all with the same name."""
         key = same_name(one.name) if one.system == "moodle" else one.number.casefold()
         found = self._by_key.get((one.system, key), ())
         if one.system == "files" and not found:
@@ -46,15 +46,15 @@ class Roster:
         return found
 
     def identifies(self, one: LmsUser) -> bool:
-        """Whether a file is named by what one student alone is listed with, such as a login.
+        """Whether a file is named by something that identifies one student, such as a login.
 
-        A person's name, and whatever anybody can choose for themselves, do not count.
+        Names, and anything that students can choose for themselves, do not count.
         """
         students = self.whose(one) if one.system == "files" else ()
         return len(students) == 1 and one.number.casefold() in _identifiers(students[0])
 
     def namesakes(self) -> list[tuple[Student, ...]]:
-        """Students who have the same name, as far as platforms write it."""
+        """Groups of students who have the same name in the form that platforms write."""
         groups = [group for (system, _), group in self._by_key.items() if system == "moodle"]
         return [group for group in groups if len(group) > 1]
 
@@ -64,7 +64,7 @@ class Roster:
 
     @cached_property
     def _by_key(self) -> dict[tuple[str, object], tuple[Student, ...]]:
-        """By what each platform calls them."""
+        """The students by each key that a platform may use for them."""
         found: dict[tuple[str, object], tuple[Student, ...]] = {}
         for student in self.students:
             login, email = student.login.casefold(), student.email.casefold()
@@ -79,16 +79,16 @@ class Roster:
 
 
 def _identifiers(student: Student) -> tuple[str, ...]:
-    """What a school calls a student by, and nobody else."""
+    """The identifiers that a school gives to one student alone."""
     known = (student.id, student.login, student.id_number, student.lms_user_id, student.email)
     return tuple(x.casefold() for x in known)
 
 
 def same_name(name: str) -> tuple[str, ...]:
-    """What two spellings of one person's name have in common.
+    """A key that is the same for all spellings of one person's name.
 
-    Platforms differ in the order of first and last name, and leave out what a file's name must not
-    hold; so the words count, in any order, by their letters and digits alone.
+    Platforms differ in the order of first and last name, and omit characters that file names must
+    not contain; so only the letters and digits of the words count, and not their order.
     """
     plain = unicodedata.normalize("NFKC", name).casefold().replace("_", " ").replace(",", " ")
     words = ("".join(c for c in w if unicodedata.category(c)[0] in "LMN") for w in plain.split())

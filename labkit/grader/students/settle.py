@@ -1,4 +1,4 @@
-"""Brings work and marks to the student whose they are, once the roster has come to know it."""
+"""Move work and marks to their owner, once the roster identifies the owner."""
 
 from __future__ import annotations
 
@@ -13,49 +13,49 @@ from ..each import Failure
 from ..grading.results import Results
 from ..nbgrader.gradebook import open_gradebook
 from .attempts import FOLDER
-from .identity import all_lms_users, places, remember
+from .identity import all_lms_users, assign_folders, remember
 from .roster import Roster, read_roster
 
 _WORK = (FOLDER, "submitted")
 _MADE_OF_IT = ("autograded", "feedback")
 
 
-def settle(course: Course, roster: Roster) -> list[Failure]:
-    """Bring all work to those whom the roster has come to know since it was collected.
+def move_to_owners(course: Course, roster: Roster) -> list[Failure]:
+    """Move all work whose owner the roster has identified since it was collected.
 
     Returns:
-        Which folders stayed, and why.
+        The folders that stayed, and why.
     """
     left: list[Failure] = []
     collected = all_lms_users(course)
     for assignment, people in collected.items():
-        found = places(people.values(), assignment, collected, roster)
+        found = assign_folders(people.values(), assignment, collected, roster)
         moves = {old: found[one.key].folder for old, one in people.items()}
-        left += bring(course, assignment, moves)
+        left += move_work(course, assignment, moves)
         gone = [x for x in moves.items() if x[0] != x[1] and not _work(course, x[0], assignment)]
         remember(course, assignment, {new: people[old] for old, new in gone})
     return left
 
 
-def strangers(course: Course, roster: Roster) -> list[str]:
-    """Folders of work that are of nobody in the roster."""
+def unlisted(course: Course, roster: Roster) -> list[str]:
+    """Folders with work that belong to nobody in the roster."""
     found = {path.parent.name for base in _WORK for path in (course.root / base).glob("*/*")}
     return sorted(name for name in found if name not in roster)
 
 
-def bring(course: Course, assignment: str, moves: Mapping[str, str]) -> list[Failure]:
-    """Take work from one folder to another, and then its marks, also those by hand.
+def move_work(course: Course, assignment: str, moves: Mapping[str, str]) -> list[Failure]:
+    """Move work from one folder to another, and then its marks, including those given by hand.
 
-    Where both folders have work nothing moves: the two may be of two people, as who they are may be
-    known by a name alone.
+    If both folders have work, nothing moves: they may belong to two people, as an owner may be
+    identified by name alone.
 
     Args:
         course: The course.
-        assignment: Whose work moves.
-        moves: By the folder where it is, the folder where it belongs.
+        assignment: The assignment whose work moves.
+        moves: By the present folder, the folder where the work belongs.
 
     Returns:
-        Which folders stayed, and why.
+        The folders that stayed, and why.
     """
     moves = {old: new for old, new in moves.items() if old != new}
     moved: dict[str, str] = {}
@@ -64,7 +64,7 @@ def bring(course: Course, assignment: str, moves: Mapping[str, str]) -> list[Fai
         for base in () if both else (*_WORK, *_MADE_OF_IT):
             source, target = (course.root / base / who / assignment for who in pair)
             if target.is_dir() and all(path.is_dir() for path in target.rglob("*")):
-                shutil.rmtree(target)  # nothing but folders
+                shutil.rmtree(target)  # it holds no files
             if source.exists() and not target.exists():
                 target.parent.mkdir(parents=True, exist_ok=True)
                 source.rename(target)
@@ -72,7 +72,7 @@ def bring(course: Course, assignment: str, moves: Mapping[str, str]) -> list[Fai
                     source.parent.rmdir()
         if not _work(course, pair[0], assignment):
             moved |= [pair]
-    _bring_marks(course, assignment, moved)
+    _move_marks(course, assignment, moved)
     said: list[Failure] = []
     for old, new in moves.items():
         result = Results(course, assignment).path(old)
@@ -92,19 +92,19 @@ def bring(course: Course, assignment: str, moves: Mapping[str, str]) -> list[Fai
 
 
 def _in_order(moves: Mapping[str, str]) -> Iterator[tuple[str, str]]:
-    """The moves, each after the one that leaves its new folder; of a circle, none."""
+    """The moves, each after the one that empties its target; moves in a circle are left out."""
     waiting = dict(moves)
     while free := [old for old, new in waiting.items() if new not in waiting]:
         yield from [(old, waiting.pop(old)) for old in free]
 
 
 def _work(course: Course, student: str, assignment: str) -> list[Path]:
-    """Folders of what a student handed in, where they hold a file."""
+    """The folders of a student's hand-ins that hold a file."""
     folders = [course.root / base / student / assignment for base in _WORK]
     return [path for path in folders if any(x.is_file() for x in path.rglob("*"))]
 
 
-def _bring_marks(course: Course, assignment: str, moves: Mapping[str, str]) -> None:
+def _move_marks(course: Course, assignment: str, moves: Mapping[str, str]) -> None:
     results = Results(course, assignment)
     for old, new in moves.items():
         result = results.get(old)
@@ -121,15 +121,15 @@ def _bring_marks(course: Course, assignment: str, moves: Mapping[str, str]) -> N
                 there[new].student = book.update_or_create_student(new)
                 book.db.commit()
         for old, new in moves.items():
-            _bring_the_rest(course, book, old, new)
+            _move_the_rest(course, book, old, new)
 
 
-def _bring_the_rest(course: Course, book: Any, old: str, new: str) -> None:
-    """What belongs to no file, such as the mark of a defence, and then the empty name."""
+def _move_the_rest(course: Course, book: Any, old: str, new: str) -> None:
+    """Move marks without a file, such as that of a defence, and then delete the old name."""
     if old not in {one.id for one in book.students} or old in read_roster(course):
         return
     if any((course.root / base / old).exists() for base in _WORK):
-        return  # somebody's work is there still
+        return  # somebody's work is still there
     student = book.update_or_create_student(new)
     there = {one.name for one in student.submissions}
     for one in list(book.find_student(old).submissions):

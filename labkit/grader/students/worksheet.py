@@ -1,4 +1,4 @@
-"""Moodle's grading worksheet: whose each participant's number is, and when each handed in."""
+"""Moodle's grading worksheet: each student's participant number and hand-in time."""
 
 from __future__ import annotations
 
@@ -8,29 +8,29 @@ from datetime import datetime
 from zoneinfo import ZoneInfo
 
 from ...course.authoring.layout import Course
-from ..clean import some
+from ..clean import few
 from ..each import Failure
 from ..rules import read_rules
 from ..timestamp import read_time
-from .attempts import Attempt, Counted, attempts, counts, install, keep
+from .attempts import Attempt, Counted, attempts, choose, install, store
 from .class_list import Entry, Student
 from .identity import lms_users, remember
 from .platforms import LmsUser
-from .settle import bring
+from .settle import move_work
 
 
 def keep_numbers(
     course: Course, assignment: str, rows: Iterable[tuple[Entry, Student]]
 ) -> list[Failure]:
-    """Keep whose each participant's number is, and bring earlier work to its owner.
+    """Record each student's participant number, and move earlier work to its owner.
 
     Returns:
-        Which folders stayed, and why.
+        The folders that stayed, and why.
     """
     mine = {s.id: LmsUser("moodle", e.participant, s.name) for e, s in rows if e.participant}
     before = {one.key: folder for folder, one in lms_users(course, assignment).items()}
     moves = {before[x.key]: id for id, x in mine.items() if x.key in before}
-    left = bring(course, assignment, moves)
+    left = move_work(course, assignment, moves)
     remember(course, assignment, mine)
     return left
 
@@ -38,10 +38,10 @@ def keep_numbers(
 def keep_times(
     course: Course, assignment: str, rows: Sequence[tuple[Entry, Student]]
 ) -> tuple[int, list[str]]:
-    """Keep when each handed in what counts, as Moodle's worksheet says.
+    """Record when each counted attempt was handed in, as Moodle's worksheet says.
 
     Returns:
-        How many times were taken; and which were not, a sentence each.
+        How many times were recorded; and a sentence for each that was not.
     """
     zone = ZoneInfo(read_rules(course).zone)
     taken = 0
@@ -49,7 +49,7 @@ def keep_times(
     waiting: list[str] = []
     for entry, student in rows:
         all = attempts(course, student.id, assignment)
-        chosen, said = counts(all, assignment), entry.handed_in.strip(" -")
+        chosen, said = choose(all, assignment), entry.handed_in.strip(" -")
         if chosen is None:
             waiting += [str(student)] * bool(said)
             continue
@@ -61,7 +61,7 @@ def keep_times(
             left.append(f"{student}: no hand-in time is set; the worksheet says {when}")
         elif when != first.when or not first.exact:
             data = chosen.attempt.file.read_bytes()
-            keep(course, student.id, assignment, data, replace(first, when=when, exact=True))
+            store(course, student.id, assignment, data, replace(first, when=when, exact=True))
             install(course, student.id, assignment)
             taken += 1
     if left and not any(entry.handed_in for entry, _ in rows):
@@ -71,14 +71,14 @@ def keep_times(
         ]
     if waiting:
         left.append(
-            f"{len(waiting)} handed in, and nothing of theirs was collected yet: {some(waiting)}; "
+            f"{len(waiting)} handed in, and nothing of theirs was collected yet: {few(waiting)}; "
             "collect the download, then import the worksheet again"
         )
     return taken, left
 
 
 def _time(said: str, zone: ZoneInfo, chosen: Counted, all: Sequence[Attempt]) -> datetime | str:
-    """When what counts was handed in; or what the worksheet says instead, and what to do."""
+    """The time of the attempt that counts; or why the worksheet gives none, and what to do."""
     when, first = read_time(said, zone), chosen.first.when
     others = [x.when for one in all if one is not chosen.attempt for x in one.hand_ins]
     earlier = max((x for x in others if x < first), default=None)

@@ -1,1 +1,1 @@
-"""A term: what is released and handed out in it, how it begins, and what is forgotten after it."""
+"""A term: how it begins, what is released and handed out, and what is deleted afterwards."""

@@ -26,7 +26,7 @@ Form = Literal["a", "b"]
 
 
 class Wording(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
-    """One form of an item: what it asks, the right answer, three wrong ones."""
+    """One form of an item: the question, the right answer, and three wrong answers."""
 
     asks: str
     right: str
@@ -37,9 +37,9 @@ class Item(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     """One item.
 
     Attributes:
-        name: In a few words.
+        name: A name in a few words.
         outcome: A name of `outcomes.OUTCOMES`.
-        because: Why somebody chooses each wrong answer; see the file.
+        because: Why a student may choose each wrong answer; see the file.
         a: Form A.
         b: Form B.
     """
@@ -55,7 +55,7 @@ def items(course: Course) -> tuple[Item, ...]:
     """The items of the course.
 
     Raises:
-        LabkitError: The file is missing, or it is not as it should be.
+        LabkitError: The file is missing or not valid.
     """
     path = course.root / FILE
     try:
@@ -71,12 +71,12 @@ def items(course: Course) -> tuple[Item, ...]:
 
 
 def asked(course: Course, form: Form) -> list[dict[str, Any]]:
-    """One form of the test, for the templates; its options have the same order each time.
+    """One form of the test, for the templates; the order of its options never changes.
 
     Returns:
-        For each item the ``number``, its ``name``, ``outcome``, what it ``asks``, the ``options``
-        with ``letter``, ``text``, what it ``says`` of a wrong one and whether it is ``right``, and
-        the ``key``, which is the letter of the right one.
+        For each item, its ``number``, ``name`` and ``outcome``, the question it ``asks``, the
+        ``options``, and the ``key``, which is the letter of the right option.  Each option has a
+        ``letter``, a ``text``, whether it is ``right``, and what it ``says`` if it is wrong.
     """
     known = {
         f"{problem.name}: {wrong.name}": wrong.says
@@ -95,7 +95,7 @@ def asked(course: Course, form: Form) -> list[dict[str, Any]]:
 
 
 def _options(wording: Wording, because: Sequence[str]) -> list[dict[str, Any]]:
-    """The answers to choose from, in an order that follows from their texts alone."""
+    """The answers to choose from, in an order that depends only on their texts."""
     says = {wording.right: "", **dict(zip(wording.wrong, because, strict=True))}
     order = sorted(says, key=lambda text: sha256(f"{wording.asks}{text}".encode()).digest())
     return [
@@ -105,7 +105,7 @@ def _options(wording: Wording, because: Sequence[str]) -> list[dict[str, Any]]:
 
 
 def paper(course: Course, form: Form) -> bytes:
-    """A form to print, as HTML, and the key on a page of its own."""
+    """A form as HTML for printing, with the key on a separate page."""
     test = asked(course, form)
     return render_page("concepts.html.j2", file("concepts.css"), form=form, test=test).encode()
 
@@ -126,4 +126,4 @@ def canvas(course: Course, form: Form) -> bytes:
 
 
 LAYOUTS = {"paper": paper, "moodle-quiz": moodle, "canvas-quiz": canvas}
-"""How the test is written, by the layout of ``labkit export``."""
+"""The function that writes the test, by the layout of ``labkit export``."""

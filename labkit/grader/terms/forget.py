@@ -1,4 +1,4 @@
-"""Forget: delete earlier terms, or all that is there of one student, wherever it lies."""
+"""Forget: delete earlier terms, or everything that is stored about one student."""
 
 from __future__ import annotations
 
@@ -23,11 +23,11 @@ from ..pseudonyms import pseudonym
 from ..rules import FILE as RULES
 from ..rules import rules_in
 from ..students.identity import FILE as LMS
-from ..students.identity import all_lms_users, alone, save_lms_users
+from ..students.identity import all_lms_users, identity_lock, save_lms_users
 from ..students.roster import FILE as ROSTER
 from ..students.roster import Roster, read_roster, same_name, save_roster
-from ..students.settle import bring
-from ..submission import is_name, meant
+from ..students.settle import move_work
+from ..submission import did_you_mean, is_name
 from .older import relocate
 from .term import archives
 
@@ -38,14 +38,14 @@ _OF_A_STUDENT = (
     *("results/*/aside/{}.json", "results/*/aside/old/{}"),
     *("build/course/defence/{}.html", "build/course/explain/{}"),
 )
-"""Files and folders that are one student's, in the folder of a term, by the student's name."""
+"""Patterns of one student's files and folders within the folder of a term."""
 
 
-def places_of(course: Course, student: str) -> list[Path]:
-    """Files and folders that are one student's, in this term and in earlier ones.
+def files_of(course: Course, student: str) -> list[Path]:
+    """One student's files and folders, in this term and in earlier ones.
 
     Raises:
-        LabkitError: Nobody can have this name.
+        LabkitError: No student can have this name.
     """
     if not is_name(student) or student in {"", ".", ".."} or "/" in student:
         raise LabkitError(f"{student!a} is not the name of a student's folder")
@@ -59,7 +59,7 @@ def places_of(course: Course, student: str) -> list[Path]:
 
 
 def entries_of(course: Course, student: str) -> list[Path]:
-    """Files that are of the whole class, with an entry of one student, in every term.
+    """Files about the whole class that have an entry for one student, in every term.
 
     Raises:
         LabkitError: One of these files is damaged.
@@ -68,10 +68,10 @@ def entries_of(course: Course, student: str) -> list[Path]:
 
 
 def shared_reports(course: Course, student: str) -> list[tuple[Course, str, str]]:
-    """Reports that a student handed in for a team: the term, the assignment, and who gets it.
+    """Reports that a student handed in for a team: term, assignment, and new owner.
 
     Raises:
-        LabkitError: It cannot be read who has their mark from this student's report.
+        LabkitError: The marks that depend on this student's report cannot be read.
     """
     found = []
     for term in _terms(course):
@@ -87,17 +87,17 @@ def shared_reports(course: Course, student: str) -> list[tuple[Course, str, str]
 def forget(
     course: Course, found: Sequence[Path], entries: Sequence[Path] = (), student: str = ""
 ) -> None:
-    """Delete what `places_of` found, or archived terms, and what `entries_of` found.
+    """Delete what `files_of` found, or archived terms, and what `entries_of` found.
 
-    A report from which others have their mark goes to the first of them before that.
+    A team report on which the marks of others depend is first moved to one of them.
 
     Raises:
-        LabkitError: Somebody is collecting, or a file of the whole class is damaged; or the team's
-            report cannot be moved.
+        LabkitError: Another command holds the lock, a file about the whole class is damaged, or the
+            team's report cannot be moved.
     """
-    with alone(course):
+    with identity_lock(course):
         for term, name, mate in shared_reports(course, student) if student else ():
-            if bring(term, name, {student: mate}):
+            if move_work(term, name, {student: mate}):
                 raise LabkitError(
                     f"{student} handed in {name} for {mate} too, who has other files in "
                     f"{term.root / 'attempts' / mate / name}; move these away and type it again"
@@ -113,7 +113,7 @@ def forget(
 
 
 def left_by_hand(course: Course, student: str) -> Iterator[str]:
-    """What else names a student, which only a person can delete, a sentence each."""
+    """A sentence for each thing about a student that only a person can delete."""
     for file in (term.root / RULES for term in _terms(course)):
         try:
             granted = any(one.student == student for one in rules_in(file).extensions)
@@ -140,16 +140,16 @@ def left_by_hand(course: Course, student: str) -> Iterator[str]:
 
 
 def unknown(course: Course, student: str) -> LabkitError:
-    """The error where nothing is known of a student, with those who are meant perhaps."""
+    """The error for a student about whom nothing is stored, with similar names."""
     folders = (path.name for term in _terms(course) for path in term.submitted.glob("*"))
     known = {name: name for name in folders if is_name(name)}
     known |= {one.id: str(one) for one in read_roster(course).students}
-    near = meant(student, known.values())
+    near = did_you_mean(student, known.values())
     return LabkitError(f"no student {student!r} in this term or an earlier one{near}")
 
 
 def _perhaps_theirs(term: Course, student: str) -> list[str]:
-    """Other folders of a term, of nobody in the roster, of somebody who is called alike."""
+    """Other folders of a term whose owner has the same name and is not in the roster."""
     roster, users = read_roster(term), all_lms_users(term).values()
     known = [(folder, same_name(one.name)) for each in users for folder, one in each.items()]
     names = {name for folder, name in known if folder == student}
@@ -160,7 +160,7 @@ def _perhaps_theirs(term: Course, student: str) -> list[str]:
 
 
 def _read_by_others(course: Course, student: str) -> Iterator[Path]:
-    """Sheets of peer review, given out or handed in, that hold a student's report."""
+    """Peer-review sheets, handed out or handed in, that contain a student's report."""
     for term in _terms(course):
         key = term.root / KEY
         if key.exists():
@@ -171,7 +171,7 @@ def _read_by_others(course: Course, student: str) -> Iterator[Path]:
 
 
 def _terms(course: Course) -> list[Course]:
-    """The term under way and the archived ones, each laid out as a course is."""
+    """The current term and the archived ones, each with the layout of a course."""
     folders = [one.folder for one in archives(course) if one.folder.is_dir()]
     terms = [course, *map(Course, folders)]
     for term in terms:
@@ -180,7 +180,7 @@ def _terms(course: Course) -> list[Course]:
 
 
 def _entries(term: Course, student: str) -> Iterator[tuple[Path, Callable[[], object]]]:
-    """A term's files of the whole class that have a student, and what deletes their entry."""
+    """The files about a term's whole class that name a student, and how to delete the entry."""
     book, roster, arms = term.root / "gradebook.db", read_roster(term), Arms.of(term.root)
     if book.exists() and _in_gradebook(book, student):
         yield book, partial(_leave_gradebook, book, student)

@@ -1,4 +1,4 @@
-"""Files of a term that an older labkit laid elsewhere: they go to where they are looked for now."""
+"""Move files of a term from the places where an older labkit stored them."""
 
 from __future__ import annotations
 
@@ -14,14 +14,14 @@ _EXPLANATION = re.compile(r"(.+)-(\w+)\.html")
 
 
 def relocate(term: Course, *, archived: bool) -> None:
-    """Move what an older labkit left of a term; nothing is lost, and what has its place keeps it.
+    """Move files that an older labkit stored elsewhere; no existing file is overwritten.
 
-    Archives had all files side by side.  Earlier results, and the pages of ``labkit explain``, had
-    the student and the rest in one name, where a folder for each student is now.
+    Archives had all files side by side.  Earlier results and the pages of ``labkit explain`` had
+    the student's name in their own names; now each student has a folder.
 
     Args:
         term: The term under way, or an archived one.
-        archived: Whether it is an archived one.
+        archived: Whether the term is archived.
     """
     if archived:
         for name in PERSONAL_FILES:

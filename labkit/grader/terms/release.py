@@ -1,8 +1,8 @@
-"""Release an assignment: prepare it, make room in the gradebook, write it, let nbgrader clear it.
+"""Release an assignment: prepare it, update the gradebook, write it, let nbgrader clear it.
 
-The answers are cleared by nbgrader's own `generate_assignment`, because its autograde needs the
-records that it keeps; here it is only fed, and its result verified.  What an author got wrong is
-said before anything is written: the file, the question, and what to do.
+nbgrader's own `generate_assignment` clears the answers, because nbgrader's autograde needs the
+records that it keeps; this module prepares its input and verifies its result.  An author's mistakes
+are reported before anything is written: the file, the question, and what to do.
 """
 
 from __future__ import annotations
@@ -38,22 +38,22 @@ FORBIDDEN = (
     "from solutions",
     "import solutions",
 )
-"""What no student's copy may hold."""
+"""Texts that no student's copy may contain."""
 _POINTS = re.compile(r"([0-9.]+) points?\b")
 
 
 @dataclass(frozen=True)
 class Released:
-    """What one release made.
+    """The outcome of one release.
 
     Attributes:
         name: The assignment.
         folder: The students' copy.
-        questions: How many.
-        points: In all.
-        hidden: How many hidden cases.
-        by_hand: What a person marks: the name of each cell, and its points.
-        outdated: How many submissions were graded with another release.
+        questions: The number of questions.
+        points: The total of points.
+        hidden: The number of hidden cases.
+        by_hand: The points of each cell that a person marks, by its name.
+        outdated: The number of submissions that were graded with another release.
     """
 
     name: str
@@ -83,19 +83,19 @@ def release(course: Course, name: str, seed: int) -> Released:
 
     Args:
         course: The course.
-        name: Of the assignment, such as "01_paths".
-        seed: Of the hidden cases; keep your own, the repository's is public.
+        name: The name of the assignment, such as "01_paths".
+        seed: The seed of the hidden cases; use a secret one, as the repository's is public.
 
     Returns:
-        What was made.
+        The outcome.
 
     Raises:
-        UnknownName: No such assignment.
+        UnknownName: There is no such assignment.
         LabkitError: `prepare` or nbgrader refused, an answer would have leaked, or marks given by
             hand would have been lost.
     """
     made = prepared(course, name, seed)
-    added = migrate(course, name, made.source)  # once nothing of the author's can be refused
+    added = migrate(course, name, made.source)  # after the last check that can refuse
     write(made, added)
     generate(course, name)
     _verify(course.release / name)
@@ -133,7 +133,7 @@ def generate(course: Course, name: str) -> None:
 
 
 def _verify(folder: Path) -> None:
-    """Whatever nbgrader did: no answer and no hidden case may leave."""
+    """Delete the release if it would show an answer or a hidden case."""
     for path in folder.rglob("*"):
         text = path.read_text(encoding="utf-8") if path.is_file() else ""
         for word in FORBIDDEN:
@@ -143,10 +143,10 @@ def _verify(folder: Path) -> None:
 
 
 def prepared(course: Course, name: str, seed: int) -> Prepared:
-    """What `prepare` makes, or in one sentence why an author's mistake is in the way.
+    """The prepared assignment, or an error that explains the author's mistake.
 
     Raises:
-        LabkitError: The text, the problems, an answer or a known mistake must be corrected.
+        LabkitError: The text, a problem, an answer or a known mistake must be corrected.
     """
     path = course.notebook_source(name)
     try:
@@ -182,7 +182,7 @@ def _check_types(path: Path, problems: object) -> None:
 
 
 def _where(course: Course, error: Exception) -> str:
-    """The place of an exception in the course's own files, the question, and what it says."""
+    """Where in the course's own files an exception arose, in which question, and its message."""
     said = f"{type(error).__name__}: {error}"
     if isinstance(error, SyntaxError) and error.filename:
         return f"{error.filename}, line {error.lineno}: {said}; correct it"
@@ -198,7 +198,7 @@ def _where(course: Course, error: Exception) -> str:
 
 
 def _unreadable(made: Prepared) -> Iterator[str]:
-    """Cells that Python cannot read, which no student could run."""
+    """A sentence for each cell that Python cannot parse, so that no student could run it."""
     for number, cell in enumerate(made.source.cells, start=1):
         broken = analyse(cell.source)["broken"] if cell.cell_type == "code" else ""
         if broken:
@@ -207,7 +207,7 @@ def _unreadable(made: Prepared) -> Iterator[str]:
 
 
 def _not_importable(made: Prepared) -> Iterator[str]:
-    """Imports in the stubs, solutions included, that find nothing."""
+    """A sentence for each import in a stub or its solution that fails."""
     for cell in made.source.cells:
         if kind(cell) != "answer" or analyse(cell.source)["broken"]:
             continue
@@ -223,7 +223,7 @@ def _not_importable(made: Prepared) -> Iterator[str]:
 
 
 def _sums(made: Prepared) -> Iterator[str]:
-    """Points that the first cell promises and the questions do not add up to."""
+    """A sentence if the questions do not add up to the points that the first cell promises."""
     found = _POINTS.findall(made.source.cells[0].source) if made.source.cells else []
     manual = sum(float(nbgrader_info(x)["points"]) for x in made.source.cells if by_hand(x))
     points = sum(q.points for q in made.questions.values()) + manual

@@ -1,7 +1,7 @@
-"""What students are given: one folder without answers, as a zip or beside a private repository.
+"""The folder for students, without answers, as a zip or beside a private repository.
 
-The answers are public in this repository; hidden cases stop hard-coding, not copying.  A course
-that cares gives its students a repository without them.
+This repository publishes the answers; hidden cases prevent hard-coding, but not copying.  A course
+that must prevent copying gives its students a repository without answers.
 """
 
 from __future__ import annotations
@@ -26,18 +26,18 @@ from ..students.arms import without_arms
 from .release import FORBIDDEN
 
 NOT_FOR_STUDENTS = ("labkit/grader", "labkit/course/authoring")
-"""What students' labkit comes without."""
+"""The parts of labkit that students do not get."""
 STUDENT = ".ci/student"
-"""What they get besides labkit and notebooks."""
+"""The files that students get besides labkit and notebooks."""
 PICTURE = "book/static/baxter.png"
 BOOK = "book/_build/html"
-"""Where a book that was built lies."""
+"""The folder of the built book."""
 PLACES = {
     "devcontainer.json": ".devcontainer/devcontainer.json",
     "postBuild": "binder/postBuild",
     "runtime.txt": "binder/runtime.txt",
 }
-"""Where files of that folder belong that do not lie at the top."""
+"""The places of those files of ``STUDENT`` that do not belong at the top."""
 
 
 def student_bundle(course: Course, names: Sequence[str], to: Path, book: str | None = None) -> Path:
@@ -45,9 +45,9 @@ def student_bundle(course: Course, names: Sequence[str], to: Path, book: str | N
 
     Args:
         course: The course; its assignments must be released.
-        names: Which assignments go in; none means all that are released.
+        names: The assignments to include; none means all that are released.
         to: The file to write.
-        book: The address of the book; None puts the book in, if it is built.
+        book: The address of the book; None includes the book itself, if it is built.
 
     Returns:
         ``to``.
@@ -68,7 +68,7 @@ def student_bundle(course: Course, names: Sequence[str], to: Path, book: str | N
 
 
 def remarks(course: Course, names: Sequence[str]) -> Iterator[str]:
-    """What a zip with these notebooks lacks, a sentence each."""
+    """A sentence for each thing that a zip with these notebooks lacks."""
     there = [name for name in names if (course.release / name).is_dir()]
     old = [name for name in there if not (course.bundle / f"{name}.json").exists()]
     if old and course.term.exists():
@@ -80,7 +80,7 @@ def remarks(course: Course, names: Sequence[str]) -> Iterator[str]:
 def student_folder(
     course: Course, names: Sequence[str], top: Path, book: str | None = None
 ) -> None:
-    """Lay what students get into the new folder ``top``; the rest as for `student_bundle`."""
+    """Write what students get to the new folder ``top``; see `student_bundle`."""
     names = names or sorted(path.name for path in course.release.iterdir() if path.is_dir())
     for name in names:
         course.notebook_source(name)
@@ -107,7 +107,7 @@ def student_folder(
 
 
 def _start_here(folder: Path, names: Sequence[str], picture: Path, book: str | None) -> None:
-    """The notebook that JupyterLab opens first."""
+    """Write the notebook that JupyterLab opens first."""
     notebooks = [(name, *_about(folder / name / f"{name}.ipynb")) for name in names]
     practice = next(filter(None, (_first_prediction(folder, name) for name in names)), None)
     text = render("start_here.py.j2", notebooks=notebooks, book=book, practice=practice)
@@ -129,21 +129,21 @@ def _about(path: Path) -> tuple[str, str]:
 
 
 def _first_prediction(folder: Path, name: str) -> tuple[str, str] | None:
-    """A notebook, and the first thing to predict in it, which is worth one point; or None."""
+    """A notebook's name and its first prediction that is worth one point; or None."""
     text = (folder / name / f"{name}.ipynb").read_text(encoding="utf-8")
     found = re.search(r"\*\*Predict first: `(\w+)`\*\* · 1 point", text)
     return (name, found[1]) if found else None
 
 
 def wheel(root: Path, to: Path) -> None:
-    """Build the students' wheel from a copy: beside its sources lies what earlier builds left.
+    """Build the students' wheel from a copy, which has no files left by earlier builds.
 
     Args:
-        root: The course's folder, a checkout.
+        root: The folder of the course, a git checkout.
         to: The folder to write to.
 
     Raises:
-        LabkitError: It could not be built.
+        LabkitError: The wheel could not be built.
     """
     with tempfile.TemporaryDirectory() as folder:
         copy = Path(folder)
@@ -176,7 +176,7 @@ def export_course(course: Course, to: Path) -> tuple[Path, Path]:
             leaked.
     """
     if to.exists():
-        raise LabkitError(f"{to} is there already; give a folder that is not")
+        raise LabkitError(f"{to} exists already; give a folder that does not")
     files = _tracked(course.root)
     student, private = to / "student", to / "private"
     student_folder(course, (), student)

@@ -1,4 +1,4 @@
-"""A new term: a seed of one's own, and a record of what was released."""
+"""A term: its secret seed, the record of what was released, and its archive."""
 
 from __future__ import annotations
 
@@ -30,9 +30,9 @@ PERSONAL_FILES = (
     *("build/course/defence", "build/course/explain"),
     *(attempts.FOLDER, roster.FILE, HANDLES, identity.FILE, pseudonyms.FILE),
 )
-"""The files of one term alone, with students' names, what leads to them, and hidden cases.
+"""The files that belong to one term, with students' names or keys to them, and hidden cases.
 
-All of it is ignored by git.
+Git ignores all of them.
 """
 _TERM = "course_private/term.json"
 
@@ -42,7 +42,7 @@ def _private(course: Course) -> Path:
 
 
 def running(course: Course) -> str:
-    """What the term under way has of students, in words; "" if it has nothing of them yet."""
+    """The students, submissions and marks of the current term, in words; "" if none."""
     enrolled = len(roster.read_roster(course).students)
     submitted = len({path.parent for path in course.submitted.glob("*/*/*")})
     graded = len(list(course.results.glob("*/*.json")))
@@ -51,10 +51,10 @@ def running(course: Course) -> str:
 
 
 def refuse_running(course: Course) -> None:
-    """Refuse to end a term that has something of students.
+    """Refuse to end a term that has students or their work.
 
     Raises:
-        LabkitError: It has.
+        LabkitError: The term has students, submissions or marks.
     """
     if there := running(course):
         raise LabkitError(
@@ -65,19 +65,19 @@ def refuse_running(course: Course) -> None:
 
 
 def new_term(course: Course, seed: int | None, names: tuple[str, ...] = ()) -> dict[str, Any]:
-    """Begin a term: archive the last one's, release with a new seed, keep a record.
+    """Begin a term: archive the last one, release with a new seed, keep a record.
 
     Args:
         course: The course.
-        seed: Of the hidden cases; None draws one.
-        names: What to release; all by default.
+        seed: The seed of the hidden cases; None draws one.
+        names: The assignments to release; all by default.
 
     Returns:
-        The record, with seed, date, the archive of the last term, and the hash of each bundle,
-        which every result names.
+        The record: the seed, the date, the archive of the last term, and each bundle's hash, by
+        which every result identifies its release.
 
     Raises:
-        LabkitError: The seed is the public one, or the last term's; or a name is unknown.
+        LabkitError: The seed is the public one or the last term's, or a name is unknown.
     """
     names = names or course.names()
     for name in names:
@@ -88,7 +88,7 @@ def new_term(course: Course, seed: int | None, names: tuple[str, ...] = ()) -> d
     old = archive(course)
     record = {"seed": seed, "begun": datetime.now(UTC).date().isoformat(), "bundles": {}}
     record["archived"] = old.name if old else ""
-    _keep(course, record)  # first, so that a release that fails is made again with this seed
+    _keep(course, record)  # first, so that a failed release is repeated with this seed
     for name in names:
         release(course, name, seed)
     record["bundles"] = {
@@ -104,10 +104,10 @@ def _keep(course: Course, record: dict[str, Any]) -> None:
 
 
 def archive(course: Course) -> Path | None:
-    """Move what holds the last term's names into one folder; None if there is nothing.
+    """Move the personal files of the last term to an archive; None if there are none.
 
-    The archive is laid out as the course is.  The rules are copied, as most of them serve again;
-    arms are deleted where students get them.
+    The archive has the layout of the course.  The rules are copied, as most of them are used again;
+    the sealed arms are deleted from the students' notebooks.
     """
     for path in course.release.glob(f"*/{ARMS}"):
         path.unlink()
@@ -127,19 +127,19 @@ def archive(course: Course) -> Path | None:
 
 
 def restore(course: Course, old: Path) -> tuple[Path | None, list[str]]:
-    """Return to an archived term; the one under way becomes an archive.
+    """Return to an archived term, and archive the current one.
 
     Args:
         course: The course.
-        old: The archive's folder, laid out as a course is.
+        old: The folder of the archive.
 
     Returns:
-        The new archive, None if there was nothing of a term, and the released assignments.
+        The new archive, or None if there was nothing to archive; and the released assignments.
     """
     undone = archive(course)
     for name in (*PERSONAL_FILES, _TERM, RULES):
         if (old / name).exists():
-            (course.root / name).unlink(missing_ok=True)  # the rules, which an archive copies
+            (course.root / name).unlink(missing_ok=True)  # the rules, which `archive` copied
             (course.root / name).parent.mkdir(parents=True, exist_ok=True)
             shutil.move(old / name, course.root / name)
     if not any(path.is_file() for path in old.rglob("*")):
@@ -151,7 +151,7 @@ def restore(course: Course, old: Path) -> tuple[Path | None, list[str]]:
 
 
 def old_rules(course: Course) -> str:
-    """What of the last term's rules is still in force, in a sentence; "" if nothing is."""
+    """A sentence on rules of the last term that still apply; "" if there are none."""
     rules = read_rules(course)
     over = [x for x in rules.assignments if (due := rules.due(x)) and due < datetime.now(UTC)]
     said = [f"due dates that are over: {', '.join(over)}"] * bool(over)
@@ -164,9 +164,9 @@ class Archive:
     """A term that is over.
 
     Attributes:
-        folder: Where it lies.
-        ended: The day on which the next one began; None if the folder's name does not say it.
-        people: How many handed in, also such as are not in the roster.
+        folder: The folder of the archive.
+        ended: The day on which the next term began; None if the folder's name has no date.
+        people: How many students handed in, including any who are not in the roster.
     """
 
     folder: Path
@@ -182,7 +182,7 @@ class Archive:
 
 
 def archives(course: Course, older: float | None = None) -> list[Archive]:
-    """The terms that ended at least ``older`` years ago; all by default, also without a date."""
+    """The terms that ended at least ``older`` years ago; by default all, even without a date."""
     found = []
     for folder in sorted(_private(course).glob("archive-*")):
         people = len({path.parts[-3] for path in (folder / "submitted").glob("*/*/*")})
@@ -201,7 +201,7 @@ def _date(name: str) -> date | None:
 
 
 def about(course: Course) -> Iterator[str]:
-    """The term that is under way, and those that are over, a line each."""
+    """A line for the current term and for each archived one."""
     file = course.term
     if file.exists():
         record = json.loads(file.read_text(encoding="utf-8"))
