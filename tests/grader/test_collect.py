@@ -468,7 +468,7 @@ def test_what_is_not_a_hand_in_is_named(bare, tmp_path):
     said = " ".join(troubles(bare, inbound))
     for words in ("it states no time", "it holds no notebook", "it is a link or a file"):
         assert words in said
-    assert "\ufffd+01_paths+2026-03-02 10:00:00 UTC+d: not taken; nobody can have such a" in said
+    assert "\ufffd+01_paths+2026-03-02 10:00:00 UTC+d: not taken; no user can have such a" in said
     assert counting(bare) == {"root": "1"}
 
 

@@ -368,5 +368,5 @@ def test_the_students_repository_holds_no_answer(tmp_path):
 
 def test_an_export_never_overwrites(tmp_path):
     """A folder that is there already is left alone."""
-    with pytest.raises(LabkitError, match="there already"):
+    with pytest.raises(LabkitError, match="exists already"):
         export_course(Course(ROOT), tmp_path)
