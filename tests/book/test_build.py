@@ -167,7 +167,7 @@ def test_the_reference_says_what_the_docstrings_say(book):
 def test_the_reference_says_what_a_class_is_made_with(book):
     """The arguments that only `__init__` describes, and the methods of a class's base."""
     arm = BeautifulSoup((book / "reference/arm.html").read_text(), "html.parser").get_text()
-    assert "seed – Of the measurement noise" in arm
+    assert "seed – The seed of the measurement noise" in arm
     paths = (book / "reference/motion.html").read_text()
     assert 'id="labkit.paths.Quintic.within"' in paths
 

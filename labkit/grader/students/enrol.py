@@ -100,7 +100,7 @@ def import_list(
         assignment: The assignment, if the file is Moodle's grading worksheet.
 
     Returns:
-        Two lists of sentences: what was done; and what a person should look at, such as one
+        Two lists of sentences, on what was done and on what a person should look at, such as one
         student's work in two folders, or hand-in times that are not set.
 
     Raises:

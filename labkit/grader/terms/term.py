@@ -73,8 +73,8 @@ def new_term(course: Course, seed: int | None, names: tuple[str, ...] = ()) -> d
         names: The assignments to release; all by default.
 
     Returns:
-        The record: the seed, the date, the archive of the last term, and each bundle's hash, by
-        which every result identifies its release.
+        The record, with the seed, the date, the archive of the last term, and each bundle's hash,
+        by which every result identifies its release.
 
     Raises:
         LabkitError: The seed is the public one or the last term's, or a name is unknown.
