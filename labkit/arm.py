@@ -217,12 +217,16 @@ class Arm:
         Args:
             force: Shape (3,) in [N].
             moment: Shape (3,) in [N m].
+
+        Raises:
+            Closed: The arm's world is closed.
         """
         force, moment = as_array(force, (3,), "force"), as_array(moment, (3,), "moment")
-        self._touches.append(Touch(np.concatenate([force, moment]), np.zeros((3, 3))))
+        self.touch(Touch(np.concatenate([force, moment]), np.zeros((3, 3))))
 
     def touch(self, touch: Touch) -> None:
         """Let something act on the tip during the next physics step."""
+        self.check_open()
         self._touches.append(touch)
 
     def pull(self, torque: Any) -> None:
@@ -230,8 +234,12 @@ class Arm:
 
         Args:
             torque: Shape (n,) in [N m]; torques of several calls add up.
+
+        Raises:
+            Closed: The arm's world is closed.
         """
         torque = as_array(torque, self.robot.zeros.shape, "torque")
+        self.check_open()
         self._pull = torque if self._pull is None else self._pull + torque
 
     def tip(self) -> tuple[Array, Array]:

@@ -40,6 +40,9 @@ def test_a_closed_world_says_so_and_closing_twice_is_harmless():
             use()
     with pytest.raises(Closed, match="make a new Arm"):
         arm.apply(lk.JointTorque(np.zeros(7)))
+    for disturb, numbers in ((arm.push, np.zeros(3)), (arm.pull, np.zeros(7))):
+        with pytest.raises(Closed, match="make a new"):
+            disturb(numbers)
     with pytest.raises(Closed, match="make a new"):
         lk.run(arm, lk.Hold(arm.robot.neutral, 0.1), lambda s, x: lk.JointTorque(np.zeros(7)))
 

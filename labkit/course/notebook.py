@@ -211,8 +211,10 @@ def source_notebook(
             _check_stub(path, str(name), cell)
             cells += _question_cells(questions[str(name)], cell)
         elif name is not None:
+            stub = "question" in cell.metadata
+            listed = "PROBLEMS of problems.py" if stub else "PREDICTIONS of predictions.py"
             raise LabkitError(
-                f"{path.name} asks {name!r}, which has no Problem or Prediction; write one"
+                f"{path.name} asks {name!r}, which is not in {listed}; write it and add it there"
             )
         else:
             setup = cell.metadata.get("setup", False)

@@ -62,7 +62,7 @@ def test_stubs_and_questions_must_match(tmp_path):
     """A stub without a question, and a question without a stub, are refused by name."""
     text = tmp_path / "x.py"
     text.write_text('# %% question="double"\ndef double(x):\n    pass\n')
-    with pytest.raises(LabkitError, match="'double', which has no Problem"):
+    with pytest.raises(LabkitError, match=r"'double', which is not in PROBLEMS of problems\.py"):
         source_notebook(text, {})
     one = QUESTIONS["joint_error"]
     region = "    ### BEGIN SOLUTION\n    return 1\n    ### END SOLUTION\n\n"
@@ -76,6 +76,22 @@ def test_stubs_and_questions_must_match(tmp_path):
         text.write_text(source)
         with pytest.raises(LabkitError, match=sentence):
             source_notebook(text, {"joint_error": one})
+
+
+@pytest.mark.parametrize(
+    ("key", "name", "listed"),
+    [
+        ("question", "same_components", r"PROBLEMS of problems\.py"),
+        ("predict", "joint_error", r"PREDICTIONS of predictions\.py"),
+        ("find_out", "joint_error", r"PREDICTIONS of predictions\.py"),
+    ],
+)
+def test_what_is_in_the_other_list_is_refused(tmp_path, key, name, listed):
+    """A stub for a prediction, or a value for a question, names the list that lacks it."""
+    text = tmp_path / "x.py"
+    text.write_text(f'# %% {key}="{name}"\n')
+    with pytest.raises(LabkitError, match=f"'{name}', which is not in {listed}"):
+        source_notebook(text, QUESTIONS, COURSE.predictions(NAME))
 
 
 @pytest.mark.parametrize("name", COURSE.names())
