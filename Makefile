@@ -38,8 +38,8 @@ wheels: .venv/.dev ## on which systems pip can install what a student needs
 
 dev: for-all .venv/.dev ## make the environment, .venv, and nothing else
 
-quick: for-all .venv/.dev ## the quick tests, with Python alone
-	@PATH="$(CURDIR)/$(BIN):$$PATH" $(BIN)/python -m pytest -n 2 --quick -m "not slow and not soak" --ignore tests/book --ignore tests/replay --ignore tests/soak
+quick: for-all .venv/.dev ## the quick tests, with Python alone: those of the lab and the course
+	@PATH="$(CURDIR)/$(BIN):$$PATH" $(BIN)/python -m pytest -n 2 --quick -m "not slow and not soak" --ignore tests/grader --ignore tests/book --ignore tests/replay --ignore tests/soak
 
 soak: for-tests .venv/.dev browser ## what the gate leaves out: all fuzz, attacks, kills, large classes, pages
 	@PATH="$(CURDIR)/$(BIN):$$PATH" $(BIN)/python -m pytest -n 2 --dist loadgroup --no-loadscope-reorder -m soak

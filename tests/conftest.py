@@ -1,8 +1,6 @@
 """What the tests share: hypothesis that repeats itself, states drawn from a seed, a browser."""
 
-import shutil
 from contextlib import contextmanager
-from pathlib import Path
 
 import numpy as np
 import pytest
@@ -26,40 +24,25 @@ ARGUMENTS = [
 ]  # fmt: skip
 
 
-GRADER = Path(__file__).parent / "grader"
-
-
 FIRST = "test_pages_of_the_contents_exist"
 
 
 def pytest_addoption(parser):
     parser.addoption(
-        "--quick", action="store_true", help="leave out what needs a program that is not there"
+        "--quick", action="store_true", help="leave out what needs Chromium where it is missing"
     )
 
 
-def _missing():
-    """The programs that tests need and that are not there."""
-    if not shutil.which("bwrap"):
-        yield "bubblewrap"
+def _without_chromium(config):
+    """Whether tests that need Chromium are to be left out."""
     try:
-        program()
+        return config.getoption("quick") and not program()
     except SystemExit:
-        yield "Chromium"
-
-
-def _needed(item):
-    """The programs that a test needs."""
-    if item.path.is_relative_to(GRADER):
-        yield "bubblewrap"
-    if "playwright" in item.fixturenames:
-        yield "Chromium"
+        return True
 
 
 def pytest_report_header(config):
-    if config.getoption("quick"):
-        return [f"{name} is missing, so its tests are left out" for name in _missing()]
-    return []
+    return ["Chromium is missing, so its tests are left out"] if _without_chromium(config) else []
 
 
 def _turn(item):
@@ -70,9 +53,8 @@ def _turn(item):
 def pytest_collection_modifyitems(config, items):
     """`make quick` runs with Python alone; everywhere else a missing program is a failure."""
     items.sort(key=_turn)
-    if config.getoption("quick"):
-        missing = set(_missing())
-        left_out = [item for item in items if not missing.isdisjoint(_needed(item))]
+    if _without_chromium(config):
+        left_out = [item for item in items if "playwright" in item.fixturenames]
         config.hook.pytest_deselected(items=left_out)
         items[:] = [item for item in items if item not in left_out]
 
