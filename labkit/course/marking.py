@@ -5,7 +5,7 @@ The function may run in this process or in another one.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from itertools import repeat
 from typing import Any, NamedTuple
@@ -111,12 +111,8 @@ def mark(question: Question, function: Function, tried: PublicResult | None = No
         The verdict.  If a gate fails, no points are earned.
     """
     tried = tried or try_public(question, function)
-    results = tuple(
-        result
-        if result.outcome not in (Outcome.RIGHT, Outcome.NOT_TRIED)
-        else _try(test, [c for c in test.cases if c.hidden], question, function, {}, result)
-        for test, result in zip(question.tests, tried.results, strict=True)
-    )
+    pairs = zip(question.tests, tried.results, strict=True)
+    results = tuple(_try_hidden(question, test, result, function) for test, result in pairs)
     outcome, known = _outcome(results), None
     asked = all(call in tried.answers for call in question.calls)
     if outcome in (Outcome.WRONG, Outcome.ERROR) and asked:
@@ -232,35 +228,39 @@ _OUTCOMES = {"NotImplementedError": Outcome.NOT_ATTEMPTED, "ArgumentChanged": Ou
 """Outcomes of the exceptions that do not count as errors."""
 
 
+def _try_hidden(
+    question: Question, test: Test, public: TestResult, function: Function
+) -> TestResult:
+    """The result of a test with its hidden cases, which are tried if no public one failed."""
+    cases = [case for case in test.cases if case.hidden]
+    failed = public.outcome not in (Outcome.RIGHT, Outcome.NOT_TRIED)
+    return public if failed or not cases else _try(test, cases, question, function, {})
+
+
 def _try(
     test: Test,
-    cases: Iterable[Case],
+    cases: Sequence[Case],
     question: Question,
     function: Function,
     answers: dict[Case, Any],
-    before: TestResult | None = None,
 ) -> TestResult:
-    """Try cases of one test until one fails; without any cases, return the earlier result."""
-    result = TestResult(test.name, test.weight, Outcome.RIGHT, also=test.also)
+    """Try cases of one test until one fails; add the answers to the public ones to ``answers``."""
+    outcome = Outcome.RIGHT if cases else Outcome.NOT_TRIED
+    result = TestResult(test.name, test.weight, outcome, also=test.also)
     for case in cases:
         answer = _answer(case, function)
         if not case.hidden:
             answers[case] = answer
         found = _difference(question, test, case, answer)
-        if found is not None:
-            tool = answer.tool if isinstance(answer, _Failure) else ""
-            if case.hidden:  # how it failed would reveal the case to an attacker
-                outcome = Outcome.NOT_COUNTED if tool else Outcome.WRONG
-                return replace(result, outcome=outcome, hidden=True, tool=tool)
-            return replace(
-                result,
-                outcome=_outcome_of(answer),
-                call=case.shown(question.name),
-                difference=found,
-                tool=tool,
-            )
-        before = result
-    return before or replace(result, outcome=Outcome.NOT_TRIED)
+        if found is None:
+            continue
+        tool = answer.tool if isinstance(answer, _Failure) else ""
+        if case.hidden:  # how it failed would reveal the case to an attacker
+            outcome = Outcome.NOT_COUNTED if tool else Outcome.WRONG
+            return replace(result, outcome=outcome, hidden=True, tool=tool)
+        outcome, shown = _outcome_of(answer), case.shown(question.name)
+        return replace(result, outcome=outcome, call=shown, difference=found, tool=tool)
+    return result
 
 
 def _outcome_of(answer: Any) -> Outcome:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import re
 import textwrap
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
@@ -10,7 +9,7 @@ from dataclasses import dataclass
 from ..errors import ControllerError
 from .differences import likely_cause, sentence, words
 from .forms import COMMITTED, OWN_ARM
-from .question import Loop, Question, Test, Tuned, in_points
+from .question import Loop, Question, Test, Tuned, in_points, is_shortened
 from .verdict import Difference, Kind, Misconception, Outcome, TestResult, Verdict
 from .withheld import name_in_notebook
 
@@ -176,8 +175,9 @@ def _helps(verdict: Verdict) -> Iterator[str]:
         yield mistake(verdict.mistake)
     elif lead := _lead(verdict):
         says, call = sentence(lead), next(x.call for x in verdict.tests if x.difference is lead)
-        asked = lead.kind is Kind.NUMBERS and re.fullmatch(r"\w+\([^<(]{1,40}\)", call)
-        yield f"{says[:-1]}, in `{call}`." if asked and says[-1] == "." else says
+        clear = len(call) <= 60 and not is_shortened(call) and not _is_value(call)
+        named = clear and lead.kind is Kind.NUMBERS and says.endswith(".")
+        yield f"{says[:-1]}, in `{call}`." if named else says
 
 
 def _lead(verdict: Verdict) -> Difference | None:
@@ -243,7 +243,7 @@ def _numbers(question: Question, verdict: Verdict) -> list[str]:
             if not _again(test, difference, before):
                 lines += _parts(result, difference is _lead(verdict))
             before.append(difference)
-    if any("numbers>" in test.call or "(...)" in test.call for test in verdict.tests):
+    if any(is_shortened(test.call) for test in verdict.tests):
         name = question.name
         lines += ["To try the first call yourself:", f'  args, kwargs = lk.course.case("{name}")']
         lines.append(f"  {name}(*args, **kwargs)")
@@ -262,12 +262,17 @@ def _again(test: Test, difference: Difference, before: list[Difference]) -> bool
 def _parts(test: TestResult, led: bool) -> list[str]:
     """A call with its expected and its actual answer, on lines of their own if they are long."""
     start, expected, got, _ = words(test.difference) if test.difference else ("", "", "", "")
-    if not got:  # a sentence; a call with "()" stands for a value that was written down
-        return [why(test)] if not led else [] if test.call.endswith("()") else [test.call]
+    if not got:  # a sentence
+        return [why(test)] if not led else [] if _is_value(test.call) else [test.call]
     short = f"{test.call}: {start}expected {expected}, got {got}"
     if len(short) < WIDTH - 4:
         return [short]
     return [f"{test.call}: {start}".rstrip(), f"  expected {expected}", f"  got      {got}"]
+
+
+def _is_value(call: str) -> bool:
+    """Whether it asks for a value that the student wrote down, which takes no arguments."""
+    return call.endswith("()")
 
 
 def _printed(text: str, most: int = 6) -> list[str]:

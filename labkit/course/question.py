@@ -49,7 +49,7 @@ class Call:
         return call(function, self.args, self.kwargs)
 
     def shown(self, name: str) -> str:
-        """The call as a student would type it."""
+        """The call as a student would type it, but for long arguments; see `is_shortened`."""
         words = [_short(x) for x in self.args]
         if len(", ".join(words)) > 60:
             words = [_sized(x) if isinstance(x, np.ndarray) else _short(x) for x in self.args]
@@ -311,6 +311,15 @@ def in_brief(x: Any) -> str:
         tiny = 1e-9 * max(1.0, float(np.max(np.abs(a), initial=0.0)))
         return f"[{', '.join(map(in_brief, np.where(np.abs(a) < tiny, 0.0, a)))}]"
     return f"{float(a) + 0.0:.5g}"  # adding zero removes the sign of -0
+
+
+def is_shortened(call: str) -> bool:
+    """Whether `Call.shown` put short forms for long arguments, so that it cannot be typed."""
+    return any(form in call for form in _SHORT_FORMS)
+
+
+_SHORT_FORMS = (" numbers>", "...")
+"""What stands for an array, and for part of any other long value."""
 
 
 def _short(x: Any) -> str:

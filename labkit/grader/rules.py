@@ -159,7 +159,7 @@ def rules_in(path: Path) -> Rules:
     return rules
 
 
-def settle_lateness(course: Course, book: Any, assignment: str) -> None:
+def apply_lateness(course: Course, book: Any, assignment: str) -> None:
     """Update due date, extensions and penalties in the gradebook to the present rules.
 
     If the file has no due date, the one that was set in formgrader counts.

@@ -32,7 +32,7 @@ def rank(seed: int, student: str, what: str) -> bytes:
     return hmac.digest(str(seed).encode(), f"{student}/{what}".encode(), "sha256")
 
 
-def settle_whys(course: Course, book: Any, assignment: str) -> None:
+def credit_whys(course: Course, book: Any, assignment: str) -> None:
     """Give full points in the gradebook to the whys that were written and are not drawn.
 
     They are drawn among those of the notebooks that were released since the term began; among all

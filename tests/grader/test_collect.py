@@ -44,10 +44,10 @@ from labkit.grader.students.collect import collect
 from labkit.grader.students.enrol import enrol, import_list
 from labkit.grader.students.exchange import SECRET
 from labkit.grader.students.identity import FILE, all_lms_users, lms_users, remember
+from labkit.grader.students.move import move_to_owners
 from labkit.grader.students.platforms import LmsUser
 from labkit.grader.students.roster import FILE as ROSTER
 from labkit.grader.students.roster import read_roster, save_roster
-from labkit.grader.students.settle import move_to_owners
 from labkit.grader.students.worksheet import keep_numbers
 from labkit.grader.submission import read_file
 

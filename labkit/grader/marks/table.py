@@ -8,7 +8,7 @@ instead of a mark: nobody gets a 0 that they did not earn.
 from __future__ import annotations
 
 import shlex
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
 from typing import Any
 
@@ -19,30 +19,38 @@ from ..clean import clean_line, clean_text, how_many
 from ..each import Failure
 from ..grading.current_results import current_results, full_marks, how_to_grade
 from ..grading.results import Result
-from ..nbgrader.gradebook import open_gradebook
+from ..nbgrader.gradebook import apply_rules, open_gradebook
 from ..rules import FILE as RULES
-from ..rules import read_rules, settle_lateness
+from ..rules import read_rules
 from ..students.attempts import perhaps_late
 from ..students.class_list import Student
 from ..students.identity import lms_users
 from ..students.roster import read_roster
 from ..submission import did_you_mean, plain_name, students
-from ..whys import settle_whys
 from .mark import Mark, MarkLine
 
 
-def marks_of(course: Course, assignment: str, only: str | None = None) -> Iterator[Mark]:
+def marks_of(course: Course, assignment: str, only: str | None = None) -> list[Mark]:
     """The marks of everybody in the roster and of all others who handed in, sorted by name.
+
+    The rules may have changed since the work was graded, so they are applied to the gradebook
+    first.
 
     Args:
         course: The course.
         assignment: The assignment.
         only: One student, by that student's own hand-in; by default all students.
+
+    Raises:
+        LabkitError: The gradebook, the roster or the rules cannot be used.
     """
-    rows = _own_marks(course, assignment, only)
+    with open_gradebook(course) as book:
+        apply_rules(course, book, assignment)
+        submissions = {plain_name(s.student.id): s for s in book.assignment_submissions(assignment)}
+        rows = list(_own_marks(course, assignment, submissions, only))
     released = not only and (course.bundle / f"{assignment}.json").exists()
     shared = released and Bundle.of(course, assignment).is_report
-    yield from _of_teams(list(rows)) if shared else rows
+    return list(_of_teams(rows)) if shared else rows
 
 
 def _of_teams(rows: Sequence[Mark]) -> Iterator[Mark]:
@@ -61,35 +69,44 @@ def _of_teams(rows: Sequence[Mark]) -> Iterator[Mark]:
         yield replace(mine, author=report.student, remark=remark)
 
 
-def _own_marks(course: Course, assignment: str, only: str | None) -> Iterator[Mark]:
-    """The mark of each student for what they handed in themselves."""
-    by_platform, handed_in = lms_users(course, assignment), set(students(course, assignment))
+def _own_marks(
+    course: Course, assignment: str, submissions: Mapping[str, Any], only: str | None
+) -> Iterator[Mark]:
+    """The mark of each student for what they handed in themselves.
+
+    Args:
+        course: The course.
+        assignment: The assignment.
+        submissions: The gradebook's submissions, by student.
+        only: One student; by default all students.
+    """
+    users, handed_in = lms_users(course, assignment), set(students(course, assignment))
+    results = {one.student: one for one in current_results(course, assignment, only)}
     roster = read_roster(course)
-    stand = {one.student: one for one in current_results(course, assignment, only)}
-    with open_gradebook(course) as book:
-        settle_whys(course, book, assignment)
-        settle_lateness(course, book, assignment)
-        there = {plain_name(s.student.id): s for s in book.assignment_submissions(assignment)}
-        full = max((float(s.max_score) for s in there.values()), default=0.0)
-        full = full or full_marks(course, assignment)
-        listed = {student.id for student in roster.students}
-        everybody = stand.keys() | there.keys() | listed
-        for student in sorted(everybody if only is None else everybody & {only}):
-            submission, one = there.get(student), stand.get(student)
-            person = roster.get(student) or Student(student)
-            row = Mark(person, student in listed, points=full, user=by_platform.get(student))
+    listed = {student.id for student in roster.students}
+    full = max((float(s.max_score) for s in submissions.values()), default=0.0)
+    full = full or full_marks(course, assignment)
+    everybody = results.keys() | submissions.keys() | listed
+    for student in sorted(everybody if only is None else everybody & {only}):
+        submission, result = submissions.get(student), results.get(student)
+        person = roster.get(student) or Student(student)
+        row = Mark(person, student in listed, points=full, user=users.get(student))
+        if submission is None and result is None:
             nothing = "no defence yet" if assignment == DEFENCE else "nothing was handed in"
-            row = replace(row, remark=nothing)
-            if submission is not None or one is not None:
-                row = _marked(replace(row, remark=""), submission, one, assignment)
-                row = replace(row, remark=row.remark or perhaps_late(course, student, assignment))
-            if isinstance(one, Result) and one.unanswered and not row.missing:
-                rejected = "rejected: " if one.rejected else ""
-                row = replace(row, remark=f"{rejected}{one.unanswered}")
-            elif row.raw is not None and one is not None and student not in handed_in:
-                gone = "nothing of theirs is in submitted/; the mark stays as it was"
-                row = replace(row, remark=gone)
-            yield row
+            yield replace(row, remark=nothing)
+            continue
+        row = _marked(row, submission, result, assignment)
+        late = perhaps_late(course, student, assignment)
+        yield replace(row, remark=_remark(row, student in handed_in) or late)
+
+
+def _remark(row: Mark, handed_in: bool) -> str:
+    """Why the mark is as it is, if it was rejected, is empty, or outlived its submission."""
+    if row.missing or row.result is None:
+        return ""
+    if row.result.unanswered:
+        return f"{'rejected: ' if row.result.rejected else ''}{row.result.unanswered}"
+    return "" if handed_in else "nothing of theirs is in submitted/; the mark stays as it was"
 
 
 def unknown_extensions(course: Course) -> Iterator[str]:

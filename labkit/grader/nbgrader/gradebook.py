@@ -25,9 +25,9 @@ from ..atomic import write
 from ..each import Failure, for_student
 from ..grading.results import Result
 from ..nbgrader_api import nbgrader_api
-from ..rules import settle_lateness
+from ..rules import apply_lateness
 from ..timestamp import read_stamp, read_time
-from ..whys import settle_whys
+from ..whys import credit_whys
 from .autograded_notebook import as_text, in_release_form, release_source, with_verdicts
 
 
@@ -60,9 +60,18 @@ def record(course: Course, assignment: str, results: Iterable[Result]) -> list[s
             if isinstance(done, Failure):
                 book.db.rollback()
             said += [done] if isinstance(done, Failure) else done
-        settle_whys(course, book, assignment)
-        settle_lateness(course, book, assignment)
+        apply_rules(course, book, assignment)
     return said
+
+
+def apply_rules(course: Course, book: Any, assignment: str) -> None:
+    """Update the gradebook to the present rules: whys that nobody marks, and late work.
+
+    Raises:
+        LabkitError: The rules cannot be used, or the assignment was not released here.
+    """
+    credit_whys(course, book, assignment)
+    apply_lateness(course, book, assignment)
 
 
 def _record(course: Course, book: Any, source: Any, result: Result) -> list[str]:

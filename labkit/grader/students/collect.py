@@ -22,10 +22,10 @@ from ..submission import digest
 from .attempts import HandIn, adopt, counted_attempt, install, named_for, perhaps_late, store
 from .exchange import in_exchange
 from .identity import all_lms_users, assign_folders, identity_lock, remember
+from .move import move_to_owners
 from .owner import find_owner
 from .platforms import File, Named, in_folder, in_zip, open_zip, reader
 from .roster import read_roster
-from .settle import move_to_owners
 
 
 @dataclass(frozen=True)

@@ -3,7 +3,7 @@
 A row matches a student of the roster if they share a login, an address or a number; or a name, if
 it is unique and nothing contradicts the match.  A student whom a list does not name stays in the
 roster.  A new student gets a folder of their own, and their work that was collected earlier moves
-there (``settle``).
+there (``move``).
 """
 
 from __future__ import annotations
@@ -22,9 +22,9 @@ from .arms import give_arms
 from .class_list import Entry, Student, read_list
 from .identity import all_lms_users, assign_folders, identity_lock
 from .list_remarks import about_namesakes, about_teams
+from .move import move_to_owners, unlisted
 from .platforms import LmsUser
 from .roster import FILE, Roster, read_roster, same_name, save_roster, tell_gradebook
-from .settle import move_to_owners, unlisted
 from .worksheet import keep_numbers, keep_times
 
 _Mark = tuple[str, object]

@@ -15,8 +15,8 @@ from ..timestamp import read_time
 from .attempts import Attempt, Counted, attempts, choose, install, store
 from .class_list import Entry, Student
 from .identity import lms_users, remember
+from .move import move_work
 from .platforms import LmsUser
-from .settle import move_work
 
 
 def keep_numbers(

@@ -24,9 +24,9 @@ from ..rules import FILE as RULES
 from ..rules import rules_in
 from ..students.identity import FILE as LMS
 from ..students.identity import all_lms_users, identity_lock, save_lms_users
+from ..students.move import move_work
 from ..students.roster import FILE as ROSTER
 from ..students.roster import Roster, read_roster, same_name, save_roster
-from ..students.settle import move_work
 from ..submission import did_you_mean, is_name
 from .older import relocate
 from .term import archives
