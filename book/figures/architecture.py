@@ -30,7 +30,7 @@ LAYERS = (
 )
 """From the ground up: a module imports from its own row and the rows below, never above."""
 
-WIDE, HIGH, LEFT = 94, 30, 8
+WIDE, HIGH, LEFT = 112, 30, 8
 
 
 def imported(name: str) -> set[str]:
@@ -74,7 +74,7 @@ def picture() -> HTML:
         + "; ".join(f"{title.lower()}: {', '.join(names)}" for title, names in LAYERS)
         + f". All {len(arrows)} imports among them point to the same row or a lower one."
     )
-    width = LEFT + 7 * (WIDE + 10)
+    width = LEFT + max(len(names) for _, names in LAYERS) * (WIDE + 10)
     svg = (
         f'<svg class="lab-svg" role="img" aria-label="{escape(alt)}" '
         f'viewBox="0 0 {width} {height}" fill="currentColor" xmlns="http://www.w3.org/2000/svg">{"".join(parts)}</svg>'

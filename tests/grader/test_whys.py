@@ -29,19 +29,21 @@ def test_two_of_eight_are_drawn_evenly_and_for_good():
 
 
 def test_only_a_why_that_is_drawn_waits_for_a_person(course, capsys):
-    """One that is written and not drawn has its points; a blank one has 0; the drawn one waits."""
-    texts = {"ada": "Because it is so.", "bob": "", "dan": "Because it is so."}
+    """One that is written and not drawn has its points; an unchanged or empty one has 0."""
+    so = "Because it is so."
+    texts = {"ada": so, "bob": None, "carl": " \n", "dan": so}
     for student, text in texts.items():
         data = notebook_of(student)
         hand_in(course, NAME, student, data)
-        written = {WHY: text} if text else {}
+        written = {} if text is None else {WHY: text}
         result = replace(result_of(course, student, data=data), written=written)
         Results(course, NAME).keep(result)
         record(course, NAME, [result])
     with open_gradebook(course) as book:
         grades = {s: book.find_grade(WHY, NAME, NAME, s) for s in texts}
         found = {s: (g.auto_score, g.needs_manual_grade) for s, g in grades.items()}
-    assert found == {"ada": (2.0, False), "bob": (0.0, False), "dan": (None, True)}
+    zero, waits = (0.0, False), (None, True)
+    assert found == {"ada": (2.0, False), "bob": zero, "carl": zero, "dan": waits}
     assert main(["feedback", NAME, "--course", str(course.root)]) == 2
     said = capsys.readouterr().err
     assert f"dan ({WHY})" in said and "ada" not in said

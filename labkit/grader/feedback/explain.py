@@ -75,7 +75,7 @@ def _by_a_person(assignment: str, question: str, mark: Mark, result: Result) -> 
     where = f"in formgrader: Manual Grading, {assignment}, Show All Names"
     says = f"A person marks it, {where}."
     if line.automatic == 0.0:
-        says = f"It was left blank or as it was handed out. If it earns more, give it {where}."
+        says = f"It was left empty or as it was handed out. If it earns more, give it {where}."
     elif line.automatic is not None:
         says = (
             "This why was not one of those that are drawn for a person to mark, so it has full "

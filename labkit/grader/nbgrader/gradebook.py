@@ -174,7 +174,7 @@ def timestamp(course: Course, result: Result) -> tuple[datetime | None, str]:
 def automatic_scores(notebook: Any, result: Result) -> dict[str, float | None]:
     """The automatic score of each cell of the gradebook; None for what a person must mark.
 
-    An unchanged answer automatically earns 0.
+    An answer that is unchanged or empty earns 0.
 
     Args:
         notebook: The submission in the release's form.
@@ -189,7 +189,7 @@ def automatic_scores(notebook: Any, result: Result) -> dict[str, float | None]:
         if nbgrader_info(cell).get("task"):
             found[name] = 0.0 if result.rejected else None
         elif by_hand(cell):
-            found[name] = determine_grade(cell)[0]
+            found[name] = determine_grade(cell)[0] if cell.source.strip() else 0.0
         elif nbgrader_info(cell).get("grade"):
             found[name] = earned.get(question_of(name), 0.0)
     return found
