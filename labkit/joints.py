@@ -72,26 +72,26 @@ def joint_torques(
     end, unit = np.full(len(u), inf), np.eye(len(u))
     goal = np.minimum(np.maximum(target, slowest), fastest)
     stairs = np.array([end, slowest, bound, goal, -bound, fastest, -end]).T.tolist()
-    stands = list(guess)
+    states = list(guess)
     for count in range(_ROUNDS):
-        given = np.array([stair[k] for stair, k in zip(stairs, stands, strict=True)])
-        held = np.array([k % 2 == 1 for k in stands])  # speed prescribed, else torque
+        given = np.array([stair[k] for stair, k in zip(stairs, states, strict=True)])
+        held = np.array([k % 2 == 1 for k in states])  # speed prescribed, else torque
         rows = np.where(held[:, None], G, unit)
         y = _dgesv()(rows, np.where(held, given - u, given))[2]
         v, wrong = u + G @ y, False
-        for i, (k, torque, speed) in enumerate(zip(stands, y.tolist(), v.tolist(), strict=True)):
+        for i, (k, torque, speed) in enumerate(zip(states, y.tolist(), v.tolist(), strict=True)):
             before, after = stairs[i][k - 1], stairs[i][k + 1]
             if k % 2:
                 move = (torque < after) - (torque > before)
             else:
                 move = (speed > after + _ROUNDING) - (speed < before - _ROUNDING)
             if move:
-                stands[i] += move
+                states[i] += move
                 wrong = True
                 if count >= _TOGETHER:
                     break
         if not wrong:
-            return y, stands
+            return y, states
     raise LabkitError(
         f"the joints' torques were not found in {_ROUNDS} rounds: the inertias in G differ by "
         f"a factor of {np.linalg.cond(G):.1g}; check those of the robot, or take a smaller dt"
@@ -172,17 +172,17 @@ class Joints:
 
     def reset(self) -> None:
         """Forget the states of the joints."""
-        self._stand([STICK] * len(self._lower))
+        self._set_states([STICK] * len(self._lower))
 
-    def _stand(self, stands: list[int]) -> None:
+    def _set_states(self, states: list[int]) -> None:
         """Store the states: which are held, and in which direction the others are pushed."""
-        self._stands = stands
-        self._sticking = stands.count(STICK) == len(stands)
-        signs = [float(STICK - k) for k in stands]
+        self._states = states
+        self._sticking = states.count(STICK) == len(states)
+        signs = [float(STICK - k) for k in states]
         self._signs, self._sign = signs, np.array(signs)
-        self._held = np.array([k == STICK for k in stands])
+        self._held = np.array([k == STICK for k in states])
         self._columns = self._held[None, :]
-        self._beside = LOW not in stands and HIGH not in stands
+        self._beside = LOW not in states and HIGH not in states
 
     def solve(self, q: Array, dq: Array, drive: Drive, touches: list[Touch]) -> Given:
         """Compute the torques and accelerations of the joints in this step.
@@ -230,8 +230,8 @@ class Joints:
                 ends = np.full(len(y), inf)
                 G, u = dt * inverse, dq + dt * free
                 problem = G, u, drive.speed, bound, -ends, ends
-                y, stands = joint_torques(*problem, self._stands)
-                self._stand(stands)
+                y, states = joint_torques(*problem, self._states)
+                self._set_states(states)
                 a = free + inverse @ y
                 break
         return Given(y, tau + y, a)
@@ -248,14 +248,14 @@ class Joints:
             G, push = self._dt * model.inverse_mass(q), tau
         u = dq + G @ (push - h)
         stops = (self._lower - q) / self._dt, (self._upper - q) / self._dt
-        y, stands = joint_torques(G, u, drive.speed, drive.bound, *stops, self._stands)
+        y, states = joint_torques(G, u, drive.speed, drive.bound, *stops, self._states)
         if touches:
             a = G @ (push - h + y)
             v, push = J[:3] @ (dq + a), push - D @ a
             kept = [touch for touch in touches if touch.pushes(v)]
             if len(kept) < len(touches):  # the tip has left the other things
                 return self._solve(q, dq, drive, kept, tau)
-        if stands != self._stands:
-            self._stand(stands)
+        if states != self._states:
+            self._set_states(states)
         held = np.minimum(np.maximum(y, -drive.bound), drive.bound)
         return Given(held, push + y, (G @ (push - h + y) if not touches else a) / self._dt)

@@ -43,7 +43,7 @@ from labkit.grader.students.class_list import read_list
 from labkit.grader.students.collect import collect
 from labkit.grader.students.enrol import enrol, import_list
 from labkit.grader.students.exchange import SECRET
-from labkit.grader.students.identity import FILE, all_lms_users, lms_users, remember
+from labkit.grader.students.identity import FILE, all_lms_users, lms_users, record_users
 from labkit.grader.students.move import move_to_owners
 from labkit.grader.students.platforms import LmsUser
 from labkit.grader.students.roster import FILE as ROSTER
@@ -304,7 +304,7 @@ def test_an_older_labkits_folders_stay_their_owners(bare, tmp_path):
         }
     }
     for assignment, people in known.items():
-        remember(bare, assignment, people)
+        record_users(bare, assignment, people)
     files = [(("Ada Lovelace", k), "x.ipynb", str(k)) for k in (42, 77)]
     assert take(bare, from_moodle(tmp_path / "1.zip", files))
     assert counting(bare) == {"Ada-Lovelace": "77", "Ada-Lovelace-42": "42"}

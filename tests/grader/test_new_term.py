@@ -19,7 +19,7 @@ from labkit.grader.nbgrader.gradebook import open_gradebook
 from labkit.grader.nbgrader_api import nbgrader_api
 from labkit.grader.pseudonyms import pseudonyms
 from labkit.grader.students.class_list import Student
-from labkit.grader.students.identity import all_lms_users, remember
+from labkit.grader.students.identity import all_lms_users, record_users
 from labkit.grader.students.platforms import LmsUser
 from labkit.grader.students.roster import Roster, read_roster, save_roster, tell_gradebook
 from labkit.grader.terms import term
@@ -126,7 +126,7 @@ def test_one_student_is_forgotten_everywhere(course, capsys):
             file.write_text("{}")
     save_roster(course, Roster((Student("ada", "Ada"), Student("ada-2", "Ada"))))
     tell_gradebook(course, read_roster(course))
-    remember(course, "01_paths", {"ada": LmsUser("moodle", "7", "Ada")})
+    record_users(course, "01_paths", {"ada": LmsUser("moodle", "7", "Ada")})
     archived = term.archive(course)
     shutil.copytree(archived, course.root, dirs_exist_ok=True)
     for reader, author in (("bob", "ada"), ("eve", "ada-2")):

@@ -21,7 +21,7 @@ from labkit.grader.grading.results import OTHER_NOTEBOOK, Results
 from labkit.grader.marks.export import LAYOUTS
 from labkit.grader.nbgrader import autograde
 from labkit.grader.nbgrader.gradebook import open_gradebook, recorded
-from labkit.grader.students.identity import remember
+from labkit.grader.students.identity import record_users
 from labkit.grader.students.platforms import LmsUser
 
 GRADE = f"type: labkit grade {NAME} --student ada"
@@ -114,7 +114,7 @@ def tables(course, capsys):
 @pytest.mark.parametrize("fault", FAULTS)
 def test_a_mark_that_is_missing_is_an_empty_cell(marked, capsys, fault):
     """Where result and gradebook disagree, no table says 0, and stderr says what to type."""
-    remember(marked, NAME, {"ada": LmsUser("moodle", "4711", "ada")})  # for Moodle's worksheet
+    record_users(marked, NAME, {"ada": LmsUser("moodle", "4711", "ada")})  # for Moodle's worksheet
     people = marked.root / "class.csv"
     people.write_text("Username,Name,Email address\nada,ada,ada@example.org\n")
     assert main(["students", "import", str(people), "--course", str(marked.root)]) == 0

@@ -16,7 +16,7 @@ from labkit.grader.clean import LONGEST, safe_name
 from labkit.grader.nbgrader.gradebook import open_gradebook
 from labkit.grader.students.class_list import Entry, Student, read_list
 from labkit.grader.students.enrol import enrol, import_list
-from labkit.grader.students.identity import remember
+from labkit.grader.students.identity import record_users
 from labkit.grader.students.platforms import LmsUser
 from labkit.grader.students.roster import FILE, Roster, read_roster, same_name, save_roster
 
@@ -318,7 +318,7 @@ def test_the_command_imports_a_list_and_formgrader_shows_names(tmp_path, capsys)
         "2 students have the same name: Li Wei (Li-Wei-li), Wei Li (Wei-Li-wei); Moodle" in said.out
     )
     for name, system in ((NAME, "moodle"), ("05_impedance", "canvas")):
-        remember(course, name, {n: LmsUser(system, n, n) for n in ("Li-Wei-li", "Wei-Li-wei")})
+        record_users(course, name, {n: LmsUser(system, n, n) for n in ("Li-Wei-li", "Wei-Li-wei")})
     assert main(["students", "import", str(file), *where]) == 0
     assert "with --assignment; this is done for 01_paths\n" in capsys.readouterr().out
     with open_gradebook(course) as book:

@@ -13,7 +13,7 @@ from labkit.course.notebook import grade_id
 from labkit.grader.grading.results import Results
 from labkit.grader.nbgrader.autograded_notebook import release_source
 from labkit.grader.nbgrader.gradebook import open_gradebook, record
-from labkit.grader.nbgrader.unreleased import enter
+from labkit.grader.nbgrader.unreleased import enter_tasks
 from labkit.grader.whys import DRAWN, drawn
 
 WHYS = [f"why_{k}" for k in range(8)]
@@ -60,7 +60,7 @@ def test_a_why_that_is_marked_is_one_of_the_two(course):
     Results(course, NAME).keep(result)
     with open_gradebook(course) as book:
         for name, why in [("00_warmup", "why_base_joint"), ("02_model", "why_farthest_off")]:
-            (grade,) = enter(course, book, name, "dan", {why: ""}, 2.0)
+            (grade,) = enter_tasks(course, book, name, "dan", {why: ""}, 2.0)
             grade.manual_score, grade.needs_manual_grade = 1.5, False
         book.db.commit()
     record(course, NAME, [result])

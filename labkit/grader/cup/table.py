@@ -8,7 +8,7 @@ from ...course.authoring.layout import CUP, Course
 from ...course.baxter_cup import benchmarks
 from ...course.own_arm import Arms
 from ..nbgrader.gradebook import open_gradebook
-from ..nbgrader.unreleased import enter
+from ..nbgrader.unreleased import enter_tasks
 from ..pages import render_page
 from ..rules import read_rules
 from .entries import Entry
@@ -52,7 +52,9 @@ def give_bonus(course: Course, found: Sequence[Entry]) -> None:
             text = "\n".join(as_text([entry]))
             team = {who for who, handle in handles.items() if handle == entry.handle}
             for student in sorted(team | {entry.student}):
-                for grade in enter(course, book, CUP, student, {BONUS: f"```text\n{text}\n```"}, 0):
+                for grade in enter_tasks(
+                    course, book, CUP, student, {BONUS: f"```text\n{text}\n```"}, 0
+                ):
                     grade.auto_score, grade.extra_credit = 0.0, float(entry.beaten)
                     grade.needs_manual_grade = False
         book.db.commit()

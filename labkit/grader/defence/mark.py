@@ -10,7 +10,7 @@ from ...course.authoring.layout import DEFENCE, Course
 from ...errors import LabkitError
 from ..nbgrader.autograded_notebook import as_typed
 from ..nbgrader.gradebook import open_gradebook
-from ..nbgrader.unreleased import enter
+from ..nbgrader.unreleased import enter_tasks
 from .draw import ASKED, FULL, Asked
 
 LINES = tuple(f"question_{k + 1}" for k in range(ASKED))
@@ -25,7 +25,7 @@ def await_mark(course: Course, student: str, asked: Sequence[Asked]) -> None:
         LINES[k]: _text(k, one) for k, one in enumerate(asked)
     }
     with open_gradebook(course) as book:
-        for grade in enter(course, book, DEFENCE, student, texts, FULL):
+        for grade in enter_tasks(course, book, DEFENCE, student, texts, FULL):
             grade.needs_manual_grade = grade.manual_score is None
         book.db.commit()
 

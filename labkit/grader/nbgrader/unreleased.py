@@ -12,7 +12,7 @@ from ..atomic import write
 from .autograded_notebook import as_text
 
 
-def enter(
+def enter_tasks(
     course: Course, book: Any, assignment: str, student: str, texts: Mapping[str, str], full: float
 ) -> list[Any]:
     """Make a submission of a student, with a manual task for each text that formgrader shows.

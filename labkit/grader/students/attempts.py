@@ -179,8 +179,8 @@ def store(
         data: The notebook.
         hand_in: When and where it was handed in or shown.
         secret: The secret by which the exchange identifies the hand-in.
-        there: The student's attempts as `adopt` returns them, to which this one is added; by
-            default they are read from the disk.
+        there: The student's attempts as `store_submitted` returns them, to which this one is
+            added; by default they are read from the disk.
 
     Returns:
         Whether the attempt is new; False if another one has the same content.
@@ -211,7 +211,7 @@ def store(
     return new
 
 
-def adopt(course: Course, student: str, assignment: str, now: str) -> dict[str, Attempt]:
+def store_submitted(course: Course, student: str, assignment: str, now: str) -> dict[str, Attempt]:
     """Store what a person, nbgrader or an older labkit put into ``submitted/``.
 
     Args:

@@ -19,9 +19,17 @@ from ...errors import LabkitError
 from ..clean import few
 from ..each import Failure, for_student
 from ..submission import digest
-from .attempts import HandIn, adopt, counted_attempt, install, named_for, perhaps_late, store
+from .attempts import (
+    HandIn,
+    counted_attempt,
+    install,
+    named_for,
+    perhaps_late,
+    store,
+    store_submitted,
+)
 from .exchange import in_exchange
-from .identity import all_lms_users, assign_folders, identity_lock, remember
+from .identity import all_lms_users, assign_folders, identity_lock, record_users
 from .move import move_to_owners
 from .owner import find_owner
 from .platforms import File, Named, in_folder, in_zip, open_zip, reader
@@ -153,7 +161,7 @@ def _collect(
     for place in found.values():
         if place.doubt:
             yield Taken(place.folder, "", place.doubt, fine=False)
-    remember(course, assignment, by_folder)
+    record_users(course, assignment, by_folder)
     by_student: dict[str, list[_HandedIn]] = {}
     for file, named in handed_in:
         by_student.setdefault(found[named.who.key].folder, []).append((file, named))
@@ -190,7 +198,7 @@ def _store_each(
     course: Course, assignment: str, student: str, notebooks: Sequence[_HandedIn]
 ) -> Iterator[Taken]:
     now = str(datetime.now(UTC))
-    there = adopt(course, student, assignment, now)
+    there = store_submitted(course, student, assignment, now)
     before = counted_attempt(course, student, assignment)
     shown = max((file.when for file, _ in notebooks), default=datetime.now(UTC))
     done: list[tuple[HandIn, str, bool]] = []

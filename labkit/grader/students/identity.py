@@ -68,7 +68,7 @@ def all_lms_users(course: Course) -> dict[str, dict[str, LmsUser]]:
     return {x: {folder: _cleaned(one) for folder, one in y.items()} for x, y in data.items()}
 
 
-def remember(course: Course, assignment: str, found: Mapping[str, LmsUser]) -> None:
+def record_users(course: Course, assignment: str, found: Mapping[str, LmsUser]) -> None:
     """Record users by the name of their folder; nobody is left in two folders.
 
     Raises:

@@ -13,7 +13,7 @@ from ..each import Failure
 from ..grading.results import Results
 from ..nbgrader.gradebook import open_gradebook
 from .attempts import FOLDER
-from .identity import all_lms_users, assign_folders, remember
+from .identity import all_lms_users, assign_folders, record_users
 from .roster import Roster, read_roster
 
 _WORK = (FOLDER, "submitted")
@@ -33,7 +33,7 @@ def move_to_owners(course: Course, roster: Roster) -> list[Failure]:
         moves = {old: found[one.key].folder for old, one in people.items()}
         left += move_work(course, assignment, moves)
         gone = [x for x in moves.items() if x[0] != x[1] and not _work(course, x[0], assignment)]
-        remember(course, assignment, {new: people[old] for old, new in gone})
+        record_users(course, assignment, {new: people[old] for old, new in gone})
     return left
 
 

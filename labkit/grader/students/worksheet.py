@@ -14,7 +14,7 @@ from ..rules import read_rules
 from ..timestamp import read_time
 from .attempts import Attempt, Counted, attempts, choose, install, store
 from .class_list import Entry, Student
-from .identity import lms_users, remember
+from .identity import lms_users, record_users
 from .move import move_work
 from .platforms import LmsUser
 
@@ -31,7 +31,7 @@ def keep_numbers(
     before = {one.key: folder for folder, one in lms_users(course, assignment).items()}
     moves = {before[x.key]: id for id, x in mine.items() if x.key in before}
     left = move_work(course, assignment, moves)
-    remember(course, assignment, mine)
+    record_users(course, assignment, mine)
     return left
 
 
