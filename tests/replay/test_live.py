@@ -441,6 +441,9 @@ def test_other_cells_are_told_while_the_arm_is_live(live):
     until(frames, lambda f: f["t"] > 0.02)
     with pytest.raises(Closed, match="live in a cell"):
         lk.run(session.arm, lk.Hold(READY, 0.1), springy)
+    for disturb, numbers in ((session.arm.push, np.zeros(3)), (session.arm.pull, np.zeros(7))):
+        with pytest.raises(Closed, match="live in a cell"):
+            disturb(numbers)
     session.close()
     lk.run(session.arm, lk.Hold(READY, 0.1), springy)
 
