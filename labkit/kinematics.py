@@ -170,7 +170,9 @@ class Kinematics:
         return float(np.prod(np.linalg.svd(self.tip_jacobian(q), compute_uv=False)))
 
     def nearness_to_singularity(self, q: Any) -> float:
-        """The smallest singular value of `tip_jacobian`: least tip speed per unit of joint speed.
+        """The smallest singular value of `tip_jacobian`.
+
+        In its slowest direction, the tip is no faster than this at joint speeds of length 1.
 
         Args:
             q: Joint angles, shape (n,) in [rad].

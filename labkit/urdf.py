@@ -19,8 +19,8 @@ _Element = ElementTree.Element
 ROUNDED = 0.98
 """Least accepted ratio of the two smaller moments of inertia, added up, to the largest one.
 
-It is at least 1 for any real body, but files round their numbers, by 0.2 % for an arm of Romeo; the
-largest moment is then replaced by the sum of the others."""
+The ratio of a real body is at least 1, but files round their numbers, by 0.2 % for an arm of Romeo;
+the largest moment is then replaced by the sum of the others."""
 
 
 def read_urdf(file: Any, tip: str, ready: Any, name: str | None) -> dict[str, Any]:
