@@ -103,13 +103,13 @@ def _limits(joint: _Element, file: str) -> dict[str, Any]:
     what, kind = f"joint {joint.get('name')} of {file}", joint.get("type")
     if kind not in ("revolute", "continuous"):
         raise LabkitError(
-            f"{what} is {kind}, and an arm here has joints that turn; take a tip before it, or "
-            'make it type="fixed"'
+            f"{what} is {kind}, but an arm here may only have joints that turn; take a tip before "
+            'it, or make it type="fixed"'
         )
     if joint.find("mimic") is not None:
         raise LabkitError(
-            f"{what} mimics another joint, and an arm here has a motor at each; take a tip before "
-            "it, or remove its <mimic>"
+            f"{what} mimics another joint, but an arm here has a motor at each joint; take a tip "
+            "before it, or remove its <mimic>"
         )
     limit = joint.find("limit")
     if limit is None:

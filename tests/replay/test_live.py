@@ -349,7 +349,7 @@ def slow(state, target):
         (stubborn, "did not return"),
         (runs_away, "lost the arm.*check the sign"),
         (wrong, "asked the target's sample for its position.*line: return lk.JointTorque"),
-        (slow, "law takes .* ms, and it is asked every 5 ms"),
+        (slow, "law takes .* ms, but is called every 5 ms"),
     ],
 )
 def test_a_bad_law_stops_with_its_sentence_and_the_arm_rests(live, law, words):
