@@ -122,7 +122,7 @@ class Watch:
 def sentence(error: BaseException, name: str) -> str:
     """The reason why the arm stopped, with the student's line that caused it."""
     if isinstance(error, _Ended):
-        what = f"{name} did not return; does every loop in it come to its end?"
+        what = f"{name} did not return; does every loop in it end?"
     elif isinstance(error, LabkitError):
         what = str(error).replace("error.log", "view.log")
     else:
