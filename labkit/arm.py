@@ -219,13 +219,17 @@ class Arm:
             moment: Shape (3,) in [N m].
 
         Raises:
-            Closed: The arm's world is closed.
+            Closed: The arm's world is closed, or the arm is live in another cell.
         """
         force, moment = as_array(force, (3,), "force"), as_array(moment, (3,), "moment")
         self.touch(Touch(np.concatenate([force, moment]), np.zeros((3, 3))))
 
     def touch(self, touch: Touch) -> None:
-        """Let something act on the tip during the next physics step."""
+        """Let something act on the tip during the next physics step.
+
+        Raises:
+            Closed: The arm's world is closed, or the arm is live in another cell.
+        """
         self.check_open()
         self._touches.append(touch)
 
@@ -236,7 +240,7 @@ class Arm:
             torque: Shape (n,) in [N m]; torques of several calls add up.
 
         Raises:
-            Closed: The arm's world is closed.
+            Closed: The arm's world is closed, or the arm is live in another cell.
         """
         torque = as_array(torque, self.robot.zeros.shape, "torque")
         self.check_open()

@@ -34,14 +34,14 @@ class ShapeError(LabkitError, ValueError):
 
 def _hint(expected: tuple[int, ...], actual: tuple[int, ...]) -> str:
     if expected == ():
-        return "; one number is asked for, without brackets around it"
+        return "; give one number, without brackets around it"
     if len(expected) != 1:
         return "; the transpose would fit" if actual == expected[::-1] else ""
     n = expected[0]
     if len(actual) == 2 and sorted(actual) == [1, n]:
         return "; a vector in labkit is 1-D, so use .ravel() or write it without the extra brackets"
     if actual == ():
-        return f"; a single number is not enough, give all {n}"
+        return f"; a single number is not enough: give all {n}"
     if len(actual) == 1:
         return f"; give {n} numbers, not {actual[0]}"
     return "; a matrix came where a vector belongs"
@@ -68,7 +68,7 @@ class JointLimitExceeded(OutOfRange):
         self.name, self.joint, self.value, self.lower, self.upper = name, joint, value, lower, upper
 
     def __str__(self) -> str:
-        hint = "; angles are in radians, is this in degrees?" if abs(self.value) > 6.5 else ""
+        hint = "; angles are in radians: is this one in degrees?" if abs(self.value) > 6.5 else ""
         return (
             f"{self.name}: joint {self.joint} at {self.value:.4g} rad is outside "
             f"[{self.lower:.4g}, {self.upper:.4g}] rad{hint}"

@@ -34,4 +34,4 @@ def check_stamp(data: Mapping[str, Any], what: str, remedy: str) -> None:
         if found != mine:
             newer = isinstance(found, int) and found > mine
             todo = "install the labkit that it came with" if newer else remedy
-            raise LabkitError(f"{what} has {name} {found!r}, this labkit reads {mine}; {todo}")
+            raise LabkitError(f"{what} has {name} {found!r}, but this labkit reads {mine}; {todo}")

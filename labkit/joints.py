@@ -51,8 +51,8 @@ def joint_torques(
 
     A joint slower than its target receives ``bound``, a faster one ``-bound``, and one at its
     target any torque between them.  No joint ends slower than ``slowest`` or faster than
-    ``fastest``, whatever torque that takes.  Torque is thus a falling staircase over speed, so
-    there is exactly one solution.
+    ``fastest``, whatever torque that takes.  As a function of speed, the torque is thus a falling
+    staircase, so there is exactly one solution.
 
     Args:
         G: Change of the speeds per torque, symmetric and positive definite, shape (n, n).

@@ -170,7 +170,9 @@ class Kinematics:
         return float(np.prod(np.linalg.svd(self.tip_jacobian(q), compute_uv=False)))
 
     def nearness_to_singularity(self, q: Any) -> float:
-        """The smallest singular value of `tip_jacobian`: least tip speed per unit of joint speed.
+        """The smallest singular value of `tip_jacobian`.
+
+        In its slowest direction, the tip moves at most at this speed, for joint speeds of length 1.
 
         Args:
             q: Joint angles, shape (n,) in [rad].
@@ -299,7 +301,7 @@ class Kinematics:
         if isinstance(start, Sample) and start.position.size != 3:
             raise TypeMismatch(
                 f"joint_trajectory takes poses or points of the tip, not {start.position.size} "
-                "numbers; what is a target of joint angles can be followed as it is"
+                "numbers; a target of joint angles can be followed as it is"
             )
         if isinstance(target, Hold):
             T_wt = start.pose if isinstance(start, PoseSample) else se3.pose(R_wt, start.position)
@@ -370,8 +372,8 @@ def _warn_of_speed(trajectory: Any, robot: Robot) -> None:
     if share[k, i] > 1.0 + 1e-9:
         warnings.warn(
             f"too fast: at t = {t[k]:.2f} s joint {robot.joint_names[i]} should turn at "
-            f"{share[k, i] * robot.speed[i]:.3g} rad/s, its limit is {robot.speed[i]:g}; the arm "
-            f"will lag behind unless the motion takes {share[k, i] * trajectory.duration:.3g} s",
+            f"{share[k, i] * robot.speed[i]:.3g} rad/s, but its limit is {robot.speed[i]:g}; the "
+            f"arm will lag unless the motion takes {share[k, i] * trajectory.duration:.3g} s",
             LabkitWarning,
             stacklevel=4,
         )

@@ -113,7 +113,7 @@ class Log:
             raise LabkitError(f"there is no file {path}; log.save(...) writes one")
         try:
             if not is_zipfile(path):
-                raise ValueError("it is not a .npz file, or not a whole one")
+                raise ValueError("it is not a .npz file, or is incomplete")
             with np.load(path) as file:
                 about = json.loads(str(file["about"]))
                 columns: dict[str, Any] = {x: file[x] for x in file.files if x != "about"}

@@ -153,7 +153,7 @@ class Robot:
             plant: Its payload is included.
 
         Returns:
-            URDF text without rotors, damping and friction, which `joints` handles.
+            URDF text; rotors, damping and friction are not in it.
         """
         parts = [f'<robot name="{escape(self.name)}">', '<link name="base"/>']
         parent = "base"
@@ -167,7 +167,7 @@ class Robot:
             if np.linalg.det(axes) < 0.0:
                 axes[:, 0] = -axes[:, 0]
             xx, yy, zz = moments.tolist()
-            zz = min(zz, (xx + yy) * (1.0 - 1e-12))  # MuJoCo refuses a plate rounded up
+            zz = min(zz, (xx + yy) * (1.0 - 1e-12))  # else MuJoCo may refuse a plate
             name, T = escape(body["joint"]), np.array(body["T_parent"])
             lower, upper, speed, effort = (body[k] for k in ("lower", "upper", "speed", "effort"))
             parts.append(

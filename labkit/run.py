@@ -233,13 +233,13 @@ def _reason(error: Exception, sample: AnySample, joints: int) -> str:
     what, makes = f"{type(error).__name__}: {error}", "model.joint_trajectory(target, q0) makes"
     if isinstance(error, AttributeError) and isinstance(error.obj, Sample | PoseSample):
         has = ", ".join(error.obj._fields)
-        what = f"it asked the target's sample for its {error.name}, and that has only {has}"
+        what = f"it asked the target's sample for its {error.name}, but that has only {has}"
         if isinstance(error.obj, PoseSample):
             what += f"; {makes} joint angles of poses"
     elif isinstance(error, ValueError) and isinstance(sample, Sample):
         n = sample.position.size
         if n != joints:
-            what += f"; the target gives {n} numbers, {makes} joint angles of points"
+            what += f"; the target gives {n} numbers; {makes} joint angles of points"
     return what
 
 

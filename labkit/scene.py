@@ -167,7 +167,7 @@ class Push:
         lock_vectors(self, 3, "force", "moment")
         as_number(self.start, "start")
         if not self.duration > 0.0:
-            raise OutOfRange(f"duration is {self.duration}, it must be greater than 0")
+            raise OutOfRange(f"duration is {self.duration}; it must be greater than 0")
 
     def act(self, world: World) -> None:
         """Push during the window."""

@@ -76,8 +76,8 @@ class TorqueSensors:
     .. math:: \tau_{ext} = M(q)\,\ddot q + C(q, \dot q)\,\dot q + g(q) - \tau_{joint}
 
     The sensors measure motor torque and friction together, so the estimate is free of friction.
-    Gravity, inertia and Coriolis terms are subtracted with the arm's model of itself, which
-    includes its rotors but not its payload.  The acceleration is that of the last physics step.
+    The terms of gravity, inertia and Coriolis forces come from the arm's model of itself, without
+    its payload and, behind springs, without its rotors.  The acceleration is that of the last step.
     """
 
     def __init__(self, own: Model, plant: Plant, dt: float) -> None:

@@ -113,7 +113,7 @@ def as_gains(x: Any, n: int | None, name: str) -> Array:
         i = int(np.flatnonzero(gains < 0.0)[0])
         raise OutOfRange(
             f"{name} is {gains[i]:g} at index {i}; a gain is at least 0, "
-            "for the error is target minus actual"
+            "because the error is target minus actual"
         )
     return gains
 
@@ -140,9 +140,9 @@ def as_number(
     """
     value = float(as_array(x, (), name))
     if above is not None and not value > above:
-        raise OutOfRange(f"{name} is {value:g}, it must be greater than {above:g}")
+        raise OutOfRange(f"{name} is {value:g}; it must be greater than {above:g}")
     if least is not None and not value >= least:
-        raise OutOfRange(f"{name} is {value:g}, it must be at least {least:g}")
+        raise OutOfRange(f"{name} is {value:g}; it must be at least {least:g}")
     return value
 
 

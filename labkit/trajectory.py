@@ -123,7 +123,7 @@ class Trajectory:
         except (TypeError, ValueError):
             raise TypeMismatch(
                 f"the path returned {shown(at_s)}, expected lk.Sample(position, velocity, "
-                "acceleration) of arrays, with the derivatives by s, or an lk.PoseSample"
+                "acceleration) of arrays, with derivatives with respect to s, or an lk.PoseSample"
             ) from None
 
 

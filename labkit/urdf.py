@@ -19,8 +19,8 @@ _Element = ElementTree.Element
 ROUNDED = 0.98
 """Least accepted ratio of the two smaller moments of inertia, added up, to the largest one.
 
-It is at least 1 for any real body, but files round their numbers, by 0.2 % for an arm of Romeo; the
-largest moment is then replaced by the sum of the others."""
+The ratio of a real body is at least 1, but files round their numbers, by 0.2 % for an arm of Romeo;
+the largest moment is then replaced by the sum of the others."""
 
 
 def read_urdf(file: Any, tip: str, ready: Any, name: str | None) -> dict[str, Any]:
@@ -103,13 +103,13 @@ def _limits(joint: _Element, file: str) -> dict[str, Any]:
     what, kind = f"joint {joint.get('name')} of {file}", joint.get("type")
     if kind not in ("revolute", "continuous"):
         raise LabkitError(
-            f"{what} is {kind}, and an arm here has joints that turn; take a tip before it, or "
-            'make it type="fixed"'
+            f"{what} is {kind}, but an arm here may only have joints that turn; take a tip before "
+            'it, or make it type="fixed"'
         )
     if joint.find("mimic") is not None:
         raise LabkitError(
-            f"{what} mimics another joint, and an arm here has a motor at each; take a tip before "
-            "it, or remove its <mimic>"
+            f"{what} mimics another joint, but an arm here has a motor at each joint; take a tip "
+            "before it, or remove its <mimic>"
         )
     limit = joint.find("limit")
     if limit is None:

@@ -167,7 +167,7 @@ def whole_steps(rate: float, dt: float, name: str) -> int:
     steps = 1.0 / (rate * dt)
     if steps < 0.999 or abs(steps - round(steps)) > 1e-5 * steps:  # as precise as the message
         raise OutOfRange(
-            f"{name} is {rate:g} Hz: its period is {steps:.6g} physics steps of {dt:g} s, it must "
-            f"be a whole number; try {1.0 / (max(1, round(steps)) * dt):g} Hz"
+            f"{name} is {rate:g} Hz: its period is {steps:.6g} physics steps of {dt:g} s, but must "
+            f"be a whole number of them; try {1.0 / (max(1, round(steps)) * dt):g} Hz"
         )
     return round(steps)

@@ -59,7 +59,7 @@ def test_a_joint_out_of_range_keeps_its_evidence_and_suspects_degrees():
     error = JointLimitExceeded("q", "left_s1", 45.0, -2.147, 1.047)
     assert str(error) == (
         "q: joint left_s1 at 45 rad is outside [-2.147, 1.047] rad; "
-        "angles are in radians, is this in degrees?"
+        "angles are in radians: is this one in degrees?"
     )
     assert (error.joint, error.value) == ("left_s1", 45.0)
     assert "degrees" not in str(JointLimitExceeded("q", "left_s1", 1.2, -2.147, 1.047))

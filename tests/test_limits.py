@@ -27,7 +27,7 @@ def test_a_motion_within_the_limits_says_nothing():
 def test_too_much_speed_is_a_warning_with_the_time_that_would_do():
     """It names the joint, both speeds and a duration; that duration is accepted."""
     with pytest.warns(
-        LabkitWarning, match=r"joint left_\w\d should turn at .* its limit is"
+        LabkitWarning, match=r"joint left_\w\d should turn at .* but its limit is"
     ) as got:
         MODEL.joint_trajectory(line(0.2), READY)
     enough = float(str(got[0].message).rsplit("takes ", 1)[1].split()[0])

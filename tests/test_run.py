@@ -358,14 +358,14 @@ def test_a_wrong_sign_is_stopped_with_the_time_the_joint_and_the_log(ideal):
 
 def test_a_controller_that_wants_joints_and_gets_poses_is_told_so(ideal):
     pose = lk.Hold(ideal.model.pose(ideal.robot.neutral), 1.0)
-    words = "follow failed .* its position, and that has only pose, twist, dtwist; model.joint_traj"
+    words = "follow failed .* its position, but that has only pose, twist, dtwist; model.joint_traj"
     with pytest.raises(ControllerError, match=words):
         lk.run(ideal, pose, follow)
 
 
 def test_a_controller_that_wants_joints_and_gets_points_is_told_so(ideal):
     point = lk.Hold(ideal.model.pose(ideal.robot.neutral)[:3, 3], 1.0)
-    words = r"springs failed .*\(3,\) \(7,\).*gives 3 numbers, model.joint_traj.* of points"
+    words = r"springs failed .*\(3,\) \(7,\).*gives 3 numbers; model.joint_traj.* of points"
     with pytest.raises(ControllerError, match=words):
         lk.run(ideal, point, lk.control.springs(100.0, 1.0))
 
@@ -373,11 +373,11 @@ def test_a_controller_that_wants_joints_and_gets_points_is_told_so(ideal):
 @pytest.mark.parametrize(
     ("given", "words"),
     [
-        ({"rate": 300.0}, "rate is 300 Hz.*whole number; try 333.333 Hz"),
+        ({"rate": 300.0}, "rate is 300 Hz.*whole number of them; try 333.333 Hz"),
         ({"rate": 999.0}, r"its period is 1\.001 physics steps"),
         ({"rate": 5000.0}, "rate is 5000 Hz.*try 1000 Hz"),
-        ({"rate": 0.0}, "rate is 0, it must be greater than 0"),
-        ({"rate": -200.0}, "rate is -200, it must be greater than 0"),
+        ({"rate": 0.0}, "rate is 0; it must be greater than 0"),
+        ({"rate": -200.0}, "rate is -200; it must be greater than 0"),
         ({"rate": np.nan}, "rate is nan"),
         ({"rate": "fast"}, "rate is 'fast'"),
         ({"duration": -1.0}, "duration is -1"),

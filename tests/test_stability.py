@@ -91,7 +91,7 @@ def test_the_arm_overshoots_as_its_loop_says(Kp):
 @pytest.mark.parametrize(
     ("make", "sentence"),
     [
-        (lambda: margins(INTEGRATOR, -1.0), "Kp is -1, it must be at least 0"),
+        (lambda: margins(INTEGRATOR, -1.0), "Kp is -1; it must be at least 0"),
         (lambda: margins(INTEGRATOR, 1.0, float("nan")), "Kd is nan"),
         (lambda: margins(INTEGRATOR, 0.0), "Kp and Kd are both 0"),
         (lambda: VelocityJoint(0.1, -0.1), "delay is -0.1"),

@@ -118,10 +118,10 @@ def test_a_way_too_short_to_cruise_is_a_triangle(d, v, a):
 @pytest.mark.parametrize(
     ("call", "error", "words"),
     [
-        (lambda: Cubic(-1.0), OutOfRange, "duration is -1, it must be at least 0"),
+        (lambda: Cubic(-1.0), OutOfRange, "duration is -1; it must be at least 0"),
         (lambda: Quintic(np.nan), NotFinite, "duration is nan"),
         (lambda: BangBang("2 s"), TypeMismatch, "duration is '2 s'"),
-        (lambda: Trapezoid(1.0, 0.0, 1.0), OutOfRange, "v_max is 0, it must be greater than 0"),
+        (lambda: Trapezoid(1.0, 0.0, 1.0), OutOfRange, "v_max is 0; it must be greater than 0"),
         (lambda: Trapezoid(1.0, 1.0, -2.0), OutOfRange, "a_max is -2"),
         (lambda: Trapezoid(-1.0, 1.0, 2.0), OutOfRange, "distance is -1"),
         (lambda: Trapezoid([1, 2], 1.0, 2.0), ShapeError, "distance"),

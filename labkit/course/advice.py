@@ -94,9 +94,10 @@ _REMEDIES = {
 
 def description(error: BaseException) -> str:
     """What the exception says, the line that raised it, and the remedy."""
-    text = str(error)
+    text = str(error).strip()
     if isinstance(error, ValueError) and "gufunc" in text:
-        text = "sizes that do not match"
+        number = "enough dimensions" in text
+        text = "a single number beside @" if number else "sizes that do not match"
     line, todo = line_of(error), remedy(error)
     where = f"in the line `{line}`" if line else ""
     sentence = ", ".join(part for part in (text, where) if part)

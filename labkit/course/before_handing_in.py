@@ -109,7 +109,7 @@ def examine(path: Path) -> HandIn:
         problems.append(f"the file is called {called}; rename it to {name}.ipynb")
     if (size := path.stat().st_size / 1e6) > LARGEST:
         problems.append(
-            f"the file has {size:.0f} MB, more than {LARGEST:g}; clear the outputs of large cells"
+            f"the file has {size:.0f} MB, but the limit is {LARGEST:g}; clear the largest outputs"
         )
     for question in questions:
         more, worth_knowing = _review(cells, question["name"], name)

@@ -230,7 +230,8 @@ class Telling(RightOrWrong):
             what = 'it should be (suspects, start, move), such as ("ad", [0, ...], [0.3, ...])'
             return Difference(Kind.REFUSED, found=what)
         if one == other:
-            return Difference(Kind.REFUSED, found="both suspects are the same; name two different")
+            says = f"both suspects are {one!r}; name two different ones"
+            return Difference(Kind.REFUSED, found=says)
         if not ratio >= CLEAR:
             says = f"the two runs differ by {ratio:.1f} times the noise; {CLEAR:g} are needed"
             return Difference(Kind.REFUSED, found=says)

@@ -110,7 +110,10 @@ def merge(mine: Path, new: Path, to: Path) -> int:
         "and run all its cells"
     )
     if any(KEPT_TEXT in cell["source"] for cell in notebook["cells"]):
-        print(f"text of yours that the new release may have changed follows this line: {KEPT_TEXT}")
+        print(
+            "where the new release changed a cell that you may have changed too, your text is "
+            f"below this line: {KEPT_TEXT}"
+        )
     return 0
 
 

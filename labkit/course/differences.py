@@ -20,8 +20,8 @@ _NAME = re.compile(r"(?!it |there )\w+(:| is| has| seems) ")
 _MEASURES = {
     "max_mm": ("the largest error of the tip", " mm"),
     "rms_mm": ("the RMS error of the tip", " mm"),
-    "max_deg": ("the largest tilt of the tip", " degrees"),
-    "rms_velocity_mm_s": ("the RMS error of the tip's speed", " mm/s"),
+    "max_deg": ("the largest error of the tip's orientation", " degrees"),
+    "rms_velocity_mm_s": ("the RMS error of the tip's velocity", " mm/s"),
     "worst_mm": ("the worst error", " mm"),
 }
 """The measures of a run in words, and their units."""
@@ -84,7 +84,9 @@ def words(d: Difference) -> tuple[str, str, str, str]:
             return f"at {d.at[0]:g} rad/s ", _polar(d.expected), _polar(d.found), ""
         case Kind.MEASURE:
             what, unit = _MEASURES.get(d.part, (d.part.replace("_", " "), ""))
-            text = f"{what} is {_much(d.found)}{unit}; the limit is {_much(d.expected)}{unit}"
+            lost = str(d.found) == "inf"
+            found = "infinite, because an arm is lost" if lost else f"{_much(d.found)}{unit}"
+            text = f"{what} is {found}; the limit is {_much(d.expected)}{unit}"
         case Kind.TYPE if not d.expected:
             text = f"{of}the answer should be plain numbers, not a {d.found}"
         case Kind.TYPE:

@@ -35,7 +35,7 @@ class Ratio:
         most = max(len(self.num), len(self.den))
         if most > MOST_COEFFICIENTS:
             raise OutOfRange(
-                f"a polynomial has {most} coefficients, the limit is {MOST_COEFFICIENTS}; "
+                f"a polynomial has {most} coefficients, but the limit is {MOST_COEFFICIENTS}; "
                 "cancel the common factors of the numerator and the denominator"
             )
 

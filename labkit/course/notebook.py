@@ -84,7 +84,7 @@ def _hashed(source: str) -> str:
 def is_edited(cell: Cell) -> bool:
     """Whether a student may have changed a walk or a brief.
 
-    A notebook from an older labkit does not have the hash, so each walk in it may be changed.
+    A notebook from an older labkit lacks the hash, so each walk in it may have been changed.
     """
     if released(cell):
         return released(cell) != _hashed(cell["source"])

@@ -28,7 +28,7 @@ def make_probes(
     """The probes of a question, with the right answers.
 
     Args:
-        question: The question; it has no probes unless all its public cases are calls.
+        question: The question, whose public calls are changed; one with a `Choice` has no probes.
         answer: The reference, for the names of its arguments.
         expected: A function of the same arguments that returns what to compare with.
 

@@ -23,10 +23,12 @@ def predict(name: str, said: Any = None, *, truth: Any = None) -> Any:
         truth: The result: a letter, letters, a number, or a curve as (places, heights).
 
     Returns:
-        The prediction to which you are committed, or None; with the truth, always None.
+        Your prediction, also if its form is wrong, which does not commit you; None if there is no
+        prediction, and always with the truth.
 
     Raises:
-        UnknownName: There is no such prediction.
+        UnknownName: There is no such question.
+        LabkitError: The question asks for a function, not for a prediction.
     """
     place = desk()
     form = place.question(name).judge

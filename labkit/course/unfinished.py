@@ -49,4 +49,4 @@ def _say_quotes(source: str, error: BaseException | None) -> None:
     """Explain, after an error from ``predict("name", c)``, that the letter needs quotes."""
     name = error.name if isinstance(error, NameError) else None
     if name and re.search(rf"""\bpredict\(\s*["']\w+["'],\s*{name}\s*\)""", source):
-        print(f"Write a prediction in letters with quotes: {name!r}")
+        print(f"Put the letters of a prediction in quotes: {name!r}")

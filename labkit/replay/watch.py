@@ -85,8 +85,8 @@ class Watch:
             took = 1e3 * median(self._times)
             self._times.clear()
             raise TooSlow(
-                f"{self._name} takes {took:.1f} ms, and it is asked every {1e3 * self._period:g} "
-                "ms; make it quicker, or give live(..., rate=...) a lower rate"
+                f"{self._name} takes {took:.1f} ms, but is called every {1e3 * self._period:g} "
+                "ms; make it faster, or give live(..., rate=...) a lower rate"
             )
 
     def over(self, thread: threading.Thread) -> None:
@@ -122,7 +122,7 @@ class Watch:
 def sentence(error: BaseException, name: str) -> str:
     """The reason why the arm stopped, with the student's line that caused it."""
     if isinstance(error, _Ended):
-        what = f"{name} did not return; does every loop in it come to its end?"
+        what = f"{name} did not return; does every loop in it end?"
     elif isinstance(error, LabkitError):
         what = str(error).replace("error.log", "view.log")
     else:

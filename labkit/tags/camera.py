@@ -104,7 +104,7 @@ class Camera:
         if arm.robot.T_hand_camera is None:
             raise LabkitError(
                 f"{arm.robot.name} has no camera in its hand; dataclasses.replace(robot, "
-                "T_hand_camera=...) gives it one, or use a camera that stands: looking_at(eye, at)"
+                "T_hand_camera=...) gives it one, or use a fixed camera: looking_at(eye, at)"
             )
         camera = cls(arm.world, np.eye(4), intrinsics, **options)
         camera._hand = arm

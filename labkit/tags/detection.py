@@ -8,7 +8,7 @@ the ratio of their errors says how reliable the choice is.
 The covariance is that of least squares, :math:`J^+ C J^{+T}`, with J the derivative of the corners'
 pixels with respect to a small motion of the tag, and C the corners' covariance from the edges of
 the same picture.  A tag whose edges are not seen well, or whose corners differ from those of a
-square by more than C explains, is not reported, because a half-hidden tag has a wrong pose.
+square by more than C explains, is not reported: the pose of a half-hidden tag would be wrong.
 """
 
 from __future__ import annotations

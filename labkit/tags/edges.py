@@ -8,7 +8,7 @@ short of it, so the rows are centred on the latest sides again until the sides s
 
 A line through n places, each off by :math:`\sigma`, is off by :math:`a + b x` at x along the side
 from their middle, where a has the variance :math:`\sigma^2/n` and b :math:`\sigma^2/\sum x^2`.
-The error of the corner of two sides with unit normals N is :math:`N^{-1}` times theirs there.
+The error of the corner of two sides with unit normals N is :math:`N^{-1}` times those of the sides.
 Neighbouring places share pixels, so sigma comes from the means of groups of them (batch means; Law,
 Simulation Modeling and Analysis, section 9.5.3).  The errors of the levels of black and white
 add to a, because all places of a side share them.

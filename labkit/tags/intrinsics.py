@@ -94,6 +94,7 @@ class Intrinsics:
             Pixels (u, v), shape (n, 2); they may lie outside the picture.
 
         Raises:
+            ShapeError: A point does not have three coordinates.
             OutOfRange: A point is not in front of the camera.
         """
         p = as_numbers(points, "points")

@@ -554,13 +554,13 @@ CHOOSE_GAINS = Problem(
     f"where you could not try them, and so is {hidden.RESERVE:g} times your Kp, your margin: at most "
     f"{hidden.UNSEEN_LIMIT:g} mm on the worst seed there. On the line at most {hidden.LINE_LIMIT:g} mm "
     f"are allowed, with your Kp and with {hidden.FAR:g} times it. Your function is called for two arms, "
-    "with 20 runs each time: the second arm is about a quarter as quick as the first, so other gains are "
+    "with 20 runs each time: the second arm is about a quarter as fast as the first, so other gains are "
     "right for it.",
     answer=answers.choose_gains,
     trials=(
         Trial(
             f"on the line, on its worst seed: at most {hidden.LINE_LIMIT:g} mm, and with "
-            f"{hidden.FAR:g} times the chosen Kp; the same on an arm a quarter as quick",
+            f"{hidden.FAR:g} times the chosen Kp; the same on an arm a quarter as fast",
             tuple(hidden.on_the_line()),
             weight=0.0,
         ),

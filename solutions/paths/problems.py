@@ -179,7 +179,7 @@ TRAPEZOID = Problem(
     name="trapezoid",
     points=4,
     outcomes=("motion",),
-    asks="Give `(s, ds, dds)` at time `t` for a path of `distance` metres, as quick as `v_max` in m/s "
+    asks="Give `(s, ds, dds)` at time `t` for a path of `distance` metres, as fast as `v_max` in m/s "
     "and `a_max` in m/s² allow: speed up, cruise, brake.",
     answer=answers.trapezoid,
     judge=SCALING,

@@ -1,7 +1,7 @@
 """Make a film of a log, as a camera beside the table would have seen it (needs imageio-ffmpeg).
 
-PyBullet's software renderer draws the robot from its meshes, frame by frame.  A small ball with a
-trace shows the target of the tip.  A poster is the picture in the middle of the run.
+A `labkit.Camera` draws the robot from its meshes, frame by frame.  A dot with a trace shows the
+target of the tip.  A poster is the picture in the middle of the run.
 """
 
 from __future__ import annotations

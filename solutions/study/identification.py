@@ -95,7 +95,7 @@ def fit(log: Log, model: Model, smooth: bool = True) -> Friction:
         log: A run in torque mode of an arm that carries its own weight.
         model: The model of the arm; it must have the arm's rotors.
         smooth: Whether to smooth the commands before one is taken for each report.  Between two
-            reports the commands follow the target, and the last one counts this as friction.
+            reports the commands change with the target, which would count as friction.
     """
     t, at = np.unique(log.measured.t.round(6), return_index=True)
     step = float(np.median(np.diff(t)))

@@ -2,7 +2,7 @@ r"""Passivity of a sampled spring and damper, and the limit at which contact bec
 
 A mass with physical damping b has a spring K and a damper B that a computer makes from samples at
 intervals T, with the velocity from a backward difference: :math:`H(z) = K + B (z - 1)/(T z)`.
-It is passive, in contact with any passive object, if and only if, for all
+It is passive, and so stable in contact with any passive object, if and only if, for all
 :math:`0 \le \theta \le \pi` (Colgate & Schenkel 1997),
 
 .. math:: b > \frac{T}{2}\,\frac{1}{1 - \cos\theta}\,

@@ -58,7 +58,7 @@ def score(
         seeds: The seeds of the start, the noise and the late ticks.
 
     Returns:
-        Rows for `campaign.table`, with "case", "seed", "rms_mm", "max_mm", "rms_deg", "settling",
+        Rows for `grid.table`, with "case", "seed", "rms_mm", "max_mm", "rms_deg", "settling",
         and a sentence under "failed" if the run was stopped.
     """
     rows: list[Row] = []

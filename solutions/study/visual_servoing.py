@@ -1,7 +1,7 @@
 """The report's Algorithm 1, unchanged: look, plan a line to the tag, follow it, look again.
 
 Each look-up blocks the loop, and each new line starts from rest while the arm is moving; both make
-the arm jerk.  The algorithm is here for comparison with `tag_following`, not as a model.
+the arm jerk.  The algorithm is here for comparison with `TagFollower`, not as a model.
 """
 
 from __future__ import annotations

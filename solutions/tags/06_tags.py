@@ -241,19 +241,19 @@ report = algorithm_1(times, takes=6.0)
 
 
 def show_reference(samples, title):
-    """Place and speed of a reference over time, beside the tag."""
+    """Position and velocity of a reference over time, beside the tag."""
     figure, (above, below) = plt.subplots(2, 1, figsize=(8, 4), sharex=True, layout="constrained")
     above.plot(times, [tag_place(t) for t in times], "0.6", label="tag")
     above.plot(times, [x.position[0] for x in samples], "C0--", label="reference")
-    above.set_ylabel("place [m]")
+    above.set_ylabel("position [m]")
     above.legend(frameon=False)
     below.plot(times, [x.velocity[0] for x in samples], "C3")
-    below.set_ylabel("speed [m/s]")
+    below.set_ylabel("velocity [m/s]")
     below.set_xlabel("time [s]")
     above.set_title(title, loc="left", fontsize="medium")
     fastest = max(abs(x.velocity[0]) for x in samples)
     lk.plotting.show(
-        f"{title}: place and speed over time. The reference is at most {fastest:.2f} m/s quick."
+        f"{title}: position and velocity over time. The largest speed is {fastest:.2f} m/s."
     )
 
 
@@ -463,7 +463,7 @@ lk.plotting.show(
 # well the arm follows once the reference is smooth.
 
 # %%
-lk.replay.show(lk.replay.motion_of(log, "After the tag", label="the hand"))
+lk.replay.show(lk.replay.motion_of(log, "The hand and the tag", label="the hand"))
 
 # %% [markdown] why="why_round_and_round"
 # When did you see the prediction help and when not, and why? Say what the predictor believes about the tag,

@@ -145,7 +145,7 @@ class TagFollower:
         horizon: The time until a blend meets the tag, in [s]; longer if `acceleration` requires it.
         coast: How long the last motion is predicted, in [s].
         acceleration: Largest acceleration of the reference, in [m/s^2].
-        noise: The noise of the tag's acceleration, for `carry_forward`, in [m^2/s^5].
+        noise: The power of the noise of the tag's jerk, for `carry_forward`, in [m^2/s^5].
         spread: The initial standard deviations of speed [m/s] and acceleration [m/s^2].
     """
 

@@ -141,7 +141,7 @@ class ComputedLaw:
         drift: Factor of the Coriolis torques, taken as an acceleration.
         switch: Whether the gravity switch is inverted.
         swapped: Whether kp and kd are exchanged.
-        twice: Whether the weight is added twice.
+        twice: Whether the weight is added once more.
     """
 
     e: float = 1.0
@@ -274,7 +274,7 @@ def damping_is_the_ratio(frequency: Any, damping_ratio: Any) -> tuple[Any, Any]:
 
 
 def square_of_the_frequency_alone(frequency: Any, damping_ratio: Any) -> tuple[Any, Any]:
-    """2 pi f^2, without the brackets around the squared term."""
+    """2 pi f^2, without the brackets around 2 pi f."""
     _, kd = right.gains_for(frequency, damping_ratio)
     return 2.0 * np.pi * frequency**2, kd
 

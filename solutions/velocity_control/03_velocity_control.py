@@ -425,7 +425,7 @@ swinger = lk.Arm("left", lk.IDEAL, q0=q0)
 log = lk.run(swinger, lk.Hold(T_wt, 4.0), swings_the_elbow)
 tip = 1e3 * np.linalg.norm(lk.metrics.tip_error(log)[:, :3], axis=1)
 print(f"The upper arm turned by {np.ptp(log.q[:, 2]):.2f} rad, the tip moved by {tip.max():.2f} mm.")
-lk.replay.show(lk.replay.motion_of(log, "Only the elbow is asked to move", reference=False))
+lk.replay.show(lk.replay.motion_of(log, "Only the elbow should move", reference=False))
 
 # %% [markdown]
 # ## An arm of your own

@@ -122,9 +122,9 @@ def test_measures_come_with_their_units():
     words = says(
         AtMost()({"rms_velocity_mm_s": 81.23, "max_deg": 3.0}, {"rms_velocity_mm_s": 75.0})
     )
-    assert words == "the RMS error of the tip's speed is 81.2 mm/s; the limit is 75 mm/s"
+    assert words == "the RMS error of the tip's velocity is 81.2 mm/s; the limit is 75 mm/s"
     assert says(AtMost()({"max_deg": 3.0}, {"max_deg": 2.0})) == (
-        "the largest tilt of the tip is 3 degrees; the limit is 2 degrees"
+        "the largest error of the tip's orientation is 3 degrees; the limit is 2 degrees"
     )
     words = says(AtMost()({"saturated": 0.2}, {"saturated": 0.1}))
     assert words == "saturated is 0.2; the limit is 0.1"

@@ -180,6 +180,8 @@ def test_an_experiment_must_tell_two_suspects_apart():
     assert Telling(0)(("fh", still, still), None) is not None
     assert Telling(0)(("bc", still, still), "b") is None
     assert sentence(Telling(0)(("bc", still, still), "c")) == "It should be c, not b."
+    same = sentence(Telling(0)(("bb", still, still), "b"))
+    assert same == "Both suspects are 'b'; name two different ones."
 
 
 def test_a_number_of_ones_own_arm_is_not_called_right_where_the_arm_is_not_known():

@@ -1,12 +1,15 @@
 """Predictions: what counts as one, what is shown when, and what a grader makes of it."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
-from labkit.course import Choose, Curve, Number, Outcome, Prediction, Rank, mark, predict
+from labkit.course import Choose, Close, Curve, Number, Outcome, Prediction, Rank, mark, predict
 from labkit.course import student as desk
 from labkit.course.reply import LocalFunction
 from labkit.course.serialize import question_data, read_question
+from labkit.errors import LabkitError
 
 TWO = {"a": "up", "b": "down"}
 FORMS = [
@@ -39,6 +42,13 @@ def place(monkeypatch):
     made = desk.Desk({"x": question})
     monkeypatch.setattr("labkit.course.reveal.desk", lambda: made)
     return made
+
+
+def test_a_task_cannot_be_predicted(place):
+    """The error names the call that checks it."""
+    place.questions["f"] = replace(place.question("x"), name="f", judge=Close())
+    with pytest.raises(LabkitError, match=r"f is a task, .*; write check\('f', f\)"):
+        predict("f", 1.0)
 
 
 def test_the_truth_waits_for_a_prediction(place, capsys):

@@ -233,7 +233,7 @@ def test_public_cases_by_heart_pay_nothing():
     """A table of the public calls with their answers earns what no hidden case takes away."""
     bare = with_trials("inverse_transform", lambda k, t: replace(t, hidden=_none) if k < 2 else t)
     _, by_heart = refused(bare)
-    assert "memorises its public cases earns 1 of 2 points; give the tests that pay" in by_heart
+    assert "memorises its public cases earns 1 of 2 points; add hidden cases" in by_heart
 
 
 def test_a_stand_in_pays_nothing(tmp_path):

@@ -64,7 +64,7 @@ def test_answers_from_outside_count(card):
     assert row.variants == 1 + len(problem.variants) + 2, "though both are called <lambda>"
     assert row.accepted == row.variants - 1
     assert any("a right answer earned only 0" in words for words in row.failures)
-    assert any("sigma from the tolerance, needs 3" in words for words in row.failures)
+    assert any("sigma from the tolerance; at least 3 are needed" in words for words in row.failures)
     assert row.margin_sigma < 0.0, "what claims to be right lies beyond the tolerance"
 
 
@@ -75,7 +75,7 @@ def test_a_mistake_that_only_hidden_cases_reject_fails():
     (row,) = make(COURSE, ["00_warmup/joint_error"], 5, learnt, draws=2).rows
     assert row.rejected == row.mistakes
     (failure,) = row.failures
-    assert failure.endswith("recite: rejected by hidden cases alone; add a public one that does")
+    assert failure.endswith("recite: only hidden cases reject it; add a public case that does")
 
 
 def test_an_answer_nearer_than_three_sigma_fails(tmp_path, monkeypatch, capsys):
@@ -89,7 +89,7 @@ def test_an_answer_nearer_than_three_sigma_fails(tmp_path, monkeypatch, capsys):
     page = capsys.readouterr().out
     least = "2.97 (00_warmup/joint_error), 3.50 (00_warmup/transform_point)"
     assert f"least margins, in sigma: {least}" in page
-    assert "the answer: seven errors: 2.97 sigma from the tolerance, needs 3" in page
+    assert "the answer: seven errors: 2.97 sigma from the tolerance; at least 3 are needed" in page
 
 
 def test_an_answer_from_outside_spoils_nothing_for_the_others():

@@ -98,7 +98,7 @@ def test_results_of_another_version_are_refused(marked, numbers):
     results.path("ada").write_text(json.dumps(old | stamp() | numbers if numbers else old))
     assert results.get("ada") is None
     with pytest.raises(
-        LabkitError, match=r"^ada\.json has (format|physics) \d+, this labkit reads"
+        LabkitError, match=r"^ada\.json has (format|physics) \d+, but this labkit reads"
     ):
         results.read("ada")
     (failed,) = [x for x in current_results(marked, NAME) if isinstance(x, Failure)]

@@ -349,7 +349,7 @@ def slow(state, target):
         (stubborn, "did not return"),
         (runs_away, "lost the arm.*check the sign"),
         (wrong, "asked the target's sample for its position.*line: return lk.JointTorque"),
-        (slow, "law takes .* ms, and it is asked every 5 ms"),
+        (slow, "law takes .* ms, but is called every 5 ms"),
     ],
 )
 def test_a_bad_law_stops_with_its_sentence_and_the_arm_rests(live, law, words):
@@ -441,6 +441,9 @@ def test_other_cells_are_told_while_the_arm_is_live(live):
     until(frames, lambda f: f["t"] > 0.02)
     with pytest.raises(Closed, match="live in a cell"):
         lk.run(session.arm, lk.Hold(READY, 0.1), springy)
+    for disturb, numbers in ((session.arm.push, np.zeros(3)), (session.arm.pull, np.zeros(7))):
+        with pytest.raises(Closed, match="live in a cell"):
+            disturb(numbers)
     session.close()
     lk.run(session.arm, lk.Hold(READY, 0.1), springy)
 

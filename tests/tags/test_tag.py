@@ -43,7 +43,7 @@ def test_corners_go_clockwise_for_who_looks_at_the_tag():
 @pytest.mark.parametrize(
     ("make", "error", "says"),
     [
-        (lambda: lk.Tag(size=0.0), OutOfRange, "size is 0, it must be greater than 0"),
+        (lambda: lk.Tag(size=0.0), OutOfRange, "size is 0; it must be greater than 0"),
         (lambda: lk.Tag(587), OutOfRange, "numbered 0 to 586"),
         (lambda: lk.Tag(border=0), OutOfRange, "never found"),
         (lambda: tag_corners(-1.0), OutOfRange, "size is -1"),

@@ -62,7 +62,7 @@ def _reasons(problem: Problem, question: Question, text: str | None) -> Iterator
     if earned > 0.0:
         yield (
             f"an answer that memorises its public cases earns {earned:g} of {question.points:g} "
-            "points; give the tests that pay hidden cases"
+            "points; add hidden cases to the tests that carry points"
         )
     earned = 0.0 if text is None else _stand_in_earns(question, text)
     if earned > 0.0:

@@ -109,7 +109,7 @@ class ReportCard:
 def rejected_below(question: Question) -> float:
     """The points that a wrong answer must stay below.
 
-    They are half of the points, or just more than the largest part earns.
+    They are half of the points, or just more than a part that earns up to `LARGEST_PART` of them.
     """
     weights = [test.weight for test in question.tests]
     share = max(weights) / sum(weights)
@@ -204,14 +204,15 @@ def _row(
         elif label in own:
             failures.append(f"{label}: taken for {known.name if known else 'nothing known'}")
         if all(test.hidden or test.outcome is Outcome.RIGHT for test in verdicts[label][0].tests):
-            failures.append(f"{label}: rejected by hidden cases alone; add a public one that does")
+            failures.append(f"{label}: only hidden cases reject it; add a public case that does")
     for label in right:
         if all(verdict.outcome is Outcome.RIGHT for verdict in verdicts[label]):
             accepted += 1
         else:
             failures.append(f"{label}: a right answer earned only {min(marks[label]):g}")
     if margin is not None and margin < LEAST_MARGIN:
-        failures.append(f"{nearest}: {margin:.2f} sigma from the tolerance, needs {LEAST_MARGIN:g}")
+        needed = f"at least {LEAST_MARGIN:g} are needed"
+        failures.append(f"{nearest}: {margin:.2f} sigma from the tolerance; {needed}")
     agree = sum(all(m[k] == m[0] for m in marks.values()) for k in range(draws))
     tried = len(wrong), rejected, named, len(right), accepted, agree
     return Row(name, problem.name, *tried, margin, nearest, tuple(failures))

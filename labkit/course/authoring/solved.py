@@ -37,7 +37,8 @@ def inlined(problem: Problem) -> str:
     for line in imports:
         if line.startswith(("import solutions", "from solutions", "from .")):
             raise LabkitError(
-                f"the answer of {problem.name} needs `{line}`; define it in its module"
+                f"the answer of {problem.name} needs `{line}`, which students do not have; define "
+                "what it imports in the answer's own module"
             )
     bodies = [part for part in parts if part not in imports]
     return "\n\n\n".join(["\n".join(imports), *bodies] if imports else bodies)

@@ -37,7 +37,7 @@ class JointLimits:
         for name in ("speed", "acceleration"):
             x = as_vector(getattr(self, name), 7, name)
             if x.min() <= 0.0:
-                raise OutOfRange(f"{name} is {x.min():g} at a joint, it must be greater than 0")
+                raise OutOfRange(f"{name} is {x.min():g} at a joint; it must be greater than 0")
             object.__setattr__(self, name, x)
 
 
