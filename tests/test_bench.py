@@ -36,6 +36,7 @@ def test_the_plain_loop_is_plain():
 
 def test_the_figures_are_one_flat_object(monkeypatch, tmp_path, capsys):
     """The file holds each figure, rounded, and null for one that this machine cannot measure."""
+
     class Fake:
         def measure():
             """Two figures, one of them not to be had."""
@@ -50,6 +51,7 @@ def test_the_figures_are_one_flat_object(monkeypatch, tmp_path, capsys):
 
 def test_one_that_fails_says_so_and_does_not_stop_the_others(monkeypatch, tmp_path, capsys):
     """The error is printed, the figures of the others are written, and the bench then fails."""
+
     class Broken:
         def measure():
             """A figure that cannot be had."""
@@ -70,6 +72,7 @@ def test_one_that_fails_says_so_and_does_not_stop_the_others(monkeypatch, tmp_pa
 
 def test_one_alone_is_printed_and_not_written(monkeypatch, tmp_path, capsys):
     """A measurement chosen by name runs alone; an unknown name is refused with those that exist."""
+
     class One:
         def measure():
             """A figure."""

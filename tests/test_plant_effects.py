@@ -352,6 +352,7 @@ def test_an_encoder_that_is_off_leaves_the_hand_off_and_the_controller_content()
 
 
 def test_an_encoder_reads_whole_steps():
+    """Each angle read is a multiple of the step, and half a step or less from where the arm is."""
     step = 0.01
     with lk.Arm(plant=lk.Plant(encoder_step=step), q0=READY) as arm:
         read = arm.state().q / step
