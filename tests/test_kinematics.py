@@ -81,7 +81,7 @@ def test_of_all_answers_it_gives_the_one_nearest_to_the_posture(side, model, ran
 
 
 def test_the_answer_is_the_posture_itself_where_that_fits(model):
-    """For the ready pose, with the ready angles as posture, a search from 0.1 rad off returns them."""
+    """With the ready angles as posture, a search for the ready pose from 0.1 rad off ends there."""
     r = model.robot
     q = model.inverse_kinematics(model.pose(r.ready), r.ready + 0.1, posture=r.ready)
     assert_allclose(q, r.ready, atol=1e-8)
