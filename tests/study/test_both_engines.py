@@ -49,6 +49,7 @@ def test_engines_agree_to_five_per_cent_or_a_tenth_of_a_millimetre(change, count
 
 
 def test_the_book_is_told_how_far_the_engines_are_apart():
+    """The numbers are the claims, those that agree, the runs and the largest difference in mm."""
     other = copy.deepcopy(found())
     other["rows"][0]["late_max_mm"] += 0.25
     other["verdicts"][0]["overall"]["outcome"] = "held"
