@@ -37,7 +37,7 @@ def test_the_pages_numbers_are_the_labs():
 
 
 def test_mujoco_on_npm_and_on_pypi_are_the_tested_pair():
-    """Whoever raises one version has to look at both, and at the runs that compare them."""
+    """A change of one version asks for a look at both, and at the runs that compare them."""
     wanted = json.loads((ROOT / "book/_tools/vendor/package.json").read_text())["dependencies"]
     assert (wanted["@mujoco/mujoco"], importlib.metadata.version("mujoco")) == PAIR
 
