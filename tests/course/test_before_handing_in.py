@@ -328,6 +328,7 @@ def test_a_damaged_file_is_a_sentence(folder, text):
 
 @pytest.mark.parametrize("cell", [1, {"source": "x"}, {"cell_type": "code", "metadata": {}}])
 def test_a_notebook_with_a_cell_that_is_none_is_a_sentence(folder, cell):
+    """A number, or a cell without type, metadata or source, is a file that was cut off."""
     path = folder / "01_paths.ipynb"
     path.write_text(json.dumps({"cells": [cell]}))
     with pytest.raises(LabkitError, match="not a notebook, or was cut off"):
@@ -335,6 +336,7 @@ def test_a_notebook_with_a_cell_that_is_none_is_a_sentence(folder, cell):
 
 
 def test_a_cell_may_come_without_metadata(folder):
+    """A cell that defines bang_bang and has no metadata counts as defining it."""
     path = folder / "01_paths.ipynb"
     path.write_text(json.dumps({"cells": [{"cell_type": "code", "source": ["def bang_bang(t):"]}]}))
     found = examine(path)

@@ -85,6 +85,7 @@ def test_a_stub_below_a_magic_is_still_a_stub(folder):
 
 @pytest.mark.parametrize("new", [[], [{"cell_type": "code", "metadata": {}, "source": "x"}]])
 def test_what_is_no_release_is_a_sentence(folder, new):
+    """A new notebook without cells, or without a release's ids, is refused."""
     with pytest.raises(LabkitError, match="the new notebook is not a release"):
         merge(read_cells(folder / "01_paths.ipynb"), new)
 

@@ -21,6 +21,7 @@ def test_a_controller_is_scored_on_every_case_and_seed_with_its_spread():
 
 def test_a_controller_that_loses_the_arm_is_a_row_with_a_sentence():
     """A wrong sign of torque is a row that names the controller and the time."""
+
     def wrong_sign(state, target):
         return lk.JointTorque(100.0 * (state.q - target.position))
 
