@@ -170,7 +170,7 @@ def test_a_log_of_any_robot_is_saved_and_loaded(robot, model, tmp_path):
 
 @pytest.mark.parametrize("harm", [b"", b"PK", b"not a log"])
 def test_a_file_that_is_no_log_is_a_sentence(tmp_path, harm):
-    """A missing file is named with log.save, and bytes that are not a log with running it again."""
+    """The error for a missing file suggests log.save, and that for other bytes another run."""
     path = tmp_path / "run.npz"
     with pytest.raises(LabkitError, match=r"there is no file .*run\.npz; log\.save"):
         lk.Log.load(path)
@@ -395,7 +395,7 @@ def test_what_an_arm_here_cannot_have_is_a_sentence(tmp_path, case):
 
 
 def test_bad_arguments_are_sentences(tmp_path):
-    """A wrong file, ready pose, name of an arm or plant is refused with what is expected."""
+    """The error for a wrong file, ready pose, arm or plant says what is expected."""
     with pytest.raises(LabkitError, match=r"no\.urdf cannot be read: No such file"):
         lk.Robot.from_urdf(tmp_path / "no.urdf", tip="hand", ready=[0.0])
     with pytest.raises(LabkitError, match=r"^<robot.{100,250}$"):

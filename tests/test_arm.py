@@ -221,7 +221,7 @@ def test_angles_that_cannot_be_are_refused_and_the_arm_stays_usable(arm, q, erro
 
 @pytest.mark.parametrize("command", [None, np.zeros(7), [0.0] * 7, "stop", lk.JointTorque])
 def test_what_is_no_command_is_refused_with_those_that_are(arm, command):
-    """It is refused in under 300 characters that list the commands, and the arm holds its pose."""
+    """The error lists the commands in under 300 characters, and the arm holds its pose."""
     with pytest.raises(ControllerError, match=r"not a command.*JointPosition, JointV") as caught:
         arm.apply(command)
     assert len(str(caught.value)) < 300
@@ -231,7 +231,7 @@ def test_what_is_no_command_is_refused_with_those_that_are(arm, command):
 
 @pytest.mark.parametrize("side", ["middle", None, 3, "LEFT"])
 def test_there_are_two_arms(side):
-    """Any other side is refused with 'left' and 'right'."""
+    """The error for any other side lists 'left' and 'right'."""
     with pytest.raises(UnknownName, match="there is 'left', 'right'"):
         lk.Arm(side)
 
@@ -255,13 +255,13 @@ def test_a_plant_in_the_place_of_the_side_makes_no_long_sentence():
     ],
 )
 def test_what_is_no_plant_no_seed_or_no_world_is_named(given, words):
-    """A wrong plant, seed or world is refused with its name and its value."""
+    """The error for a wrong plant, seed or world has its name and its value."""
     with pytest.raises(TypeMismatch, match=words):
         lk.Arm("left", **given)
 
 
 def test_a_world_has_each_arm_once():
-    """Two would stand in one place and push each other off by their tips."""
+    """Two would be in one place and push each other off by their tips."""
     with lk.Arm() as arm:
         lk.Arm("right", world=arm.world)
         with pytest.raises(LabkitError, match=r"left arm already.*new World"):

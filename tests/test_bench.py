@@ -71,7 +71,7 @@ def test_one_that_fails_says_so_and_does_not_stop_the_others(monkeypatch, tmp_pa
 
 
 def test_one_alone_is_printed_and_not_written(monkeypatch, tmp_path, capsys):
-    """A measurement chosen by name runs alone; an unknown name is refused with those that exist."""
+    """The one named is measured alone and not written; the error for an unknown one lists all."""
 
     class One:
         def measure():

@@ -59,7 +59,7 @@ def test_the_list_of_verbs_says_what_each_does(capsys):
     ],
 )
 def test_a_number_that_makes_no_sense_is_a_sentence(words, sentence, capsys):
-    """A number out of range ends with exit code 2 and the range."""
+    """A number out of range ends with exit code 2, and the error has the range."""
     assert main(words) == 2
     assert sentence in capsys.readouterr().err
 
@@ -91,7 +91,7 @@ def test_a_number_that_makes_no_sense_is_a_sentence(words, sentence, capsys):
     ],
 )
 def test_a_wrong_file_or_folder_is_a_sentence(words, sentence, tmp_path, monkeypatch, capsys):
-    """Exit code 2, one line that begins with the command, and no file written."""
+    """It ends with exit code 2 and one line that begins with the command, and writes nothing."""
     monkeypatch.chdir(tmp_path)
     assert main([str(word) for word in words]) == 2
     err = capsys.readouterr().err

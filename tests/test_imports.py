@@ -148,7 +148,7 @@ def test_labkit_never_imports_the_answers_nor_the_tests(path):
 
 @pytest.mark.parametrize("path", FILES, ids=lambda p: str(p.relative_to(LABKIT)))
 def test_foreign_libraries_stay_in_their_modules(path):
-    """Each library that has owners is imported by them alone; ompl and toppra by no module."""
+    """Only its owners import a library that has owners, and no module ompl or toppra."""
     owners = {
         "pybullet": {"sim.pybullet"}, "mujoco": {"sim.mujoco"}, "pinocchio": MODEL,
         "matplotlib": DRAW, "anywidget": DRAW, "ompl": set(), "toppra": set(),
@@ -178,7 +178,7 @@ BELOW = [path for path in FILES if names(path)[0] not in UPSTAIRS]
 
 @pytest.mark.parametrize("path", BELOW, ids=lambda p: str(p.relative_to(LABKIT)))
 def test_imports_point_one_way(path):
-    """Each module of lab and course has a place, and imports only what stands below it."""
+    """Each module of lab and course has a place, and imports only what is below it."""
     here = module(path)
     assert here in LEVEL, f"{here} has no place in the order"
     for name, line in imported(path):

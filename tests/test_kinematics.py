@@ -146,7 +146,7 @@ def test_a_chain_stays_a_chain_and_is_continuous(model):
 
 
 def test_a_hold_becomes_a_hold_of_joint_angles(model):
-    """A pose or a point held is a hold of the angles that are there, for as long."""
+    """A pose or a point held for 2 s becomes the present joint angles held for 2 s."""
     q0 = model.robot.ready
     for place in (model.pose(q0), model.pose(q0)[:3, 3]):
         hold = model.joint_trajectory(lk.Hold(place, 2.0), q0)
@@ -188,7 +188,7 @@ def test_a_joint_at_its_limit_is_named_with_the_limit(model):
 
 
 def test_degrees_are_suspected(model):
-    """Angles of the neutral pose in degrees are refused with the joint and that suspicion."""
+    """The error for the neutral pose in degrees names the joint and asks about degrees."""
     q = np.degrees(model.robot.neutral)
     with pytest.raises(JointLimitExceeded, match=r"_s1 at -31\.51 rad is outside .* in degrees\?"):
         model.within_limits(q)
@@ -211,13 +211,13 @@ def test_what_is_no_pose_is_refused(model, T, words):
 
 @pytest.mark.parametrize("target", [lk.Line([0, 0, 0], [1, 1, 1]), None, lambda t: t])
 def test_a_joint_trajectory_wants_a_trajectory(model, target):
-    """A path, None or a function is refused with the three kinds that it takes."""
+    """The error for a path, None or a function lists the three kinds that it takes."""
     with pytest.raises(LabkitError, match="takes a Trajectory, Chain or Hold, not"):
         model.joint_trajectory(target, model.robot.ready)
 
 
 def test_a_joint_trajectory_of_joint_angles_is_refused(model):
-    """A target that is joint angles already can be followed as it is, and the error says so."""
+    """Such a target can be followed as it is, and the error says so."""
     q0 = model.robot.ready
     for target in (lk.Trajectory(lk.Line(q0, q0 + 0.1), lk.Cubic(1.0)), lk.Hold(q0, 1.0)):
         with pytest.raises(TypeMismatch, match=r"not 7 numbers.*followed as it is"):

@@ -65,7 +65,7 @@ def test_the_velocity_error_of_a_still_pose_is_the_tips_own_speed(pose_log):
 
 
 def test_a_run_after_poses_has_no_joint_error(pose_log):
-    """It is refused with tip_error, which such a run has."""
+    """The error says that poses were followed, and suggests tip_error."""
     with pytest.raises(TypeMismatch, match=r"followed poses.*tip_error"):
         metrics.joint_error(pose_log)
 
@@ -80,7 +80,7 @@ def test_a_run_after_points_is_told_how_to_make_poses_of_them(ideal):
 
 
 def test_since_keeps_the_rows_from_a_time_on(joint_log):
-    """Times, targets and states begin there; a time after the end is refused with the end."""
+    """Times, targets and states begin there; the error for a later time has the run's end."""
     rest = metrics.since(joint_log, 0.75)
     assert (rest.t[0], rest.t[-1]) == (0.75, 1.0)
     assert_allclose(rest.target.position, joint_log.target.position[750:])

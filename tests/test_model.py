@@ -76,7 +76,7 @@ def test_a_force_at_the_tip_meets_the_operational_inertia(side, model, states):
 
 
 def test_links_sum_up_to_the_mass_matrix_and_gravity(side, model, states):
-    """Masses, inertias and Jacobians of the links alone give M and g."""
+    """The links' masses, inertias and Jacobians add up to M and g."""
     for q, _ in states(side, 5):
         M, g = np.zeros((7, 7)), np.zeros(7)
         for link in model.links(q):
@@ -132,7 +132,7 @@ MODEL = lk.Model()
 
 @pytest.mark.parametrize("ask", ["coriolis", "bias", "kinetic_energy", "tip_jacobian_rate"])
 def test_bad_speeds_never_reach_pinocchio(ask):
-    """A column is refused with a sentence about dq, and lists give what arrays do."""
+    """A column of speeds is refused by name, and lists give what arrays do."""
     with pytest.raises(ShapeError, match="dq has shape"):
         getattr(MODEL, ask)(np.zeros(7), np.zeros((7, 1)))
     assert_allclose(

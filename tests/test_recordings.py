@@ -69,7 +69,7 @@ def test_every_recording_that_ships_is_a_run_one_can_study():
 
 
 def test_an_unknown_recording_is_a_sentence_with_the_known_ones():
-    """A name that is misspelt is refused with the names of the recorded runs."""
+    """The error for a misspelt name lists the recorded runs."""
     with pytest.raises(
         lk.errors.UnknownName, match="no recorded run 'bsaeline'; there is 'baseline"
     ):
@@ -85,7 +85,7 @@ def test_a_map_says_itself_in_words():
 
 
 def test_an_unknown_map_is_a_sentence():
-    """A name that no error map has is refused with those that exist."""
+    """The error for an unknown name lists the error maps that exist."""
     with pytest.raises(lk.errors.UnknownName, match="no error map 'x'; there is"):
         recordings.error_map("x")
 
@@ -103,7 +103,7 @@ def test_between_recorded_gains_the_error_is_interpolated():
 
 
 def test_what_nobody_recorded_is_a_sentence():
-    """A case or a gain beyond the recorded ones is refused with their range."""
+    """The error for another case or a larger gain has the range that was recorded."""
     for case in (2, -1, 0.5, "0"):
         with pytest.raises(OutOfRange, match=f"there are cases 0 to 1, not {case!r}"):
             TRIALS.error(case, 1.0, 0.0)

@@ -63,7 +63,7 @@ def test_the_lumped_arm_has_the_dynamics_of_the_whole_robot(side, states, random
 
 
 def test_the_tip_is_where_the_whole_robot_has_its_gripper(side, states):
-    """In 50 random poses the arm alone and all of Baxter have one pose of the gripper."""
+    """In 50 random poses the lumped arm puts the gripper where all of Baxter has it."""
     data, model = FULL.createData(), lk.Model(side)
     tip = FULL.getFrameId(f"{side}_gripper")
     for q, _ in states(side, 50):
@@ -175,7 +175,7 @@ def test_a_rotation_survives_being_written_as_roll_pitch_yaw(side, random):
 
 
 def test_there_is_no_middle_arm():
-    """A side that does not exist is refused with the two that do, by robot, arm and model."""
+    """Robot, arm and model refuse a side that does not exist, and the error lists both."""
     with pytest.raises(UnknownName, match="no arm 'middle'; there is 'left', 'right'") as caught:
         lk.robot("middle")
     assert isinstance(caught.value, LabkitError)

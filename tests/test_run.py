@@ -190,7 +190,7 @@ def test_a_run_may_last_no_time_at_all(ideal):
 
 
 def test_what_a_controller_sees_is_read_only(ideal):
-    """It can write neither to the state's arrays nor to the target's, whoever wrote the target."""
+    """It cannot write to the state's arrays, nor to those of any target."""
 
     def controller(state, target):
         for part in (*state[1:], *target):
@@ -357,7 +357,7 @@ def test_a_target_may_not_turn_from_points_into_poses(ideal):
 
 
 def test_a_wrong_sign_is_stopped_with_the_time_the_joint_and_the_log(ideal):
-    """Joints faster than 50 rad/s end the run; the arm comes to rest and runs again."""
+    """The log ends above 50 rad/s, and the arm comes to rest and runs again."""
 
     def pushes(state, target):
         g = ideal.model.gravity(state.q)
@@ -377,7 +377,7 @@ def test_a_wrong_sign_is_stopped_with_the_time_the_joint_and_the_log(ideal):
 
 
 def test_a_controller_that_wants_joints_and_gets_poses_is_told_so(ideal):
-    """The error has what a pose target offers, and model.joint_trajectory."""
+    """The error lists what a pose target has, and suggests model.joint_trajectory."""
     pose = lk.Hold(ideal.model.pose(ideal.robot.neutral), 1.0)
     words = "follow failed .* its position, and that has only pose, twist, dtwist; model.joint_traj"
     with pytest.raises(ControllerError, match=words):
@@ -385,7 +385,7 @@ def test_a_controller_that_wants_joints_and_gets_poses_is_told_so(ideal):
 
 
 def test_a_controller_that_wants_joints_and_gets_points_is_told_so(ideal):
-    """The error has both shapes, and model.joint_trajectory of points."""
+    """The error has both shapes, and suggests model.joint_trajectory of points."""
     point = lk.Hold(ideal.model.pose(ideal.robot.neutral)[:3, 3], 1.0)
     words = r"springs failed .*\(3,\) \(7,\).*gives 3 numbers, model.joint_traj.* of points"
     with pytest.raises(ControllerError, match=words):
@@ -408,7 +408,7 @@ def test_a_controller_that_wants_joints_and_gets_points_is_told_so(ideal):
     ],
 )
 def test_impossible_rates_and_durations_are_refused(ideal, given, words):
-    """Each is named with its value, and a rate that does not fit the steps with one that does."""
+    """The error has the value, and for a rate that does not fit the steps one that does."""
     with pytest.raises(LabkitError, match=words):
         lk.run(ideal, still(ideal), follow, **given)
 
@@ -423,7 +423,7 @@ def test_the_rate_that_the_sentence_proposes_is_accepted(ideal, steps):
 
 
 def test_a_target_without_duration_needs_one(ideal):
-    """A plain function as target is refused with duration= unless that is given."""
+    """A plain function as target is refused, and the error asks for duration=."""
     with pytest.raises(OutOfRange, match=r"how long.*give duration="):
         lk.run(ideal, lambda t: None, follow)
 

@@ -90,7 +90,7 @@ def test_a_vector_is_a_locked_copy():
 
 
 def test_one_gain_serves_all_joints():
-    """One number becomes seven, and three numbers for three joints stay."""
+    """One number becomes seven equal ones; three numbers for three joints are kept."""
     assert as_gains(2, 7, "Kp").tolist() == [2.0] * 7
     assert as_gains([1, 2, 3], 3, "Kp").tolist() == [1.0, 2.0, 3.0]
 
@@ -128,7 +128,7 @@ def test_a_bad_gain_is_named(x, error, words):
     ],
 )
 def test_a_bad_number_is_named(x, error, words):
-    """A word, an array of even one, NaN, infinity and what is not above the limit are refused."""
+    """A word, an array, NaN, infinity and what is not above the limit are refused by name."""
     with pytest.raises(error, match=words):
         as_number(x, "v_max", above=0.0)
 

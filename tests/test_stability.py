@@ -58,7 +58,7 @@ def test_the_step_response_of_a_plain_integrator_is_the_exponential():
 
 
 def test_the_age_of_the_state_is_the_one_in_the_log():
-    """On Baxter's plant at 200 Hz they agree to 0.2 ms, and an ideal arm's state has age zero."""
+    """At 200 Hz mean age and Baxter's log agree to 0.2 ms, and the ideal arm's age is zero."""
     with lk.Arm(plant=lk.BAXTER, q0=lk.robot("left").ready) as arm:
         log = lk.run(arm, lk.Hold(arm.robot.ready, 2.0), still)
     told = np.mean((log.t - log.measured.t)[10:])

@@ -96,7 +96,7 @@ def test_the_peaks_are_what_they_are_said_to_be(kind):
 
 @given(st.sampled_from(PROFILES), lengths, speeds, speeds)
 def test_the_quickest_within_limits_touches_one_and_passes_none(kind, d, v, a):
-    """Of speed and acceleration the nearer to its limit is at it, to 1e-4."""
+    """Speed or acceleration, whichever is nearer to its limit, meets it to 1e-4."""
     s = kind.within(d, v, a)
     rows = np.array([s(t) for t in np.linspace(0.0, s.duration * (1 - 1e-12), 2001)])
     fast, hard = d * rows[:, 1].max() / v, d * np.abs(rows[:, 2]).max() / a
@@ -117,7 +117,7 @@ def test_the_trapezoid_keeps_its_limits_and_is_the_quickest_that_does(d, v, a):
 
 @given(lengths, speeds, speeds)
 def test_a_way_too_short_to_cruise_is_a_triangle(d, v, a):
-    """Below v^2/a it peaks at sqrt(d a) and takes what bang-bang takes; above, it peaks at v."""
+    """Below v^2/a it peaks at sqrt(d a) and lasts as long as bang-bang; above, it peaks at v."""
     s = Trapezoid(d, v, a)
     if d < v * v / a:
         assert s.peak_speed == pytest.approx(np.sqrt(d * a))

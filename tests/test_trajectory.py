@@ -58,7 +58,7 @@ def test_no_distance_in_no_time_is_the_place_itself():
 
 
 def test_a_target_written_by_a_student_works_as_path_and_as_scaling():
-    """The derivatives of a function along a class of the student's own are its slopes."""
+    """With a function as path and a class as scaling, the derivatives are still slopes."""
 
     class Ramp:
         duration = 2.0
@@ -149,7 +149,7 @@ def test_chains_nest_and_parts_without_duration_are_passed_over():
 
 
 def test_an_empty_chain_is_refused():
-    """A chain of no parts is refused, as it needs at least one trajectory."""
+    """The error says that a chain needs at least one trajectory."""
     with pytest.raises(OutOfRange, match="at least one trajectory"):
         Chain([])
 

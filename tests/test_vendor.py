@@ -36,7 +36,7 @@ def test_bundle_was_made_from_these_sources():
 
 
 def test_nothing_unrecorded_lies_among_them():
-    """Besides the manifest itself, both folders hold recorded files alone."""
+    """Both folders hold only recorded files, and the manifest itself."""
     folders = (VENDOR, ROOT / "book/live/bundle")
     here = {str(p.relative_to(ROOT)) for f in folders for p in f.rglob("*") if p.is_file()}
     assert here - set(MANIFEST["files"]) == {"book/static/vendor/MANIFEST.json"}

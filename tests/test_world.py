@@ -34,7 +34,7 @@ def test_two_worlds_share_nothing():
 
 
 def test_a_closed_world_says_so_and_closing_twice_is_harmless():
-    """Each use of an arm in it is refused with the way out: a new one."""
+    """Each use of its arm is refused, and the error says to make a new one."""
     arm = lk.Arm()
     arm.close()
     arm.close()
@@ -51,7 +51,7 @@ def test_a_closed_world_says_so_and_closing_twice_is_harmless():
 
 
 def test_an_arm_cannot_be_put_into_a_closed_world():
-    """It is refused with the advice to make a new one."""
+    """The error says to make a new world."""
     world = lk.World()
     world.close()
     with pytest.raises(Closed, match="make a new"):

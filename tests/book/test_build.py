@@ -55,7 +55,7 @@ def test_pages_of_the_contents_exist(book):
 
 
 def test_the_reference_has_every_module():
-    """What can be imported is described; commands and the inside of the sandbox are no library."""
+    """It describes each module of the lab, course and replay as wholes, and none that is gone."""
     told = "".join(p.read_text() for p in (ROOT / "book/reference").glob("*.md"))
     described = set(re.findall(r"automodule:: labkit\.([\w.]+)$", told, re.M))
     gone = {x for x in described if not find_spec(f"labkit.{x}")}
@@ -150,7 +150,7 @@ def test_the_reference_shows_no_object_of_the_machine_that_built_it(book):
 
 
 def test_a_line_never_breaks_within_an_option():
-    """The word --lower in code has the class that keeps it whole."""
+    """The word --lower in code receives the class that keeps it whole."""
     page = BeautifulSoup('<code><span class="pre">--lower</span></code>', "html.parser")
     lab.mend(page)
     assert page.select_one("code .pre")["class"] == ["pre", "lab-keep"]

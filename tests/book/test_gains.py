@@ -27,7 +27,7 @@ def test_every_point_of_the_grid_is_recorded_and_small(book):
 
 
 def test_the_dials_are_moved_by_keyboard_and_say_recorded(visit):
-    """A key shows another run, a Kp between points the nearest, 8 for 12, and the task is said."""
+    """A key shows another run; a typed Kp of 12 shows the nearest, 8; the line names the task."""
     page = visit("chapters/velocity.html")
     host = page.locator(".lk-embed:has(.lk-explorer)")
     page.evaluate("""() => [...document.querySelectorAll('.lk-embed')].forEach(e =>

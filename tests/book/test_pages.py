@@ -85,7 +85,7 @@ def html_files(book):
 
 
 def test_internal_links_and_downloads_lead_somewhere(book):
-    """Each address within the book is a file, and each part after # is an id or a name in it."""
+    """Each address within the book is a file, and the part after # is an id or a name in it."""
     pages = {p: BeautifulSoup(p.read_text(), "html.parser") for p in html_files(book)}
     places = {
         path: {tag.get(key) for key in ("id", "name") for tag in page.find_all(attrs={key: True})}

@@ -88,7 +88,7 @@ def test_a_hit_shows_what_stands_around_it(visit):
 
 @pytest.mark.slow
 def test_the_page_behind_a_hit_is_marked_until_escape(visit):
-    """Also where the word stands in another form; formulas are drawn and nothing is stored."""
+    """Also where the word has another form; formulas are drawn and nothing is stored."""
     page = results(visit, "gravitational dot")
     assert page.evaluate("localStorage.getItem('sphinx_highlight_terms')") is None
     page = results(visit, "gravity")

@@ -160,7 +160,7 @@ def test_arrow_keys_turn_the_view(chromium, visit):
 
 
 def test_lines_follow_the_theme_and_the_view_stays(chromium, visit):
-    """Dark colours change a line's, and a new motion leaves the view where it was turned to."""
+    """The dark theme changes a line's colour, and a new motion keeps the view that was turned."""
     page = visit(chromium, "motion")
     page.wait_for_selector("[data-ready]")
     player = "document.querySelector('[data-ready]').labkit"
@@ -210,7 +210,7 @@ def test_one_webgl_context_serves_many_viewers(chromium, visit):
 
 
 def test_without_webgl_words_plots_and_slider_remain(blind_chromium, visit):
-    """The description and more than seven curves are there, and Page Up is one second."""
+    """The description and more than seven curves are there, and Page Up moves to 1 s."""
     seen = visit(blind_chromium, "motion")
     seen.wait_for_selector("[data-ready]")
     assert seen.is_visible(".lk-alt")
@@ -283,7 +283,7 @@ def test_the_explorer_stops_on_the_grid(chromium, visit):
 
 
 def test_the_live_demos_answer_to_their_dials(chromium, visit):
-    """Each of the three demos shows other numbers, such as 15/8 d/T for another duration."""
+    """Each of the three demos shows other numbers, such as 15/8 d/T for a duration of 4 s."""
     page = visit(chromium, "demos")
     page.evaluate("document.querySelectorAll('.lk-embed').forEach(e => e.scrollIntoView())")
     page.locator("[data-ready]").nth(2).wait_for()

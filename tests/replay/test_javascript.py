@@ -159,7 +159,7 @@ def test_browser_unpacks_what_python_packs(node):
 
 
 def test_missing_grid_points_go_to_the_nearest(node):
-    """Numbers may move to a point that was recorded, and the choice of a word stays."""
+    """The recorded point keeps a chosen name, though another one is nearer in its numbers."""
     keys = ["0-0-0", "0-3-2", "1-2-1"]
     assert node("grid.nearest(x, [0, 2, 2], [true, false, false])", keys) == "0-3-2"
     assert node("grid.nearest(x, [1, 0, 0], [true, false, false])", keys) == "1-2-1"

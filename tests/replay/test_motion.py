@@ -28,7 +28,7 @@ def test_packing_errs_by_half_a_step_at_most(x, step):
 
 
 def test_json_keeps_every_channel():
-    """At 25 Hz angles, target, error, torque and path are off by half a step, to the last time."""
+    """At 25 Hz each number is off by half a step at most, and the last time is the motion's."""
     motion = swing(ghosts=2)
     read = json.loads(motion.to_json(rate=25))
     times = read["start"] + read["period"] * np.arange(len(unpack(read["q"])))

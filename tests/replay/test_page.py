@@ -45,7 +45,7 @@ class Reader(HTMLParser):
 
 
 def test_a_figure_has_words_data_and_no_inline_code():
-    """Its title and picture's alt are the motion's, its one script a file, and it has no style."""
+    """Title and alt are the motion's, the one script is a file, and no element has a style."""
     motion = swing(2.0)
     page = Reader(motion_html(motion, root="../_static/viewer/", poster="a.png"))
     assert json.loads(page.data)["title"] == motion.title
@@ -66,7 +66,7 @@ def test_titles_cannot_break_out():
 
 
 def test_too_large_a_motion_is_refused():
-    """A minute with four ghosts is refused with the advice of a lower rate."""
+    """A minute with four ghosts is refused, and the error suggests a lower rate."""
     with pytest.raises(OutOfRange, match="lower rate"):
         motion_html(swing(60.0, ghosts=4))
 
@@ -100,7 +100,7 @@ def test_demos_describe_themselves(name):
 
 
 def test_an_unknown_demo_is_a_sentence():
-    """A name that is misspelt is refused with those that exist."""
+    """A misspelt name is refused, and the error lists those that exist."""
     with pytest.raises(UnknownName, match="'jacobian'"):
         demo_html("jacobean")
 

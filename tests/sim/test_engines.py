@@ -123,7 +123,7 @@ def test_the_environment_or_the_world_chooses_the_engine(monkeypatch, capsys):
 
 
 def test_without_pybullet_mujoco_moves_the_arm_and_asking_for_it_says_how_to_get_it(monkeypatch):
-    """MuJoCo is the default then, and pybullet is refused with its pip command."""
+    """MuJoCo is then the default, and the error for pybullet has its pip command."""
     monkeypatch.delenv("LABKIT_ENGINE", raising=False)
     monkeypatch.setattr("labkit.sim.find_spec", lambda name: name == "mujoco" or None)
     with lk.World() as world:

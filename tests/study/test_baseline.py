@@ -137,7 +137,7 @@ def test_what_is_no_obstacle_or_no_place_of_the_joints_is_a_sentence(scene):
 
 
 def test_the_way_round_a_post_touches_nothing_even_between_the_places_looked_at(scene, ends):
-    """At 1,500 places the arm keeps half of the margin, where straight on is the post."""
+    """At 1,500 places the arm keeps half of the margin, though the straight line hits the post."""
     way = plan(scene, *ends, seed=3)
     assert first_hit(scene, Line(*ends)) is not None, "straight on is the post"
     np.testing.assert_allclose(way(0.0).position, ends[0], atol=1e-9)
@@ -147,7 +147,7 @@ def test_the_way_round_a_post_touches_nothing_even_between_the_places_looked_at(
 
 
 def test_the_same_seed_gives_the_same_way(scene, ends, capfd):
-    """It is equal to the bit, another seed's differs, and the planner prints nothing."""
+    """It is the same bit for bit, another seed's differs, and the planner prints nothing."""
     a, b, c = (plan(scene, *ends, seed=seed) for seed in (5, 5, 6))
     np.testing.assert_array_equal(a.values, b.values)
     assert a.values.shape != c.values.shape or np.abs(a.values - c.values).max() > 1e-3
@@ -155,7 +155,7 @@ def test_the_same_seed_gives_the_same_way(scene, ends, capfd):
 
 
 def test_no_way_is_a_sentence_that_names_the_hindrance(scene, ends, monkeypatch):
-    """After three places, all that are allowed here, it says where straight on meets the post."""
+    """After the three places that it may try, it says where the straight line meets the post."""
     monkeypatch.setattr(planning, "CHECKS", 3)
     with pytest.raises(NoWay, match=r"after 3 places; going straight, s = 0\.\d\d .* the post"):
         plan(scene, *ends)
@@ -179,7 +179,7 @@ def test_a_path_of_the_tip_keeps_its_geometry_and_its_largest_speed():
 
 
 def test_a_path_through_an_obstacle_says_where_and_what():
-    """The sentence has s, the gripper and the board that it would touch."""
+    """The sentence names s, the gripper and the board that it would come too near to."""
     task = tasks.line()
     board = Box("board", task.target(0.0).pose[:3, 3] + (0.05, -0.075, 0.05), (0.04, 0.04, 0.04))
     with pytest.raises(

@@ -46,7 +46,7 @@ def test_a_dask_cluster_gives_the_same_rows_bit_for_bit(rows):
 
 
 def test_a_dask_cluster_that_is_not_there_is_a_sentence():
-    """At an address that is none; from the command line too, which then ends with 2."""
+    """A wrong address is named; from the command line that is one line, and exit code 2."""
     with pytest.raises(lk.LabkitError, match="no Dask scheduler at nonsense"):
         work_through(report.numbers, SMALL, dask="nonsense")
     command = [sys.executable, "-m", "solutions.study", "--dask", "nonsense"]
@@ -56,7 +56,7 @@ def test_a_dask_cluster_that_is_not_there_is_a_sentence():
 
 
 def test_every_way_starts_a_seed_at_the_same_place():
-    """With seed 3 each controller's first angles on the line are equal to the bit."""
+    """With seed 3 each controller starts the line at the same angles, bit for bit."""
     starts = [
         report.perform(controller, "line", "ideal", 3).q[0] for controller in report.CONTROLLERS
     ]
@@ -161,7 +161,7 @@ def rows_of(by_task):
     ],
 )
 def test_a_claim_is_held_refuted_or_undecided(differences, outcome):
-    """Three differences of one sign hold or refute it; one of the other sign leaves it open."""
+    """Three differences of one sign hold or refute it; if one has the other sign it stays open."""
     found = judge("a is larger", "mm", *rows_of({"line": differences}))
     assert found.overall.outcome is outcome
 

@@ -15,14 +15,14 @@ def chases():
 
 
 def test_the_same_seed_records_the_same_reference(chases):
-    """Two references of one seed are equal to the bit, and another seed's differs."""
+    """Two references of one seed are equal bit for bit, and another seed's differs."""
     a, b, c = ([x.task.target(t).pose[:3, 3] for t in np.linspace(0, 2.5, 50)] for x in chases)
     np.testing.assert_array_equal(a, b)
     assert np.abs(np.subtract(a, c)).max() > 1e-5, "another seed, other noise"
 
 
 def test_the_reference_is_smooth_and_starts_at_the_ready_pose(chases):
-    """Its velocity is the slope of its place to 0.1 mm/s."""
+    """From there on its velocity is the slope of its place, to 0.1 mm/s."""
     target = chases[0].task.target
     np.testing.assert_allclose(target(0.0).pose, tasks.ready_pose(), atol=1e-9)
     h = 1e-4

@@ -47,7 +47,7 @@ def test_the_procedure_finds_the_ultimate_gain_and_halves_it():
 
 
 def test_a_loop_that_never_oscillates_is_a_sentence():
-    """An exponential at any Kp is refused with the largest one tried."""
+    """If the error decays without a swing at every gain, the sentence names the largest tried."""
 
     def exact(Kp, Kd):
         t = np.linspace(0.0, 2.0, 200)

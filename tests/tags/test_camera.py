@@ -189,7 +189,7 @@ def test_the_hand_camera_sees_the_tag_below_and_moves_with_the_arm(world):
 
 
 def test_noise_is_as_loud_as_stated_and_repeats_with_the_seed(world):
-    """A deviation of 8 grey levels is so to 1 %; one seed gives one picture, another another."""
+    """Its deviation is 8 grey levels to 1 %; one seed repeats it, another seed changes it."""
     T = AWAY @ se3.pose(np.eye(3), np.array([0, 0, 3.0]))
     world.show(Block((9, 9, 0.1), (0.9, 0.9, 0.9), T))
     clean = lk.Camera(world, AWAY).image().astype(float)
@@ -240,7 +240,7 @@ def test_a_camera_is_a_lens_in_a_world():
 
 
 def test_a_closed_world_is_not_photographed():
-    """A picture of a closed world is refused with that reason."""
+    """The error for a picture of a closed world says that it is closed."""
     world = lk.World()
     camera = lk.Camera(world, AWAY)
     world.close()

@@ -51,7 +51,7 @@ def test_corners_go_clockwise_for_who_looks_at_the_tag():
     ],
 )
 def test_a_tag_that_cannot_be_is_refused_in_a_sentence(make, error, says):
-    """A size of zero, number 587 and no border are named with what is allowed."""
+    """The error for size 0, number 587 or no border says what is allowed."""
     with pytest.raises(error, match=says) as caught:
         make()
     assert isinstance(caught.value, LabkitError)
@@ -104,7 +104,7 @@ def test_several_boards_are_seen_at_once():
 
 
 def test_a_motion_of_joint_angles_moves_no_board():
-    """It is refused with PoseSample, and a pose in its place with board.place."""
+    """The error asks for a PoseSample, and where a pose is given suggests board.place."""
     with lk.World() as world:
         board = lk.tags.Board(world, lk.Tag(), turned(0.0))
         with pytest.raises(TypeMismatch, match=r"lk\.PoseSample"):
@@ -114,7 +114,7 @@ def test_a_motion_of_joint_angles_moves_no_board():
 
 
 def test_a_board_is_a_tag_in_a_world():
-    """A number for the tag or an arm for the world is refused with both kinds."""
+    """A number for the tag, or an arm for the world, is refused, and the error asks for both."""
     with lk.Arm("left") as arm:
         for world, tag in ((arm.world, 5), (arm, lk.Tag(5))):
             with pytest.raises(TypeMismatch, match=r"a World .an arm's is arm.world. and a Tag"):
