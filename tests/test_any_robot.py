@@ -83,6 +83,7 @@ def test_each_link_is_where_pinocchio_puts_it_and_weighs_what_it_says(robot, mod
 
 
 def test_the_mass_matrix_is_symmetric_and_positive_definite(model, motions):
+    """At twenty random angles the mass matrix is symmetric to the bit and positive definite."""
     for q, _ in motions:
         M = model.mass_matrix(q)
         assert M.shape == (model.robot.n, model.robot.n)
@@ -91,18 +92,21 @@ def test_the_mass_matrix_is_symmetric_and_positive_definite(model, motions):
 
 
 def test_mdot_minus_2c_is_skew(model, motions):
+    """The slope of M along the motion less 2 C is antisymmetric to 1e-7."""
     for q, dq in motions:
         S = slope_along(model.mass_matrix, q, dq) - 2.0 * model.coriolis(q, dq)
         assert_allclose(S + S.T, np.zeros_like(S), atol=1e-7)
 
 
 def test_gravity_is_the_slope_of_the_potential_energy(model, motions):
+    """The potential energy rises at g(q) dq, to 1e-6 W."""
     for q, dq in motions:
         slope = slope_along(model.potential_energy, q, dq)
         assert slope == pytest.approx(model.gravity(q) @ dq, abs=1e-6)
 
 
 def test_the_jacobian_is_the_slope_of_the_tip(model, motions):
+    """The tip moves at the velocity that the first three rows of the Jacobian give."""
     for q, dq in motions:
         slope = slope_along(lambda q: model.pose(q)[:3, 3], q, dq)
         assert_allclose(model.tip_jacobian(q)[:3] @ dq, slope, atol=1e-7)
@@ -112,6 +116,7 @@ def test_the_jacobian_is_the_slope_of_the_tip(model, motions):
 @pytest.mark.parametrize("kind", ["line", "circle"])
 @pytest.mark.parametrize("law", LAWS)
 def test_all_five_controllers_follow_line_and_circle(robot, model, engine, kind, law):
+    """On each engine each controller keeps the tip within 1 mm and 0.1 degrees of its target."""
     controller, rate, joints = laws(model)[law]
     way = target(model, kind)
     if joints:
@@ -143,6 +148,7 @@ def test_friction_limits_and_rotors_are_as_many_as_the_joints(robot):
 
 
 def test_a_push_finds_the_arm_by_the_name_of_its_robot(robot):
+    """Of two arms in one world, only the arm that the push names feels its 20 N."""
     with lk.World(things=[lk.Push((0.0, 0.0, 20.0), side=robot.name)]) as world:
         one, other = lk.Arm(robot, world=world), lk.Arm("left", world=world)
         world.step(50)
@@ -151,6 +157,7 @@ def test_a_push_finds_the_arm_by_the_name_of_its_robot(robot):
 
 
 def test_a_log_of_any_robot_is_saved_and_loaded(robot, model, tmp_path):
+    """Its robot, plant, controller, columns and summary come back from the file as they were."""
     with lk.Arm(robot, q0=robot.ready) as arm:
         log = lk.run(arm, lk.Hold(robot.ready, 0.1), JointVelocityPD(5.0))
     log.save(tmp_path / "run.npz")
@@ -163,6 +170,7 @@ def test_a_log_of_any_robot_is_saved_and_loaded(robot, model, tmp_path):
 
 @pytest.mark.parametrize("harm", [b"", b"PK", b"not a log"])
 def test_a_file_that_is_no_log_is_a_sentence(tmp_path, harm):
+    """The error for a missing file suggests log.save, and that for other bytes another run."""
     path = tmp_path / "run.npz"
     with pytest.raises(LabkitError, match=r"there is no file .*run\.npz; log\.save"):
         lk.Log.load(path)
@@ -172,6 +180,7 @@ def test_a_file_that_is_no_log_is_a_sentence(tmp_path, harm):
 
 
 def test_a_damaged_log_is_a_sentence_or_a_log_wherever_the_damage_is(tmp_path, random):
+    """With any of 200 bytes changed, loading gives all 11 rows or raises a LabkitError."""
     path, q = tmp_path / "run.npz", lk.robot("left").ready
     with lk.Arm(q0=q) as arm:
         lk.run(arm, lk.Hold(q, 0.05), lk.control.hold(q)).save(path)
@@ -183,6 +192,7 @@ def test_a_damaged_log_is_a_sentence_or_a_log_wherever_the_damage_is(tmp_path, r
 
 
 def test_a_log_is_found_by_the_name_it_was_saved_by(tmp_path):
+    """A name with a dot and no .npz loads again; a folder that does not exist is a sentence."""
     q = lk.robot("left").ready
     with lk.Arm(q0=q) as arm:
         log = lk.run(arm, lk.Hold(q, 0.05), lk.control.hold(q))
@@ -193,6 +203,7 @@ def test_a_log_is_found_by_the_name_it_was_saved_by(tmp_path):
 
 
 def test_a_robot_is_a_value_that_travels(robot):
+    """It comes back equal from pickle and from its own data, and is not copied when it is given."""
     back = pickle.loads(pickle.dumps(robot))
     assert back.data() == robot.data() == lk.Robot(**robot.data()).data()
     assert as_robot(robot) is robot
@@ -210,6 +221,7 @@ def test_a_replay_carries_the_joints_of_an_arm_without_meshes(robot, model):
 
 
 def test_a_camera_sees_a_capsule_for_each_link(robot, model):
+    """Links and base have a capsule each, and darken between 1 % and 50 % of the picture."""
     links, frames = capsules(robot), link_frames(robot, robot.ready)
     assert len(links) == robot.n + 1
     last = frames[links[-1].parent]
@@ -224,6 +236,7 @@ def test_a_camera_sees_a_capsule_for_each_link(robot, model):
 
 
 def test_a_hand_without_a_camera_is_a_sentence(robot):
+    """Camera.in_hand refuses an arm whose hand has no camera."""
     with lk.Arm(robot) as arm, pytest.raises(LabkitError, match="no camera in its hand"):
         lk.Camera.in_hand(arm)
 
@@ -261,6 +274,7 @@ def test_a_double_pendulum_is_a_robot_too(tmp_path):
 
 
 def test_a_continuous_joint_turns_once_either_way(tmp_path):
+    """Its limits are -2 pi and 2 pi rad, whether the file writes limits of angle or not."""
     text = ONE.replace('"turn" type="revolute"', '"turn" type="continuous"')
     assert_allclose(read(tmp_path, text).upper, [2.0 * np.pi, 1.0])
     unlimited = text.replace('lower="-2" upper="2" ', "")
@@ -316,10 +330,12 @@ def test_an_arm_too_weak_for_its_weight_sinks(tmp_path):
 
 
 def test_a_robot_without_a_name_is_called_like_its_file(tmp_path):
+    """Without a name in the URDF the robot of one.urdf is called one."""
     assert read(tmp_path, ONE.replace(' name="one"', "", 1)).name == "one"
 
 
 def test_the_joints_of_a_gripper_stand_still(tmp_path):
+    """A finger that slides and mimics beyond the tip adds no joint to the arm."""
     finger = """<link name="finger"/><joint name="close" type="prismatic"><parent link="hand"/>
         <child link="finger"/><mimic joint="turn"/></joint></robot>"""
     assert read(tmp_path, ONE.replace("</robot>", finger)).joint_names == ("turn", "bend")
@@ -372,12 +388,14 @@ BAD = {
 
 @pytest.mark.parametrize("case", BAD)
 def test_what_an_arm_here_cannot_have_is_a_sentence(tmp_path, case):
+    """Each URDF that cannot be an arm is refused in words that say what is wrong with it."""
     (args, words) = BAD[case]
     with pytest.raises(LabkitError, match=words):
         read(tmp_path, *args)
 
 
 def test_bad_arguments_are_sentences(tmp_path):
+    """The error for a wrong file, ready pose, arm or plant says what is expected."""
     with pytest.raises(LabkitError, match=r"no\.urdf cannot be read: No such file"):
         lk.Robot.from_urdf(tmp_path / "no.urdf", tip="hand", ready=[0.0])
     with pytest.raises(LabkitError, match=r"^<robot.{100,250}$"):

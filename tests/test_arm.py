@@ -28,6 +28,7 @@ def arm(side):
 
 
 def test_it_starts_at_rest_in_rethinks_neutral_pose(arm):
+    """At t = 0 its angles are exactly the neutral ones and its speeds exactly zero."""
     t, q, dq, _ = arm.state()
     assert t == 0.0
     assert_array_equal(q, arm.robot.neutral)
@@ -36,6 +37,7 @@ def test_it_starts_at_rest_in_rethinks_neutral_pose(arm):
 
 @pytest.mark.parametrize("mode", ["position", "velocity", "torque"])
 def test_it_holds_the_neutral_pose_in_each_mode_with_torque_to_spare(arm, mode):
+    """After 1 s it is within 1e-4 rad, and never took 60 % of a motor's torque."""
     q = arm.robot.neutral
     command = {
         "position": lk.JointPosition(q),
@@ -52,11 +54,13 @@ def test_it_holds_the_neutral_pose_in_each_mode_with_torque_to_spare(arm, mode):
 
 
 def test_it_stays_where_it_was_put_without_any_command(arm):
+    """After 1 s without a command its angles are within 2e-5 rad of the neutral ones."""
     arm.world.step(1000)
     assert_allclose(arm.state().q, arm.robot.neutral, atol=2e-5)
 
 
 def test_it_goes_to_a_position(arm):
+    """It reaches angles up to 0.02 rad away within 1 s, to 5e-4 rad."""
     goal = arm.robot.neutral + [0.01, -0.02, 0.01, 0.01, -0.01, 0.02, -0.02]
     for _ in range(10):
         arm.apply(lk.JointPosition(goal))
@@ -98,6 +102,7 @@ def test_small_setpoints_are_followed_closely(arm):
 
 
 def test_it_turns_at_a_speed(arm):
+    """After 0.1 s it has the speed to 1e-4 rad/s, and it covers the angles that the speed gives."""
     speed = np.array([0.2, -0.1, 0.3, 0.1, -0.4, 0.2, 0.5])
     arm.apply(lk.JointVelocity(speed))
     arm.world.step(100)
@@ -108,6 +113,7 @@ def test_it_turns_at_a_speed(arm):
 
 
 def test_a_torque_accelerates_it_as_the_equations_of_motion_say(arm):
+    """In the first step from rest the acceleration is M^-1 (tau - g)."""
     tau = arm.model.gravity(arm.robot.neutral) + [1.0, -1.0, 0.5, 0.5, 0.2, -0.2, 0.1]
     arm.apply(lk.JointTorque(tau))
     arm.world.step()
@@ -117,6 +123,7 @@ def test_a_torque_accelerates_it_as_the_equations_of_motion_say(arm):
 
 
 def test_speeds_and_torques_beyond_the_limits_are_cut_and_it_says_so(arm):
+    """A command beyond a limit is cut to it and sets saturated; one at the limit does not."""
     arm.apply(lk.JointTorque(np.full(7, 1e3)))
     assert arm.saturated
     arm.world.step()
@@ -130,6 +137,7 @@ def test_speeds_and_torques_beyond_the_limits_are_cut_and_it_says_so(arm):
 
 
 def test_the_motors_never_give_more_than_their_limits(arm):
+    """Torque keeps its limits for 20 steps at full speed and 20 at full speed the other way."""
     for sign in (1.0, -1.0):
         arm.apply(lk.JointVelocity(sign * arm.robot.speed))
         for _ in range(20):
@@ -150,6 +158,7 @@ def test_after_the_command_timeout_it_holds_its_place(arm):
 
 
 def test_stop_brings_it_to_rest(arm):
+    """From 0.5 rad/s it is at rest to 1e-4 rad/s within 0.15 s of the stop."""
     arm.apply(lk.JointVelocity(np.full(7, 0.5)))
     arm.world.step(100)
     arm.stop()
@@ -158,6 +167,7 @@ def test_stop_brings_it_to_rest(arm):
 
 
 def test_reset_puts_it_anywhere_at_rest(arm):
+    """A moving arm has exactly the new angles and no speed, stays there, and returns to neutral."""
     arm.apply(lk.JointVelocity(np.full(7, 0.5)))
     arm.world.step(100)
     arm.reset(arm.robot.ready)
@@ -170,12 +180,14 @@ def test_reset_puts_it_anywhere_at_rest(arm):
 
 
 def test_the_state_cannot_be_written_to(arm):
+    """Angles, speeds and torques of a state are read-only arrays."""
     for part in arm.state()[1:]:
         with pytest.raises(ValueError, match="read-only"):
             part[0] = 1.0
 
 
 def test_the_same_commands_give_the_same_motion_bit_for_bit(side):
+    """Two Baxter plants with one seed end in exactly the same state, noise included."""
     ends = []
     for _ in range(2):
         with lk.Arm(side, lk.BAXTER, seed=3) as arm:
@@ -198,6 +210,7 @@ BAD = [
 
 @pytest.mark.parametrize(("q", "error", "words"), BAD)
 def test_angles_that_cannot_be_are_refused_and_the_arm_stays_usable(arm, q, error, words):
+    """Reset, JointPosition and a new Arm name what is wrong, and the arm holds its pose."""
     for use in (arm.reset, lambda q: arm.apply(lk.JointPosition(q)), lambda q: lk.Arm(q0=q)):
         with pytest.raises(error, match=words) as caught:
             use(q)
@@ -208,6 +221,7 @@ def test_angles_that_cannot_be_are_refused_and_the_arm_stays_usable(arm, q, erro
 
 @pytest.mark.parametrize("command", [None, np.zeros(7), [0.0] * 7, "stop", lk.JointTorque])
 def test_what_is_no_command_is_refused_with_those_that_are(arm, command):
+    """The error lists the commands in under 300 characters, and the arm holds its pose."""
     with pytest.raises(ControllerError, match=r"not a command.*JointPosition, JointV") as caught:
         arm.apply(command)
     assert len(str(caught.value)) < 300
@@ -217,11 +231,13 @@ def test_what_is_no_command_is_refused_with_those_that_are(arm, command):
 
 @pytest.mark.parametrize("side", ["middle", None, 3, "LEFT"])
 def test_there_are_two_arms(side):
+    """The error for any other side lists 'left' and 'right'."""
     with pytest.raises(UnknownName, match="there is 'left', 'right'"):
         lk.Arm(side)
 
 
 def test_a_plant_in_the_place_of_the_side_makes_no_long_sentence():
+    """The plant is cut short, so that the sentence has fewer than 120 characters."""
     with pytest.raises(
         UnknownName, match=r"no arm Plant\(name='baxter'.*; there is 'left'"
     ) as caught:
@@ -239,12 +255,13 @@ def test_a_plant_in_the_place_of_the_side_makes_no_long_sentence():
     ],
 )
 def test_what_is_no_plant_no_seed_or_no_world_is_named(given, words):
+    """The error for a wrong plant, seed or world has its name and its value."""
     with pytest.raises(TypeMismatch, match=words):
         lk.Arm("left", **given)
 
 
 def test_a_world_has_each_arm_once():
-    """Two would stand in one place and push each other off by their tips."""
+    """Two would be in one place and push each other off by their tips."""
     with lk.Arm() as arm:
         lk.Arm("right", world=arm.world)
         with pytest.raises(LabkitError, match=r"left arm already.*new World"):

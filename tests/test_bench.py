@@ -16,6 +16,7 @@ pytestmark = pytest.mark.pybullet
 
 
 def test_the_plain_loop_does_the_same_work_bit_for_bit():
+    """After 0.5 s it ends at exactly the angles of lk.run, and the arm has moved."""
     target, controller = closed_loop.task()
     client, body = hand_loop.open_arm(lk.robot("left").urdf())
     q = hand_loop.hand_loop(client, body, target, controller, 0.5)
@@ -34,6 +35,8 @@ def test_the_plain_loop_is_plain():
 
 
 def test_the_figures_are_one_flat_object(monkeypatch, tmp_path, capsys):
+    """The file holds each figure, rounded, and null for one that this machine cannot measure."""
+
     class Fake:
         def measure():
             """Two figures, one of them not to be had."""
@@ -47,6 +50,8 @@ def test_the_figures_are_one_flat_object(monkeypatch, tmp_path, capsys):
 
 
 def test_one_that_fails_says_so_and_does_not_stop_the_others(monkeypatch, tmp_path, capsys):
+    """The error is printed, the figures of the others are written, and the bench then fails."""
+
     class Broken:
         def measure():
             """A figure that cannot be had."""
@@ -66,6 +71,8 @@ def test_one_that_fails_says_so_and_does_not_stop_the_others(monkeypatch, tmp_pa
 
 
 def test_one_alone_is_printed_and_not_written(monkeypatch, tmp_path, capsys):
+    """The one named is measured alone and not written; the error for an unknown one lists all."""
+
     class One:
         def measure():
             """A figure."""
@@ -87,4 +94,5 @@ def test_one_alone_is_printed_and_not_written(monkeypatch, tmp_path, capsys):
 
 @pytest.mark.parametrize("module", bench.MEASUREMENTS, ids=lambda m: m.__name__)
 def test_each_measurement_says_what_it_measures(module):
+    """The first line of its docstring ends with a full stop."""
     assert module.measure.__doc__.splitlines()[0].endswith(".")

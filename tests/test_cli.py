@@ -59,6 +59,7 @@ def test_the_list_of_verbs_says_what_each_does(capsys):
     ],
 )
 def test_a_number_that_makes_no_sense_is_a_sentence(words, sentence, capsys):
+    """A number out of range ends with exit code 2, and the error has the range."""
     assert main(words) == 2
     assert sentence in capsys.readouterr().err
 
@@ -90,6 +91,7 @@ def test_a_number_that_makes_no_sense_is_a_sentence(words, sentence, capsys):
     ],
 )
 def test_a_wrong_file_or_folder_is_a_sentence(words, sentence, tmp_path, monkeypatch, capsys):
+    """It ends with exit code 2 and one line that begins with the command, and writes nothing."""
     monkeypatch.chdir(tmp_path)
     assert main([str(word) for word in words]) == 2
     err = capsys.readouterr().err
@@ -98,7 +100,7 @@ def test_a_wrong_file_or_folder_is_a_sentence(words, sentence, tmp_path, monkeyp
 
 
 def test_a_submission_that_calls_itself_a_course_is_none(tmp_path, monkeypatch, capsys):
-    """Whoever stands in it runs none of its code; the one who names it with --course means it."""
+    """A command typed inside it runs none of its code; only --course makes it the course."""
     inside = tmp_path / "submitted" / "mallory"
     inside.mkdir(parents=True)
     for folder in (tmp_path, inside):

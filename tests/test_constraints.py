@@ -47,6 +47,6 @@ def test_what_is_installed_is_what_is_pinned():
 
 
 def test_no_pin_names_an_index():
-    """Versions stand there and nothing else: no address, no path."""
+    """The list holds versions and nothing else: no address, no path."""
     lines = [x for x in PINS.read_text().splitlines() if x and not x.startswith("#")]
     assert all(WHERE.fullmatch(line) for line in lines), lines

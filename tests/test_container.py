@@ -55,7 +55,7 @@ def test_a_students_image_is_made_from_the_handout_alone():
 
 
 def test_a_students_container_is_no_roots():
-    """Whoever works in a student's container is an ordinary user."""
+    """Anyone who works in a student's container is an ordinary user."""
     assert re.findall(r"^USER (.*)$", STAGES[-1], flags=re.MULTILINE) == ["jovyan"]
 
 

@@ -11,6 +11,7 @@ from labkit.errors import LabkitError, NotFinite, ShapeError, TypeMismatch
 
 @pytest.mark.parametrize("kind", COMMANDS)
 def test_a_command_is_a_locked_copy_of_what_was_given(kind):
+    """It keeps its numbers when the caller's array changes, and nobody can write to it."""
     x = np.arange(7.0)
     command = kind(x)
     x[0] = 9.0
@@ -38,6 +39,7 @@ def test_a_command_is_a_locked_copy_of_what_was_given(kind):
     ],
 )
 def test_a_bad_command_is_refused_when_it_is_made(kind, x, error, words):
+    """A wrong shape, type or number is named with the kind of command."""
     with pytest.raises(error, match=f"{kind.__name__}.*{words}") as caught:
         kind(x)
     assert isinstance(caught.value, LabkitError)
@@ -45,10 +47,12 @@ def test_a_bad_command_is_refused_when_it_is_made(kind, x, error, words):
 
 @pytest.mark.parametrize("kind", COMMANDS)
 def test_a_command_of_too_few_numbers_is_refused_when_it_is_given(ideal, kind):
+    """Six numbers make a command, which an arm of seven joints refuses."""
     with pytest.raises(ShapeError, match=f"{kind.__name__} .*give 7 numbers, not 6"):
         ideal.apply(kind(np.zeros(6)))
 
 
 def test_a_state_unpacks():
+    """A state is a tuple of time, angles, speeds and external torque, which is zero by default."""
     t, q, dq, tau_ext = lk.State(0.5, np.zeros(7), np.ones(7))
     assert (t, q[0], dq[0], tau_ext[0]) == (0.5, 0.0, 1.0, 0.0)

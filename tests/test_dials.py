@@ -68,7 +68,7 @@ def test_a_bar_says_how_long_it_takes_and_when_it_is_done(shown, widgets, monkey
 
 
 def test_boxes_are_words_where_no_widget_can_be_shown(shown, widgets):
-    """A page that shows the saved notebook as text is told what was there."""
+    """A page that shows the saved notebook as text says what was there."""
     lk.plotting.dials(lambda kd: (plt.figure(), ""), kd=(0.0, 2.0, 1.0, "N m s/rad"))
     lk.plotting.progress("pushing", 10.0)
     words = [x["text/plain"] for x in shown if "text/plain" in x]

@@ -15,6 +15,7 @@ FAMILY = [
 
 @pytest.mark.parametrize("error", FAMILY, ids=lambda e: e.__name__)
 def test_every_error_is_a_labkit_error_with_a_sentence_of_its_own(error):
+    """Each class derives from LabkitError, and its docstring ends with a full stop."""
     assert issubclass(error, LabkitError)
     assert error.__doc__.strip().endswith(".")
 
@@ -33,6 +34,7 @@ def test_every_error_is_a_labkit_error_with_a_sentence_of_its_own(error):
     ],
 )
 def test_an_error_is_also_the_builtin_one_that_is_usual(error, builtin):
+    """Each is also the ValueError, TypeError, KeyError or RuntimeError that one expects."""
     assert issubclass(error, builtin)
 
 
@@ -48,6 +50,7 @@ def test_an_error_is_also_the_builtin_one_that_is_usual(error, builtin):
     ],
 )
 def test_a_wrong_shape_names_both_shapes_and_the_way_out(expected, actual, way_out):
+    """The sentence has both shapes and the remedy; the attributes keep the shapes."""
     error = ShapeError("q", expected, actual)
     assert str(actual) in str(error)
     assert str(expected) in str(error)
@@ -56,6 +59,7 @@ def test_a_wrong_shape_names_both_shapes_and_the_way_out(expected, actual, way_o
 
 
 def test_a_joint_out_of_range_keeps_its_evidence_and_suspects_degrees():
+    """45 rad is suspected to be degrees, 1.2 rad is not; joint and value stay attributes."""
     error = JointLimitExceeded("q", "left_s1", 45.0, -2.147, 1.047)
     assert str(error) == (
         "q: joint left_s1 at 45 rad is outside [-2.147, 1.047] rad; "
@@ -66,6 +70,7 @@ def test_a_joint_out_of_range_keeps_its_evidence_and_suspects_degrees():
 
 
 def test_an_unknown_name_lists_those_that_exist_without_extra_quotes():
+    """The text is the plain sentence, not the quoted one of a KeyError."""
     error = UnknownName("arm", "middle", ("left", "right"))
     assert str(error) == "no arm 'middle'; there is 'left', 'right'"
 

@@ -141,12 +141,14 @@ def where(path, line):
 
 @pytest.mark.parametrize("path", FILES, ids=lambda p: str(p.relative_to(LABKIT)))
 def test_labkit_never_imports_the_answers_nor_the_tests(path):
+    """No file of labkit imports solutions, tests or book, not even inside a function."""
     for name, line in imported(path):
         assert name.split(".")[0] not in ("solutions", "tests", "book"), where(path, line)
 
 
 @pytest.mark.parametrize("path", FILES, ids=lambda p: str(p.relative_to(LABKIT)))
 def test_foreign_libraries_stay_in_their_modules(path):
+    """Only its owners import a library that has owners, and no module ompl or toppra."""
     owners = {
         "pybullet": {"sim.pybullet"}, "mujoco": {"sim.mujoco"}, "pinocchio": MODEL,
         "matplotlib": DRAW, "anywidget": DRAW, "ompl": set(), "toppra": set(),
@@ -176,7 +178,7 @@ BELOW = [path for path in FILES if names(path)[0] not in UPSTAIRS]
 
 @pytest.mark.parametrize("path", BELOW, ids=lambda p: str(p.relative_to(LABKIT)))
 def test_imports_point_one_way(path):
-    """Each module of lab and course has a place, and imports only what stands below it."""
+    """Each module of lab and course has a place, and imports only what is below it."""
     here = module(path)
     assert here in LEVEL, f"{here} has no place in the order"
     for name, line in imported(path):
@@ -225,6 +227,7 @@ def test_the_order_names_modules_that_exist():
 
 
 def test_every_name_in_all_exists():
+    """Each name in lk.__all__ gives an object, and any other name is an AttributeError."""
     import labkit as lk
 
     for name in lk.__all__:
@@ -262,6 +265,7 @@ def test_completion_offers_what_is_not_loaded_yet():
 
 
 def test_importing_labkit_loads_no_drawing_nor_notebook_package():
+    """After `import labkit` none of eleven heavy packages is loaded, such as matplotlib."""
     loaded = python("import sys, labkit; print(*sys.modules)").split()
     heavy = {"matplotlib", "IPython", "anywidget", "ipywidgets", "cv2", "scipy", "control",
              "nbgrader", "pandas", "ompl", "toppra"}  # fmt: skip

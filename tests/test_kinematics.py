@@ -27,6 +27,7 @@ def test_the_three_jacobians_are_the_slopes_of_the_pose(side, model, states):
 
 
 def test_the_jacobians_are_one_another_seen_from_elsewhere(side, model, states):
+    """The pose's adjoint makes the body Jacobian the spatial one, its rotation the tip's."""
     for q, _ in states(side):
         T, J_b = model.pose(q), model.body_jacobian(q)
         assert_allclose(model.spatial_jacobian(q), pin.SE3(T).toActionMatrix() @ J_b, atol=1e-12)
@@ -35,6 +36,7 @@ def test_the_jacobians_are_one_another_seen_from_elsewhere(side, model, states):
 
 
 def test_the_jacobians_rate_is_its_slope(side, model, states):
+    """The rate is the slope of the tip's Jacobian along the motion."""
     for q, dq in states(side):
         assert_allclose(
             model.tip_jacobian_rate(q, dq), slope_along(model.tip_jacobian, q, dq), atol=2e-8
@@ -42,6 +44,7 @@ def test_the_jacobians_rate_is_its_slope(side, model, states):
 
 
 def test_manipulability_is_the_volume_and_nearness_the_shortest_axis(side, model, states):
+    """Both are those of the ellipsoid of J J^T: product of the axes and least axis."""
     for q, _ in states(side):
         J = model.tip_jacobian(q)
         axes = np.sqrt(np.linalg.eigvalsh(J @ J.T))
@@ -50,13 +53,14 @@ def test_manipulability_is_the_volume_and_nearness_the_shortest_axis(side, model
 
 
 def test_a_stretched_arm_is_nearer_to_a_singularity_than_a_bent_one(model):
+    """At zero angles both measures are below 0.3 of what they are in the ready pose."""
     stretched, bent = np.zeros(7), model.robot.ready
     for measure in (model.nearness_to_singularity, model.manipulability):
         assert measure(stretched) < 0.3 * measure(bent)
 
 
 def test_inverse_kinematics_returns_to_the_pose(side, model, random):
-    """From the ready pose to poses of nearby angles, within limits and to 1e-9."""
+    """From the ready pose to poses of nearby angles, within limits and to seven digits."""
     r = model.robot
     for _ in range(30):
         T = model.pose(r.ready + random.uniform(-0.3, 0.3, 7))
@@ -77,6 +81,7 @@ def test_of_all_answers_it_gives_the_one_nearest_to_the_posture(side, model, ran
 
 
 def test_the_answer_is_the_posture_itself_where_that_fits(model):
+    """With the ready angles as posture, a search for the ready pose from 0.1 rad off ends there."""
     r = model.robot
     q = model.inverse_kinematics(model.pose(r.ready), r.ready + 0.1, posture=r.ready)
     assert_allclose(q, r.ready, atol=1e-8)
@@ -88,6 +93,7 @@ def circle(model, turns=1.0):
 
 
 def test_a_joint_trajectory_keeps_the_tip_on_its_path(model):
+    """On a circle the tip is at its target to 1e-6 m and keeps its orientation."""
     q0 = model.robot.ready
     target, R = circle(model), model.pose(q0)[:3, :3]
     joints = model.joint_trajectory(target, q0)
@@ -98,6 +104,7 @@ def test_a_joint_trajectory_keeps_the_tip_on_its_path(model):
 
 
 def test_a_closed_path_gives_closed_joints(model):
+    """After a whole circle the joint angles are those of its start."""
     q0 = model.robot.ready
     joints = model.joint_trajectory(circle(model), q0)
     assert_allclose(joints(0.0).position, q0, atol=1e-8)
@@ -106,6 +113,7 @@ def test_a_closed_path_gives_closed_joints(model):
 
 @pytest.mark.parametrize("t", [0.31, 1.0, 2.2, 3.7])
 def test_a_joint_trajectorys_velocity_and_acceleration_are_its_slopes(model, t):
+    """Its velocity also moves the tip at the path's, to 1e-4 m/s."""
     joints = model.joint_trajectory(circle(model), model.robot.ready)
     assert_slopes(joints, t)
     x, dx, _ = joints(t)
@@ -113,6 +121,7 @@ def test_a_joint_trajectorys_velocity_and_acceleration_are_its_slopes(model, t):
 
 
 def test_a_joint_trajectory_follows_poses_that_turn(model):
+    """Place and orientation are the target's to 1e-6 at 23 times of a line with a turn."""
     q0 = model.robot.ready
     T = model.pose(q0)
     goal = se3.rotation([0.0, 0.3, 0.2]) @ T[:3, :3]
@@ -124,6 +133,7 @@ def test_a_joint_trajectory_follows_poses_that_turn(model):
 
 
 def test_a_chain_stays_a_chain_and_is_continuous(model):
+    """Its parts, nested ones too, keep their starts, and the joint angles jump at none of them."""
     q0 = model.robot.ready
     p = model.pose(q0)[:3, 3]
     corners = [p, p + [0.1, 0, 0], p + [0.1, 0.1, 0], p]
@@ -136,6 +146,7 @@ def test_a_chain_stays_a_chain_and_is_continuous(model):
 
 
 def test_a_hold_becomes_a_hold_of_joint_angles(model):
+    """A pose or a point held for 2 s becomes the present joint angles held for 2 s."""
     q0 = model.robot.ready
     for place in (model.pose(q0), model.pose(q0)[:3, 3]):
         hold = model.joint_trajectory(lk.Hold(place, 2.0), q0)
@@ -144,6 +155,7 @@ def test_a_hold_becomes_a_hold_of_joint_angles(model):
 
 
 def test_a_pose_out_of_reach_is_refused_with_the_reach(model):
+    """The sentence has the distance from the shoulder, the arm's span and the way out."""
     T = model.pose(model.robot.ready)
     T[:3, 3] += [1.0, 0.0, 0.0]
     with pytest.raises(
@@ -153,6 +165,7 @@ def test_a_pose_out_of_reach_is_refused_with_the_reach(model):
 
 
 def test_an_unreachable_point_on_the_way_is_named_with_s_the_pose_and_the_limit(model):
+    """A line out of reach says at which s it cannot be followed, and what limits it."""
     q0 = model.robot.ready
     p = model.pose(q0)[:3, 3]
     far = lk.Trajectory(lk.Line(p, p + [1.0, 0.0, 0.0]), lk.Quintic(2.0))
@@ -175,6 +188,7 @@ def test_a_joint_at_its_limit_is_named_with_the_limit(model):
 
 
 def test_degrees_are_suspected(model):
+    """The error for the neutral pose in degrees names the joint and asks about degrees."""
     q = np.degrees(model.robot.neutral)
     with pytest.raises(JointLimitExceeded, match=r"_s1 at -31\.51 rad is outside .* in degrees\?"):
         model.within_limits(q)
@@ -190,17 +204,20 @@ def test_degrees_are_suspected(model):
     ],
 )
 def test_what_is_no_pose_is_refused(model, T, words):
+    """A wrong shape, a NaN, a mirror image and a transpose are each named."""
     with pytest.raises(LabkitError, match=words):
         model.inverse_kinematics(T, model.robot.ready)
 
 
 @pytest.mark.parametrize("target", [lk.Line([0, 0, 0], [1, 1, 1]), None, lambda t: t])
 def test_a_joint_trajectory_wants_a_trajectory(model, target):
+    """The error for a path, None or a function lists the three kinds that it takes."""
     with pytest.raises(LabkitError, match="takes a Trajectory, Chain or Hold, not"):
         model.joint_trajectory(target, model.robot.ready)
 
 
 def test_a_joint_trajectory_of_joint_angles_is_refused(model):
+    """Such a target can be followed as it is, and the error says so."""
     q0 = model.robot.ready
     for target in (lk.Trajectory(lk.Line(q0, q0 + 0.1), lk.Cubic(1.0)), lk.Hold(q0, 1.0)):
         with pytest.raises(TypeMismatch, match=r"not 7 numbers.*followed as it is"):

@@ -51,7 +51,7 @@ def hits(text):
 
 @pytest.mark.parametrize("path", texts(), ids=str)
 def test_a_text_is_plain_english(path):
-    """No expression of the list stands in the text."""
+    """No expression of the list is in the text."""
     assert list(hits((ROOT / path).read_text(encoding="utf-8"))) == []
 
 

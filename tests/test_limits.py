@@ -18,7 +18,7 @@ def line(seconds, way=(0.1, 0.2, 0.1)):
 
 
 def test_a_motion_within_the_limits_says_nothing():
-    """Three seconds for 24 cm is no haste."""
+    """Three seconds for 24 cm bring no warning."""
     with warnings.catch_warnings():
         warnings.simplefilter("error")
         MODEL.joint_trajectory(line(3.0), READY)

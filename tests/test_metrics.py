@@ -31,17 +31,20 @@ def pose_log(ideal):
 
 
 def test_joint_error_is_target_minus_actual(joint_log):
+    """An arm that lags behind a rising target ends with errors above 0.05 rad: positive ones."""
     e = metrics.joint_error(joint_log)
     assert_allclose(e, joint_log.target.position - joint_log.q)
     assert (e[-1] > 0.05).all()
 
 
 def test_tip_error_is_target_minus_actual_in_world_axes(pose_log):
+    """A target 10 mm above and turned by 0.1 rad about z gives just these numbers."""
     e = metrics.tip_error(pose_log)
     assert_allclose(e, np.tile([0, 0, 0.01, 0, 0, 0.1], (len(pose_log), 1)), atol=1e-5)
 
 
 def test_the_tip_error_of_a_joint_run_is_that_of_its_poses(joint_log):
+    """It is the model's pose error between target and actual angles."""
     model = metrics.model_of(joint_log)
     e = metrics.tip_error(joint_log, model)
     for k in (0, 500, 1000):
@@ -50,16 +53,19 @@ def test_the_tip_error_of_a_joint_run_is_that_of_its_poses(joint_log):
 
 
 def test_velocity_error_is_the_slope_of_the_position_error(joint_log):
+    """Apart from five ticks at either end the two agree to 1 mm/s."""
     e = metrics.tip_error(joint_log)[:, :3]
     slope = np.gradient(e, joint_log.t, axis=0)
     assert_allclose(metrics.velocity_error(joint_log)[5:-5], slope[5:-5], atol=1e-3)
 
 
 def test_the_velocity_error_of_a_still_pose_is_the_tips_own_speed(pose_log):
+    """For an arm that holds still it is zero to 0.1 mm/s."""
     assert_allclose(metrics.velocity_error(pose_log), np.zeros((len(pose_log), 3)), atol=1e-4)
 
 
 def test_a_run_after_poses_has_no_joint_error(pose_log):
+    """The error says that poses were followed, and suggests tip_error."""
     with pytest.raises(TypeMismatch, match=r"followed poses.*tip_error"):
         metrics.joint_error(pose_log)
 
@@ -74,6 +80,7 @@ def test_a_run_after_points_is_told_how_to_make_poses_of_them(ideal):
 
 
 def test_since_keeps_the_rows_from_a_time_on(joint_log):
+    """Times, targets and states begin there; the error for a later time has the run's end."""
     rest = metrics.since(joint_log, 0.75)
     assert (rest.t[0], rest.t[-1]) == (0.75, 1.0)
     assert_allclose(rest.target.position, joint_log.target.position[750:])
@@ -83,23 +90,27 @@ def test_since_keeps_the_rows_from_a_time_on(joint_log):
 
 
 def test_a_log_knows_its_model(joint_log):
+    """The model of a log has the robot and the plant of its run."""
     model = metrics.model_of(joint_log)
     assert (model.robot.name, model.plant) == ("left", lk.IDEAL)
 
 
 @given(errors, st.floats(0.01, 100.0))
 def test_rms_scales_with_the_error_and_is_below_the_largest(e, k):
+    """It is the root of the mean square of the rows' lengths, so k errors give k times it."""
     assert metrics.rms(k * e) == pytest.approx(k * metrics.rms(e))
     assert metrics.rms(e) <= np.linalg.norm(e, axis=1).max() * (1 + 1e-12)
     assert metrics.rms(e) == pytest.approx(np.sqrt(np.mean(np.sum(e**2, axis=1))))
 
 
 def test_rms_of_a_constant_is_its_length():
+    """Rows of (3, 4) give 5, and plain numbers of 2 and -2 give 2."""
     assert metrics.rms(np.tile([3.0, 4.0], (10, 1))) == pytest.approx(5.0)
     assert metrics.rms([2.0, -2.0]) == pytest.approx(2.0)
 
 
 def test_settling_is_the_last_time_outside():
+    """It counts from the first time, is 0 if all is inside, and infinite if the end is not."""
     t = np.arange(5.0)
     assert metrics.settling_time(t, [3, 2, 1, 0.1, 0.1], 0.5) == 3.0
     assert metrics.settling_time(t, [0, 0, 3, 0, 0], 0.5) == 3.0
@@ -118,11 +129,13 @@ def test_settling_is_the_last_time_outside():
     ],
 )
 def test_what_is_no_error_over_time_is_named(call, error, words):
+    """An empty list, a word, a NaN and times of another length are each refused by name."""
     with pytest.raises(error, match=words):
         call()
 
 
 def test_a_summary_is_what_its_parts_say(pose_log):
+    """A target 10 mm and 0.1 rad away gives both, the run's effort and duration, and a sentence."""
     numbers = metrics.summary(pose_log)
     assert numbers.rms_mm == pytest.approx(10.0, abs=0.01)
     assert numbers.max_mm == pytest.approx(10.0, abs=0.01)

@@ -12,6 +12,7 @@ STEP = 1e-6
 
 
 def test_the_mass_matrix_is_symmetric_and_positive_definite(side, model, states):
+    """At 100 random states of each arm it is symmetric to the bit and positive definite."""
     for q, _ in states(side, 100):
         M = model.mass_matrix(q)
         assert (M == M.T).all()
@@ -19,12 +20,14 @@ def test_the_mass_matrix_is_symmetric_and_positive_definite(side, model, states)
 
 
 def test_mdot_minus_2c_is_skew(side, model, states):
+    """The slope of M along the motion less 2 C is antisymmetric to 1e-7."""
     for q, dq in states(side):
         S = slope_along(model.mass_matrix, q, dq) - 2.0 * model.coriolis(q, dq)
         assert_allclose(S + S.T, np.zeros((7, 7)), atol=1e-7)
 
 
 def test_gravity_is_the_slope_of_the_potential_energy(side, model, states):
+    """The potential energy rises at g(q) dq, to 1e-6 W."""
     for q, dq in states(side):
         assert slope_along(model.potential_energy, q, dq) == pytest.approx(
             model.gravity(q) @ dq, abs=1e-6
@@ -32,6 +35,7 @@ def test_gravity_is_the_slope_of_the_potential_energy(side, model, states):
 
 
 def test_the_bias_is_coriolis_and_gravity(side, model, states):
+    """The bias is C dq + g, and g alone at rest."""
     for q, dq in states(side):
         assert_allclose(
             model.bias(q, dq), model.coriolis(q, dq) @ dq + model.gravity(q), atol=1e-10
@@ -40,6 +44,7 @@ def test_the_bias_is_coriolis_and_gravity(side, model, states):
 
 
 def test_the_kinetic_energy_is_half_dq_m_dq(side, model, states):
+    """The model's kinetic energy is half dq M dq to twelve digits."""
     for q, dq in states(side):
         energy = 0.5 * dq @ model.mass_matrix(q) @ dq
         assert model.kinetic_energy(q, dq) == pytest.approx(energy, rel=1e-12)
@@ -71,6 +76,7 @@ def test_a_force_at_the_tip_meets_the_operational_inertia(side, model, states):
 
 
 def test_links_sum_up_to_the_mass_matrix_and_gravity(side, model, states):
+    """The links' masses, inertias and Jacobians add up to M and g."""
     for q, _ in states(side, 5):
         M, g = np.zeros((7, 7)), np.zeros(7)
         for link in model.links(q):
@@ -115,6 +121,7 @@ BAD = [
      "operational_inertia", "potential_energy", "manipulability", "within_limits"],
 )  # fmt: skip
 def test_bad_angles_never_reach_pinocchio(ask, q, error, words):
+    """Each question refuses a wrong shape, a word, None and NaN with a sentence about q."""
     with pytest.raises(error, match=words) as caught:
         getattr(MODEL, ask)(q)
     assert isinstance(caught.value, LabkitError)
@@ -125,6 +132,7 @@ MODEL = lk.Model()
 
 @pytest.mark.parametrize("ask", ["coriolis", "bias", "kinetic_energy", "tip_jacobian_rate"])
 def test_bad_speeds_never_reach_pinocchio(ask):
+    """A column of speeds is refused by name, and lists give what arrays do."""
     with pytest.raises(ShapeError, match="dq has shape"):
         getattr(MODEL, ask)(np.zeros(7), np.zeros((7, 1)))
     assert_allclose(

@@ -17,6 +17,7 @@ PER_JOINT = (
 
 
 def test_every_effect_is_off_by_default_and_on_the_ideal_arm():
+    """All but name and command timeout are zero or False, and equal in both."""
     for field in dataclasses.fields(lk.Plant):
         if field.name in ("name", "command_timeout"):
             continue
@@ -47,11 +48,13 @@ def test_what_is_published_has_no_range_of_guesses():
 
 
 def test_a_spring_needs_a_rotor_behind_it():
+    """A joint stiffness without armature is refused, and both are named."""
     with pytest.raises(LabkitError, match="joint_stiffness is given, but armature has a 0"):
         lk.Plant(joint_stiffness=800.0)
 
 
 def test_a_plant_is_a_value():
+    """One number equals seven like it, equal plants have equal hashes, and none can be changed."""
     assert lk.Plant(stiction=1.0) == lk.Plant(stiction=[1.0] * 7)
     assert lk.Plant(stiction=np.float32(1.0)) == lk.Plant(stiction=1)
     assert hash(lk.Plant(stiction=1.0)) == hash(lk.Plant(stiction=np.ones(7)))
@@ -61,6 +64,7 @@ def test_a_plant_is_a_value():
 
 
 def test_one_effect_is_changed_at_a_time():
+    """dataclasses.replace changes the noise alone and leaves the stiction."""
     quiet = dataclasses.replace(lk.BAXTER, velocity_noise=0.0)
     assert_array_equal(quiet.each("velocity_noise", 7), np.zeros(7))
     assert quiet.stiction == lk.BAXTER.stiction
@@ -69,12 +73,14 @@ def test_one_effect_is_changed_at_a_time():
 @pytest.mark.parametrize("field", PER_JOINT)
 @pytest.mark.parametrize("value", [np.ones((7, 1)), np.nan, "high", None, -1.0])
 def test_a_bad_effect_per_joint_is_named(field, value):
+    """The error for a column, NaN, a word, None or a negative number names the effect."""
     with pytest.raises(LabkitError, match=field):
         lk.Plant(**{field: value})
 
 
 @pytest.mark.parametrize("field", PER_JOINT)
 def test_a_plant_of_another_number_of_joints_is_refused_by_the_arm(field):
+    """The error for six numbers and seven joints names the effect."""
     with pytest.raises(LabkitError, match=f"{field}.*give 7 numbers, not 6"):
         springs = {"armature": 0.1, "joint_stiffness": 100.0}
         lk.Arm(plant=lk.Plant(**springs | {field: np.arange(1.0, 7.0)}))
@@ -87,15 +93,18 @@ def test_a_plant_of_another_number_of_joints_is_refused_by_the_arm(field):
 )  # fmt: skip
 @pytest.mark.parametrize("value", [-1.0, np.nan, "high", None, [1.0, 2.0]])
 def test_a_bad_number_is_named(field, value):
+    """The error for a negative number, NaN, a word, None or a list names the effect."""
     with pytest.raises(LabkitError, match=field):
         lk.Plant(**{field: value})
 
 
 def test_more_than_all_ticks_cannot_be_lost():
+    """The error for a share of 1.5 names lost_ticks."""
     with pytest.raises(LabkitError, match="lost_ticks"):
         lk.Plant(lost_ticks=1.5)
 
 
 def test_a_state_rate_must_fit_the_physics_step():
+    """300 Hz does not fit a step of 1 ms, and the error suggests 333 Hz."""
     with pytest.raises(LabkitError, match=r"plant\.state_rate is 300 Hz.*try 333"):
         lk.Arm(plant=lk.Plant(state_rate=300.0))

@@ -340,7 +340,7 @@ def test_a_push_winds_the_springs_up_while_the_motors_stand():
 
 
 def test_an_encoder_that_is_off_leaves_the_hand_off_and_the_controller_content():
-    """The arm reports its target and stands beside it by just the offset."""
+    """The arm reports its target and is beside it by just the offset."""
     off = EVIDENCE["encoder_offset"].most
     plant = lk.Plant(encoder_offset=off)
     with lk.Arm(plant=plant, q0=READY) as arm:
@@ -352,6 +352,7 @@ def test_an_encoder_that_is_off_leaves_the_hand_off_and_the_controller_content()
 
 
 def test_an_encoder_reads_whole_steps():
+    """Each angle read is a multiple of the step, and half a step or less from where the arm is."""
     step = 0.01
     with lk.Arm(plant=lk.Plant(encoder_step=step), q0=READY) as arm:
         read = arm.state().q / step

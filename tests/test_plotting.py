@@ -28,6 +28,7 @@ def closed():
 
 
 def test_tracking_draws_the_tip_against_its_target(log):
+    """Above, position and target in metres; below, the distance between them in millimetres."""
     above, below = plotting.tracking(log)
     T_wt, T_wd = metrics.tip_poses(log), metrics.target_poses(log)
     lines = above.get_lines()
@@ -41,6 +42,7 @@ def test_tracking_draws_the_tip_against_its_target(log):
 
 
 def test_it_draws_where_it_is_told_and_opens_nothing(log):
+    """Given axes come back as they are, and no other figure is opened."""
     _, axes = plt.subplots(2)
     before = plt.get_fignums()
     assert plotting.tracking(log, axes=axes) is axes
@@ -52,6 +54,7 @@ def test_it_draws_where_it_is_told_and_opens_nothing(log):
 
 
 def test_scaling_draws_each_one_with_a_name_and_a_line_style_of_its_own():
+    """The legend has the class's name or the one given, and the curve is s over time."""
     axes = plotting.scaling(lk.Cubic(2.0), ("mine", lk.BangBang(1.0)))
     names = [text.get_text() for text in axes[0].get_legend().get_texts()]
     assert names == ["Cubic", "mine"]
@@ -62,12 +65,14 @@ def test_scaling_draws_each_one_with_a_name_and_a_line_style_of_its_own():
 
 
 def test_curves_differ_by_style_as_well_as_by_colour(log):
+    """The three curves of the tip's coordinates have three line styles."""
     above, _ = plotting.tracking(log)
     styles = [line.get_linestyle() for line in above.get_lines()[1::2]]
     assert len(set(styles)) == 3
 
 
 def test_a_figure_has_words_for_who_does_not_see_it(log):
+    """They name plant, arm and duration, then the RMS error, and end with a full stop."""
     words = plotting.describe(log)
     assert "on the ideal left arm over 0.5 s: RMS" in words
     assert words.endswith(".")

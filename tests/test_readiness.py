@@ -10,6 +10,7 @@ from labkit.sim import chosen
 
 
 def test_ready_prints_one_line_with_versions_platform_memory_and_the_motion(capsys):
+    """It has at most 110 characters, and the arm moved by more than 50 mm."""
     lk.ready()
     out, err = capsys.readouterr()
     assert err == ""
@@ -29,6 +30,7 @@ def test_ready_prints_one_line_with_versions_platform_memory_and_the_motion(caps
 
 
 def test_an_arm_that_does_not_move_is_said_so(monkeypatch):
+    """An arm that ends 0.1 rad off its goal is an error that says how far, and to reinstall."""
     ready = lk.ready
 
     run = lk.run

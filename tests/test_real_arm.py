@@ -148,6 +148,7 @@ def test_run_drives_an_arm_in_another_process_in_real_time(tmp_path):
 
 
 def test_commands_are_cut_to_the_limits_before_they_are_sent():
+    """A real arm never receives more than its speed limit; the log keeps what was asked for."""
     given = []
 
     class Lamb(Remote):
@@ -173,6 +174,7 @@ def test_commands_are_cut_to_the_limits_before_they_are_sent():
     ],
 )
 def test_an_arm_that_is_lost_comes_to_rest_and_its_log_is_kept(harm, words):
+    """One that hangs up, is silent, sends NaN or freezes ends the run, and its rows are kept."""
     with remote() as arm, pytest.raises(ArmLost, match=words) as caught:
         lk.run(arm, way(2.0), harmed(arm, harm), rate=50.0)
     log = caught.value.log
@@ -183,6 +185,7 @@ def test_an_arm_that_is_lost_comes_to_rest_and_its_log_is_kept(harm, words):
 
 
 def test_whatever_a_controller_does_the_arm_is_stopped():
+    """A division by zero after 11 ticks is named, the arm is sent a stop, and 11 rows are kept."""
     ticks = iter(range(100))
 
     def broken(state, target):
@@ -250,6 +253,8 @@ def test_an_arm_that_answers_nonsense_at_once_is_told_to_stop_and_leaves_no_log(
 
 
 def test_the_log_is_kept_when_the_controller_fails_and_the_arm_cannot_be_told_to_stop():
+    """ArmLost says that no stop was possible and has the five rows."""
+
     def broken(state, target):
         if state.t > 5.0:
             raise ZeroDivisionError("oh")
@@ -277,6 +282,7 @@ def test_a_late_loop_leaves_ticks_out():
 
 
 def test_what_has_not_the_methods_of_an_arm_is_refused():
+    """Methods that an object lacks are named; a word and an arm of an unknown side are refused."""
     with pytest.raises(TypeMismatch, match=r"arm is 'left' \(str\), expected an Arm"):
         lk.run("left", way(), follow)
     desk = type("Half", (), {"robot": "left", "state": nonsense(None), "stop": nonsense(None)})()

@@ -14,6 +14,7 @@ from solutions.study.recording import save_trials
 
 
 def test_a_saved_log_reads_back_to_single_precision(tmp_path):
+    """Columns agree to 1e-6 and the RMS error to 0.1 %; plant, robot and names are the same."""
     task = tasks.line()
 
     def forward(state, target):
@@ -61,12 +62,14 @@ def test_a_log_of_another_physics_is_refused_and_one_without_a_number_is_read(
 
 
 def test_every_recording_that_ships_is_a_run_one_can_study():
+    """There is at least one, and each has an RMS error below 100 mm."""
     assert recordings.names()
     for name in recordings.names():
         assert metrics.summary(recordings.load(name)).rms_mm < 100.0
 
 
 def test_an_unknown_recording_is_a_sentence_with_the_known_ones():
+    """The error for a misspelt name lists the recorded runs."""
     with pytest.raises(
         lk.errors.UnknownName, match="no recorded run 'bsaeline'; there is 'baseline"
     ):
@@ -74,6 +77,7 @@ def test_an_unknown_recording_is_a_sentence_with_the_known_ones():
 
 
 def test_a_map_says_itself_in_words():
+    """Its sentence has the least error with its gains, and how many pairs lost the arm."""
     found = Trials(("a test",), (1.0, 2.0), (0.0, 0.1), (((3.0, 2.0), (1.0, None)),))
     assert "RMS error of a test" in found.describe()
     assert "least 1 mm at Kp = 2, Kd = 0" in found.describe()
@@ -81,6 +85,7 @@ def test_a_map_says_itself_in_words():
 
 
 def test_an_unknown_map_is_a_sentence():
+    """The error for an unknown name lists the error maps that exist."""
     with pytest.raises(lk.errors.UnknownName, match="no error map 'x'; there is"):
         recordings.error_map("x")
 
@@ -98,6 +103,7 @@ def test_between_recorded_gains_the_error_is_interpolated():
 
 
 def test_what_nobody_recorded_is_a_sentence():
+    """The error for another case or a larger gain has the range that was recorded."""
     for case in (2, -1, 0.5, "0"):
         with pytest.raises(OutOfRange, match=f"there are cases 0 to 1, not {case!r}"):
             TRIALS.error(case, 1.0, 0.0)
@@ -106,6 +112,7 @@ def test_what_nobody_recorded_is_a_sentence():
 
 
 def test_tries_are_counted():
+    """With a budget of one the second try is refused."""
     runner = Runner(TRIALS, budget=1)
     assert runner(1.0, 0.0, seed=1) == 1.0 and runner.left == 0
     with pytest.raises(OutOfRange, match="all 1 tries are used up"):
@@ -113,6 +120,7 @@ def test_tries_are_counted():
 
 
 def test_trials_are_the_same_from_their_file(tmp_path):
+    """The trials that ship are equal after they are saved and read again."""
     trials = read_trials(LINE)
     save_trials(trials, tmp_path / "again.json")
     assert read_trials(tmp_path / "again.json") == trials

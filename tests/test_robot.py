@@ -63,6 +63,7 @@ def test_the_lumped_arm_has_the_dynamics_of_the_whole_robot(side, states, random
 
 
 def test_the_tip_is_where_the_whole_robot_has_its_gripper(side, states):
+    """In 50 random poses the lumped arm puts the gripper where all of Baxter has it."""
     data, model = FULL.createData(), lk.Model(side)
     tip = FULL.getFrameId(f"{side}_gripper")
     for q, _ in states(side, 50):
@@ -71,6 +72,7 @@ def test_the_tip_is_where_the_whole_robot_has_its_gripper(side, states):
 
 
 def test_limits_are_rethinks(side):
+    """Torque and speed limits are the published ones, and the ranges of angle those of the URDF."""
     r = lk.robot(side)
     assert r.effort.tolist() == [50, 100, 50, 50, 15, 15, 15]
     assert r.speed.tolist() == [1.5, 1.5, 1.5, 1.5, 4, 4, 4]
@@ -84,6 +86,7 @@ def test_limits_are_rethinks(side):
 
 @pytest.mark.parametrize("pose", ["neutral", "ready"])
 def test_named_poses_lie_inside_the_limits(side, pose):
+    """Neutral and ready pose are strictly within the range of each joint."""
     r = lk.robot(side)
     q = getattr(r, pose)
     assert (r.lower < q).all()
@@ -129,6 +132,7 @@ def test_one_physics_step_gives_the_acceleration_of_the_equations_of_motion(
 
 
 def test_mujocos_dynamics_are_pinocchios(side, plant, mj, states):
+    """Mass matrix and bias agree over 300 random states, with and without rotor inertia."""
     m, d = mj
     model = lk.Model(side, plant)
     M = np.zeros((7, 7))
@@ -171,6 +175,7 @@ def test_a_rotation_survives_being_written_as_roll_pitch_yaw(side, random):
 
 
 def test_there_is_no_middle_arm():
+    """Robot, arm and model refuse a side that does not exist, and the error lists both."""
     with pytest.raises(UnknownName, match="no arm 'middle'; there is 'left', 'right'") as caught:
         lk.robot("middle")
     assert isinstance(caught.value, LabkitError)
@@ -180,6 +185,7 @@ def test_there_is_no_middle_arm():
 
 
 def test_the_data_cannot_be_changed_by_accident(side):
+    """Neither a number in a robot's limits nor the limits themselves can be replaced."""
     r = lk.robot(side)
     with pytest.raises(ValueError, match="read-only"):
         r.effort[0] = 1e9

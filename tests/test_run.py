@@ -83,6 +83,7 @@ def test_the_same_torques_give_the_same_motion_in_mujoco():
 
 
 def test_a_log_has_a_row_for_each_tick_and_both_ends(ideal):
+    """Half a second at 100 Hz gives 51 rows in each column, and the log knows who ran."""
     log = lk.run(ideal, still(ideal, 0.5), follow, rate=100)
     assert len(log) == 51
     assert_allclose(log.t, np.arange(51) * 0.01, atol=1e-12)
@@ -94,6 +95,7 @@ def test_a_log_has_a_row_for_each_tick_and_both_ends(ideal):
 
 
 def test_a_log_cannot_be_written_to(ideal):
+    """Each column is read-only, and none can be replaced."""
     log = lk.run(ideal, still(ideal), follow)
     arrays = [log.t, log.q, log.dq, log.tau, log.command, log.saturated, *log.target, *log.measured]
     for rows in arrays:
@@ -104,12 +106,14 @@ def test_a_log_cannot_be_written_to(ideal):
 
 
 def test_the_torque_in_a_row_is_what_drove_the_arm_until_the_next_one(ideal):
+    """It is the row's own command, and in the last row that of the row before."""
     log = lk.run(ideal, swing(ideal, 1.0), computed_torque(ideal.model), rate=1000)
     assert_array_equal(log.tau[:-1], log.command[:-1])
     assert_array_equal(log.tau[-1], log.tau[-2])
 
 
 def test_at_a_slower_rate_the_command_is_held_between_ticks(ideal):
+    """At 50 Hz the controller is asked at every 20 ms, both ends of 0.1 s included."""
     calls = []
 
     def controller(state, target):
@@ -122,6 +126,7 @@ def test_at_a_slower_rate_the_command_is_held_between_ticks(ideal):
 
 
 def test_a_second_run_starts_its_own_clock_where_the_arm_is(ideal):
+    """Its times begin at 0 and its angles at the arm's, while the state's own time goes on."""
     lk.run(ideal, swing(ideal, 0.5), follow)
     q = ideal.state().q
     log = lk.run(ideal, lk.Hold(q, 0.1), follow)
@@ -131,6 +136,7 @@ def test_a_second_run_starts_its_own_clock_where_the_arm_is(ideal):
 
 
 def test_poses_are_logged_as_poses(ideal):
+    """A target of poses gives 4 x 4 matrices and twists of six, one for each row."""
     T = ideal.model.pose(ideal.robot.neutral)
     log = lk.run(ideal, lk.Hold(T, 0.1), lambda s, x: lk.JointVelocity(np.zeros(7)), rate=100)
     assert isinstance(log.target, lk.PoseSample)
@@ -140,6 +146,7 @@ def test_poses_are_logged_as_poses(ideal):
 
 
 def test_a_target_of_plain_lists_is_read(ideal):
+    """A sample made of lists is logged as numbers."""
     zeros = [0.0] * 7
     log = lk.run(ideal, lambda t: lk.Sample([t] * 7, zeros, zeros), follow, duration=0.1)
     assert_allclose(log.target.position[:, 0], log.t)
@@ -164,6 +171,7 @@ def test_numbers_are_logged_as_what_they_mean_however_they_lie_in_memory(ideal, 
 
 
 def test_a_target_that_writes_on_its_own_array_does_not_rewrite_history(ideal):
+    """Each row keeps its position though the target reuses one array."""
     buffer = np.zeros((3, 7))
 
     def target(t):
@@ -175,12 +183,15 @@ def test_a_target_that_writes_on_its_own_array_does_not_rewrite_history(ideal):
 
 
 def test_a_run_may_last_no_time_at_all(ideal):
+    """A duration of zero gives one row, of the arm where it is."""
     log = lk.run(ideal, still(ideal, 0.0), follow)
     assert len(log) == 1
     assert_array_equal(log.q[0], ideal.robot.neutral)
 
 
 def test_what_a_controller_sees_is_read_only(ideal):
+    """It cannot write to the state's arrays, nor to those of any target."""
+
     def controller(state, target):
         for part in (*state[1:], *target):
             assert not part.flags.writeable
@@ -191,6 +202,8 @@ def test_what_a_controller_sees_is_read_only(ideal):
 
 
 def test_an_interrupt_ends_the_run_and_keeps_what_there_is(ideal):
+    """Ctrl+C in the eleventh tick leaves a log of ten, and an arm at rest that runs again."""
+
     def controller(state, target):
         if state.t > 0.0995:
             raise KeyboardInterrupt
@@ -202,6 +215,7 @@ def test_an_interrupt_ends_the_run_and_keeps_what_there_is(ideal):
 
 
 def test_the_same_seed_gives_the_same_log():
+    """Angles and noise are equal to the bit with one seed, and the noise differs with another."""
     logs = []
     for seed in (1, 1, 2):
         with lk.Arm(plant=lk.BAXTER, seed=seed) as arm:
@@ -212,6 +226,7 @@ def test_the_same_seed_gives_the_same_log():
 
 
 def test_a_log_is_described_in_a_line(ideal):
+    """Its repr has the controller, the plant, the arm, the ticks and the duration."""
     assert repr(lk.run(ideal, still(ideal), follow)) == (
         "Log(follow on the ideal left arm, 41 ticks, 0.2 s)"
     )
@@ -276,6 +291,7 @@ CONTROLLERS = {
 @pytest.mark.filterwarnings("ignore:divide by zero", "ignore:invalid value")
 @pytest.mark.parametrize("name", CONTROLLERS)
 def test_a_controller_that_fails_is_named_with_the_time_and_the_way_out(ideal, name):
+    """The sentence has under 400 characters, its rows are kept, and the arm comes to rest."""
     answer, words = CONTROLLERS[name]
     controller = answer if name == "too few arguments" else late(lambda s, x: answer(s, x))
     controller.__name__ = "controller"
@@ -319,6 +335,7 @@ TARGETS = {
 @pytest.mark.parametrize("when", [0.0, 0.1])
 @pytest.mark.parametrize("name", TARGETS)
 def test_a_target_that_fails_is_named_and_not_the_controller(ideal, name, when):
+    """The sentence has the time, at the start or after 0.1 s, and the arm comes to rest."""
     answer, words = TARGETS[name]
 
     def target(t):
@@ -332,6 +349,7 @@ def test_a_target_that_fails_is_named_and_not_the_controller(ideal, name, when):
 
 
 def test_a_target_may_not_turn_from_points_into_poses(ideal):
+    """A target that changes its kind of sample in the run is refused."""
     T = ideal.model.pose(ideal.robot.neutral)
     joints, pose = lk.Hold(ideal.robot.neutral, 1.0), lk.Hold(T, 1.0)
     with pytest.raises(ControllerError, match=r"PoseSample.*the same kind at all times"):
@@ -339,6 +357,8 @@ def test_a_target_may_not_turn_from_points_into_poses(ideal):
 
 
 def test_a_wrong_sign_is_stopped_with_the_time_the_joint_and_the_log(ideal):
+    """The log ends above 50 rad/s, and the arm comes to rest and runs again."""
+
     def pushes(state, target):
         g = ideal.model.gravity(state.q)
         return lk.JointTorque(g - 300.0 * (target.position - state.q) + 0.1)
@@ -357,6 +377,7 @@ def test_a_wrong_sign_is_stopped_with_the_time_the_joint_and_the_log(ideal):
 
 
 def test_a_controller_that_wants_joints_and_gets_poses_is_told_so(ideal):
+    """The error lists what a pose target has, and suggests model.joint_trajectory."""
     pose = lk.Hold(ideal.model.pose(ideal.robot.neutral), 1.0)
     words = "follow failed .* its position, but that has only pose, twist, dtwist; model.joint_traj"
     with pytest.raises(ControllerError, match=words):
@@ -364,6 +385,7 @@ def test_a_controller_that_wants_joints_and_gets_poses_is_told_so(ideal):
 
 
 def test_a_controller_that_wants_joints_and_gets_points_is_told_so(ideal):
+    """The error has both shapes, and suggests model.joint_trajectory of points."""
     point = lk.Hold(ideal.model.pose(ideal.robot.neutral)[:3, 3], 1.0)
     words = r"springs failed .*\(3,\) \(7,\).*gives 3 numbers; model.joint_traj.* of points"
     with pytest.raises(ControllerError, match=words):
@@ -386,12 +408,14 @@ def test_a_controller_that_wants_joints_and_gets_points_is_told_so(ideal):
     ],
 )
 def test_impossible_rates_and_durations_are_refused(ideal, given, words):
+    """The error has the value, and for a rate that does not fit the steps one that does."""
     with pytest.raises(LabkitError, match=words):
         lk.run(ideal, still(ideal), follow, **given)
 
 
 @pytest.mark.parametrize("steps", [3, 7, 9, 11])
 def test_the_rate_that_the_sentence_proposes_is_accepted(ideal, steps):
+    """The proposal has a period of a whole number of physics steps, and a run takes it."""
     with pytest.raises(OutOfRange) as caught:
         lk.run(ideal, still(ideal), follow, rate=1000.0 / (steps + 0.1))
     proposed = float(str(caught.value).split()[-2])
@@ -399,6 +423,7 @@ def test_the_rate_that_the_sentence_proposes_is_accepted(ideal, steps):
 
 
 def test_a_target_without_duration_needs_one(ideal):
+    """A plain function as target is refused, and the error asks for duration=."""
     with pytest.raises(OutOfRange, match=r"how long.*give duration="):
         lk.run(ideal, lambda t: None, follow)
 
@@ -413,5 +438,6 @@ def test_a_target_without_duration_needs_one(ideal):
     ],
 )
 def test_what_is_no_arm_target_or_controller_is_refused(ideal, arguments, words):
+    """None in the place of any, or target and controller swapped, is a LabkitError."""
     with pytest.raises(LabkitError, match=words):
         lk.run(*arguments(ideal))

@@ -194,5 +194,6 @@ def test_a_push_needs_to_know_whom():
 
 @pytest.mark.parametrize("thing", ["table", lk.Table, None])
 def test_what_is_no_thing_is_refused(thing):
+    """A word, a class or None cannot be put into a world, and the error says what can."""
     with lk.World() as world, pytest.raises(TypeMismatch, match=r"cannot add .* such as lk\.Table"):
         world.put(thing)

@@ -12,11 +12,13 @@ from labkit.shapes import as_array, as_gains, as_number, as_vector
 
 @given(arrays(np.float64, array_shapes(max_dims=3), elements=st.floats(-1e9, 1e9)))
 def test_a_fitting_array_comes_back_as_it_is_without_a_copy(x):
+    """An array of floats that has the shape is returned itself."""
     assert as_array(x, x.shape, "x") is x
 
 
 @given(array_shapes(max_dims=3, max_side=8), array_shapes(max_dims=3, max_side=8))
 def test_nothing_is_broadcast_reshaped_or_squeezed(have, want):
+    """Any other shape than the one that is asked for is a ShapeError."""
     x = np.zeros(have)
     if have == want:
         assert as_array(x, want, "x").shape == want
@@ -48,12 +50,14 @@ def test_nothing_is_broadcast_reshaped_or_squeezed(have, want):
     ],
 )
 def test_what_does_not_fit_is_named_with_its_value_and_the_way_out(x, error, words):
+    """A wrong shape, type or number for seven joints is a LabkitError with name and value."""
     with pytest.raises(error, match=words) as caught:
         as_array(x, (7,), "q")
     assert isinstance(caught.value, LabkitError)
 
 
 def test_lists_and_whole_numbers_are_read_as_floats_and_left_alone():
+    """They and single precision become doubles, and the list is as it was."""
     x = [1, 2, 3]
     a = as_array(x, (3,), "x")
     assert a.dtype == np.float64
@@ -62,11 +66,13 @@ def test_lists_and_whole_numbers_are_read_as_floats_and_left_alone():
 
 
 def test_a_huge_but_finite_array_is_no_infinity():
+    """Numbers of 1e200 and -1e300, whose squares overflow, are accepted."""
     x = np.array([1e200, -1e300])
     assert as_array(x, (2,), "x") is x
 
 
 def test_the_place_of_a_nan_in_a_matrix_is_row_and_column():
+    """A NaN in the second row, third column is reported at index (1, 2)."""
     x = np.eye(3)
     x[1, 2] = np.nan
     with pytest.raises(NotFinite, match=r"index \(1, 2\)"):
@@ -74,6 +80,7 @@ def test_the_place_of_a_nan_in_a_matrix_is_row_and_column():
 
 
 def test_a_vector_is_a_locked_copy():
+    """It does not follow the caller's array, and nobody can write to it."""
     x = np.zeros(7)
     v = as_vector(x, 7, "x")
     x[0] = 1.0
@@ -83,6 +90,7 @@ def test_a_vector_is_a_locked_copy():
 
 
 def test_one_gain_serves_all_joints():
+    """One number becomes seven equal ones; three numbers for three joints are kept."""
     assert as_gains(2, 7, "Kp").tolist() == [2.0] * 7
     assert as_gains([1, 2, 3], 3, "Kp").tolist() == [1.0, 2.0, 3.0]
 
@@ -100,6 +108,7 @@ def test_one_gain_serves_all_joints():
     ],
 )
 def test_a_bad_gain_is_named(x, error, words):
+    """A wrong number of gains, a negative one with its index, NaN and words are refused."""
     with pytest.raises(error, match=words):
         as_gains(x, 3, "Kp")
 
@@ -119,11 +128,13 @@ def test_a_bad_gain_is_named(x, error, words):
     ],
 )
 def test_a_bad_number_is_named(x, error, words):
+    """A word, an array, NaN, infinity and what is not above the limit are refused by name."""
     with pytest.raises(error, match=words):
         as_number(x, "v_max", above=0.0)
 
 
 def test_a_number_may_stand_at_its_least():
+    """With a least of 0, zero is accepted and -1e-9 refused."""
     assert as_number(np.float32(0), "duration", least=0.0) == 0.0
     with pytest.raises(OutOfRange, match="at least 0"):
         as_number(-1e-9, "duration", least=0.0)

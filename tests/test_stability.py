@@ -51,12 +51,14 @@ def step_response(joint, Kp, t):
 
 
 def test_the_step_response_of_a_plain_integrator_is_the_exponential():
+    """For a gain of 3 it is 1 - exp(-3 t), to 1e-6 over 2 s."""
     t = np.linspace(0.0, 2.0, 200)
     found = step_response(VelocityJoint(0.0), 3.0, t)
     np.testing.assert_allclose(found, 1.0 - np.exp(-3.0 * t), atol=1e-6)
 
 
 def test_the_age_of_the_state_is_the_one_in_the_log():
+    """At 200 Hz mean age and Baxter's log agree to 0.2 ms, and the ideal arm's age is zero."""
     with lk.Arm(plant=lk.BAXTER, q0=lk.robot("left").ready) as arm:
         log = lk.run(arm, lk.Hold(arm.robot.ready, 2.0), still)
     told = np.mean((log.t - log.measured.t)[10:])
@@ -98,5 +100,6 @@ def test_the_arm_overshoots_as_its_loop_says(Kp):
     ],
 )
 def test_bad_input_is_a_sentence(make, sentence):
+    """A negative gain or delay, a NaN and two zero gains are each named."""
     with pytest.raises(lk.LabkitError, match=sentence):
         make()

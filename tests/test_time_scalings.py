@@ -29,6 +29,7 @@ def corners(s):
 
 @given(scalings, fractions)
 def test_speed_and_acceleration_are_the_slopes(s, x):
+    """Away from where the acceleration jumps, each profile's derivatives are its slopes."""
     T = s.duration
     assume(all(abs(x * T - c) > 1e-4 * T for c in corners(s)))
     assert_slopes(s, x * T, step=1e-5 * T)
@@ -36,12 +37,14 @@ def test_speed_and_acceleration_are_the_slopes(s, x):
 
 @given(scalings, st.floats(0.0, 1e6))
 def test_before_the_start_and_from_the_end_on_it_is_at_rest(s, t):
+    """It is exactly 0 before and exactly 1 after, with no speed and no acceleration."""
     assert s(-1e-9 - t) == (0.0, 0.0, 0.0)
     assert s(s.duration + t) == (1.0, 0.0, 0.0)
 
 
 @given(scalings)
 def test_it_starts_at_0_ends_at_1_and_both_at_rest(s):
+    """It begins exactly so, and just before its end it is there to 1e-8 with a speed near zero."""
     T = s.duration
     assert s(0.0)[:2] == (0.0, 0.0)
     near = s(T * (1 - 1e-12))
@@ -51,6 +54,7 @@ def test_it_starts_at_0_ends_at_1_and_both_at_rest(s):
 
 @given(scalings)
 def test_it_never_goes_back(s):
+    """At 301 times it never falls, its speed is never negative, and it never exceeds 1."""
     values = np.array([s(t) for t in np.linspace(0.0, s.duration, 301)])
     assert (np.diff(values[:, 0]) >= -1e-15).all()
     assert (values[:, 1] >= 0.0).all()
@@ -59,6 +63,7 @@ def test_it_never_goes_back(s):
 
 @given(scalings, fractions)
 def test_it_is_as_quick_after_as_before_the_middle(s, x):
+    """What is done at x is left at 1 - x, and the speeds there are equal."""
     T = s.duration
     a, b = s(x * T), s((1.0 - x) * T)
     assert a[0] + b[0] == pytest.approx(1.0, abs=1e-9)
@@ -67,6 +72,7 @@ def test_it_is_as_quick_after_as_before_the_middle(s, x):
 
 @pytest.mark.parametrize("kind", PROFILES)
 def test_a_duration_of_zero_is_already_there_and_never_nan(kind):
+    """From t = 0 on it is 1 at rest, and no distance within limits takes no time."""
     s = kind(0.0)
     assert s(0.0) == s(1.0) == (1.0, 0.0, 0.0)
     assert s(-1.0) == (0.0, 0.0, 0.0)
@@ -74,6 +80,7 @@ def test_a_duration_of_zero_is_already_there_and_never_nan(kind):
 
 
 def test_no_distance_takes_the_trapezoid_no_time():
+    """Its duration is 0, and at t = 0 it is 1 at rest."""
     s = Trapezoid(0.0, 1.0, 1.0)
     assert s.duration == 0.0
     assert s(0.0) == (1.0, 0.0, 0.0)
@@ -81,6 +88,7 @@ def test_no_distance_takes_the_trapezoid_no_time():
 
 @pytest.mark.parametrize("kind", PROFILES)
 def test_the_peaks_are_what_they_are_said_to_be(kind):
+    """The largest speed and acceleration over 1 s are the two constants of its class."""
     rows = np.array([kind(1.0)(t) for t in np.linspace(0.0, 1.0 - 1e-12, 20001)])
     assert rows[:, 1].max() == pytest.approx(kind.PEAK_SPEED, rel=1e-6)
     assert np.abs(rows[:, 2]).max() == pytest.approx(kind.PEAK_ACCELERATION, rel=1e-6)
@@ -88,6 +96,7 @@ def test_the_peaks_are_what_they_are_said_to_be(kind):
 
 @given(st.sampled_from(PROFILES), lengths, speeds, speeds)
 def test_the_quickest_within_limits_touches_one_and_passes_none(kind, d, v, a):
+    """Speed or acceleration, whichever is nearer to its limit, meets it to 1e-4."""
     s = kind.within(d, v, a)
     rows = np.array([s(t) for t in np.linspace(0.0, s.duration * (1 - 1e-12), 2001)])
     fast, hard = d * rows[:, 1].max() / v, d * np.abs(rows[:, 2]).max() / a
@@ -97,6 +106,7 @@ def test_the_quickest_within_limits_touches_one_and_passes_none(kind, d, v, a):
 
 @given(lengths, speeds, speeds)
 def test_the_trapezoid_keeps_its_limits_and_is_the_quickest_that_does(d, v, a):
+    """It passes neither limit, and no other profile within them takes less time."""
     s = Trapezoid(d, v, a)
     rows = np.array([s(t) for t in np.linspace(0.0, s.duration * (1 - 1e-12), 1001)])
     assert d * rows[:, 1].max() <= v * (1 + 1e-9)
@@ -107,6 +117,7 @@ def test_the_trapezoid_keeps_its_limits_and_is_the_quickest_that_does(d, v, a):
 
 @given(lengths, speeds, speeds)
 def test_a_way_too_short_to_cruise_is_a_triangle(d, v, a):
+    """Below v^2/a it peaks at sqrt(d a) and lasts as long as bang-bang; above, it peaks at v."""
     s = Trapezoid(d, v, a)
     if d < v * v / a:
         assert s.peak_speed == pytest.approx(np.sqrt(d * a))
@@ -129,12 +140,14 @@ def test_a_way_too_short_to_cruise_is_a_triangle(d, v, a):
     ],
 )
 def test_impossible_limits_are_refused(call, error, words):
+    """A negative or zero limit or distance, NaN, a word and a list are each named."""
     with pytest.raises(error, match=words) as caught:
         call()
     assert isinstance(caught.value, LabkitError)
 
 
 def test_a_scaling_is_a_value():
+    """Equal kind and duration are equal with equal hashes, and the duration cannot be changed."""
     assert Cubic(2.0) == Cubic(2)
     assert hash(Cubic(2.0)) == hash(Cubic(2.0))
     assert Cubic(2.0) != Quintic(2.0)

@@ -36,18 +36,21 @@ CORNERS = (0.5, 2.0 * 0.25, 0.5 / 1.75, 1.25 / 1.75)  # where an acceleration ju
 
 @given(paths, scalings, fractions)
 def test_a_trajectorys_velocity_and_acceleration_are_its_slopes(path, scaling, x):
+    """For lines and circles in four profiles, away from where an acceleration jumps."""
     assume(all(abs(x - c) > 1e-3 for c in CORNERS))
     assert_slopes(Trajectory(path, scaling), x * scaling.duration)
 
 
 @given(paths, scalings, st.floats(0.0, 1e3))
 def test_before_the_start_and_after_the_end_a_trajectory_rests(path, scaling, t):
+    """It is at the path's start before, at its end after, and neither moves nor speeds up."""
     trajectory = Trajectory(path, scaling)
     assert_at_rest(trajectory(-1e-9 - t), path(0.0).position)
     assert_at_rest(trajectory(scaling.duration + t), path(1.0).position)
 
 
 def test_no_distance_in_no_time_is_the_place_itself():
+    """A line without length in a profile without duration is at rest there at every time."""
     there = Trajectory(Line(A, A), Trapezoid(0.0, 1.0, 1.0))
     assert there.duration == 0.0
     for t in (-1.0, 0.0, 1.0):
@@ -55,6 +58,8 @@ def test_no_distance_in_no_time_is_the_place_itself():
 
 
 def test_a_target_written_by_a_student_works_as_path_and_as_scaling():
+    """With a function as path and a class as scaling, the derivatives are still slopes."""
+
     class Ramp:
         duration = 2.0
 
@@ -96,6 +101,8 @@ def chain():
     ],
 )
 def test_what_is_no_sample_is_a_sentence(path, scaling, words):
+    """The path or the scaling is named with what it returned and what was expected."""
+
     class Half:
         duration = 1.0
 
@@ -107,6 +114,7 @@ def test_what_is_no_sample_is_a_sentence(path, scaling, words):
 
 
 def test_a_chain_starts_each_part_when_the_one_before_has_ended():
+    """Parts of 1 s, 1 s and 0.5 s start at 0, 1 and 2 s, and the chain rests outside."""
     c = chain()
     assert c.starts == [0.0, 1.0, 2.0]
     assert c.duration == 2.5
@@ -118,11 +126,13 @@ def test_a_chain_starts_each_part_when_the_one_before_has_ended():
 
 @given(st.floats(0.01, 2.4))
 def test_a_chains_velocity_and_acceleration_are_its_slopes(t):
+    """They are at any time but those at which an acceleration jumps."""
     assume(all(abs(t - x) > 1e-3 for x in (1.0, 1.5, 2.0)))
     assert_slopes(chain(), t)
 
 
 def test_a_chain_is_continuous_in_position_and_velocity_at_its_joints():
+    """Neither jumps between 1 ns before a part's start and the start itself."""
     c = chain()
     for t in c.starts[1:]:
         before, after = c(t - 1e-9), c(t)
@@ -131,6 +141,7 @@ def test_a_chain_is_continuous_in_position_and_velocity_at_its_joints():
 
 
 def test_chains_nest_and_parts_without_duration_are_passed_over():
+    """Parts of 1 s, 0 s and, in a chain of its own, 1 s last 2 s and rest where they meet."""
     still = Trajectory(Line(B, B), Cubic(0.0))
     c = Chain([Trajectory(Line(A, B), Cubic(1.0)), still, Chain([Hold(B, 1.0)])])
     assert c.duration == 2.0
@@ -138,18 +149,21 @@ def test_chains_nest_and_parts_without_duration_are_passed_over():
 
 
 def test_an_empty_chain_is_refused():
+    """The error says that a chain needs at least one trajectory."""
     with pytest.raises(OutOfRange, match="at least one trajectory"):
         Chain([])
 
 
 @given(paths, turns, turns, fractions)
 def test_a_pose_paths_twist_is_the_slope_of_its_pose(path, a, b, s):
+    """In s, between any two orientations; and the twist's rate is the slope of the twist."""
     pose_path = PosePath(path, se3.rotation(a), se3.rotation(b))
     assert_pose_slopes(pose_path, s, tolerance=1e-5)
 
 
 @given(scalings, turns, turns, fractions)
 def test_a_pose_trajectorys_twist_is_the_slope_of_its_pose(scaling, a, b, x):
+    """In time, where no acceleration jumps; and the twist's rate is the slope of the twist."""
     assume(all(abs(x - c) > 1e-3 for c in CORNERS))
     trajectory = Trajectory(PosePath(Line(A, B), se3.rotation(a), se3.rotation(b)), scaling)
     assert_pose_slopes(trajectory, x * scaling.duration, tolerance=1e-5)
@@ -157,6 +171,7 @@ def test_a_pose_trajectorys_twist_is_the_slope_of_its_pose(scaling, a, b, x):
 
 @given(turns, turns)
 def test_a_pose_path_turns_evenly_from_its_first_to_its_last_orientation(a, b):
+    """It has both at its ends, and a quarter of the turn at s = 0.25."""
     R_wt, R_goal = se3.rotation(a), se3.rotation(b)
     path = PosePath(Line(A, B), R_wt, R_goal)
     assert_allclose(path(0.0).pose[:3, :3], R_wt, atol=1e-14)
@@ -166,6 +181,7 @@ def test_a_pose_path_turns_evenly_from_its_first_to_its_last_orientation(a, b):
 
 
 def test_a_pose_path_without_goal_keeps_its_orientation():
+    """Its orientation is the first one at every s, and its angular velocity is zero."""
     R = se3.rotation([0.1, 0.2, 0.3])
     for s in (0.0, 0.4, 1.0):
         T, twist, _ = PosePath(Line(A, B), R)(s)
@@ -174,6 +190,7 @@ def test_a_pose_path_without_goal_keeps_its_orientation():
 
 
 def test_a_pose_trajectory_rests_before_and_after():
+    """It is at the first pose before its start and at the last one after its end."""
     trajectory = Trajectory(PosePath(Line(A, B), np.eye(3), se3.rotation([0, 0, 1.0])), Cubic(2.0))
     assert_at_rest(trajectory(-1.0), se3.pose(np.eye(3), A))
     assert_at_rest(trajectory(3.0), se3.pose(se3.rotation([0, 0, 1.0]), B))
@@ -181,6 +198,7 @@ def test_a_pose_trajectory_rests_before_and_after():
 
 @pytest.mark.parametrize("place", [np.zeros(7), A, se3.pose(np.eye(3), A)])
 def test_a_hold_holds_angles_a_point_or_a_pose(place):
+    """At every time the place is the one given, as a sample or, for a matrix, as a pose sample."""
     hold = Hold(place, 2.0)
     assert hold.duration == 2.0
     assert isinstance(hold(0.0), PoseSample if np.ndim(place) == 2 else Sample)
@@ -219,6 +237,7 @@ skewed = np.diag([1.0, 1.0, 1.1])
     ],
 )
 def test_a_motion_that_cannot_be_is_refused_in_a_sentence(call, error, words):
+    """Wrong shapes, NaN, words and arguments in each other's place are named."""
     with pytest.raises(error, match=words) as caught:
         call()
     assert isinstance(caught.value, LabkitError)

@@ -16,11 +16,13 @@ def sha256(name):
 
 
 def test_committed_files_have_the_recorded_hashes():
+    """Each file of the manifest exists and has its SHA-256."""
     wrong = [n for n, h in MANIFEST["files"].items() if not (ROOT / n).exists() or sha256(n) != h]
     assert not wrong, f"{wrong} differ from MANIFEST.json; {AGAIN}"
 
 
 def test_bundle_was_made_from_these_sources():
+    """No source of the viewer, of the live pages or of the bundler changed, came or went since."""
     folders = ("labkit/replay/viewer", "book/_tools/vendor", "book/live")
     here = {
         str(p.relative_to(ROOT))
@@ -34,12 +36,14 @@ def test_bundle_was_made_from_these_sources():
 
 
 def test_nothing_unrecorded_lies_among_them():
+    """Both folders hold only recorded files, and the manifest itself."""
     folders = (VENDOR, ROOT / "book/live/bundle")
     here = {str(p.relative_to(ROOT)) for f in folders for p in f.rglob("*") if p.is_file()}
     assert here - set(MANIFEST["files"]) == {"book/static/vendor/MANIFEST.json"}
 
 
 def test_versions_are_exact_and_no_registry_is_named():
+    """Each version is three numbers, the manifest's; there is no lock file and no registry."""
     wanted = json.loads((ROOT / "book/_tools/vendor/package.json").read_text())["dependencies"]
     assert MANIFEST["packages"] == wanted
     assert all(re.fullmatch(r"\d+\.\d+\.\d+", v) for v in wanted.values())
@@ -50,6 +54,7 @@ def test_versions_are_exact_and_no_registry_is_named():
 
 
 def test_each_package_brings_its_licence():
+    """The licences of the bundled packages, with MuJoCo's notice, and of Baxter's data exist."""
     names = {p.name for p in VENDOR.glob("LICENSE-*")}
     assert {
         "LICENSE-mathjax",

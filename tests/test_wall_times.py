@@ -82,5 +82,5 @@ def test_no_test_asserts_that_something_is_quick():
     ],
 )
 def test_a_limit_is_seen(asserted, found):
-    """From either side, by name or in place; a least time and a deadline are none."""
+    """From either side, by name or in place; a least time and a deadline do not count."""
     assert bool([*limits_on_time(SLOW.format(asserted))]) == found

@@ -20,7 +20,7 @@ def test_the_pages_show_what_was_found():
 
 
 def test_what_was_found_is_of_todays_versions():
-    """Whoever changes a version that students get asks again: make wheels."""
+    """After a change of a version that students get, make wheels asks again."""
     assert wheels.asked() in WRITTEN
 
 

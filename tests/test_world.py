@@ -12,6 +12,7 @@ from labkit.errors import Closed, LabkitError, NotFinite, OutOfRange, TypeMismat
 
 
 def test_its_clock_counts_physics_steps():
+    """1,500 steps of 1 ms are exactly 1.5 s, and 5 of 0.2 ms are 1 ms."""
     with lk.World() as world:
         assert world.t == 0.0
         world.step(1500)
@@ -22,6 +23,7 @@ def test_its_clock_counts_physics_steps():
 
 
 def test_two_worlds_share_nothing():
+    """While one arm turns by more than 0.05 rad, clock and arm of another world stand still."""
     with lk.Arm() as a, lk.Arm("right") as b:
         before = b.state()
         a.apply(lk.JointVelocity(np.ones(7)))
@@ -32,6 +34,7 @@ def test_two_worlds_share_nothing():
 
 
 def test_a_closed_world_says_so_and_closing_twice_is_harmless():
+    """Each use of its arm is refused, and the error says to make a new one."""
     arm = lk.Arm()
     arm.close()
     arm.close()
@@ -48,6 +51,7 @@ def test_a_closed_world_says_so_and_closing_twice_is_harmless():
 
 
 def test_an_arm_cannot_be_put_into_a_closed_world():
+    """The error says to make a new world."""
     world = lk.World()
     world.close()
     with pytest.raises(Closed, match="make a new"):
@@ -69,6 +73,7 @@ def test_closing_one_world_leaves_the_next_one_alone():
     [(0.0, OutOfRange), (-1e-3, OutOfRange), (np.nan, NotFinite), ("1 ms", TypeMismatch)],
 )
 def test_an_impossible_step_is_refused(dt, error):
+    """Zero, a negative number, NaN and a word are each named as dt."""
     with pytest.raises(error, match="dt") as caught:
         lk.World(dt)
     assert isinstance(caught.value, LabkitError)

@@ -20,12 +20,14 @@ from figures.page import ConclusionFails, Question, holds, quiz, shown
 
 
 def test_a_conclusion_that_fails_stops_with_its_sentence():
+    """A true one passes, and a false one raises an error that says it."""
     holds(1 < 2, "one is less than two")
     with pytest.raises(ConclusionFails, match="two is less than one"):
         holds(2 < 1, "two is less than one")
 
 
 def test_a_page_depends_on_what_it_imports_and_on_nothing_else():
+    """The page on gains depends on its figure, lk.run and its controller, not on the grader."""
     names = {p.relative_to(ROOT).as_posix() for p in book_pages.imports("figures.gains")}
     assert {"book/figures/gains.py", "labkit/run.py", "solutions/study/joint_velocity.py"} <= names
     assert not any(
@@ -47,12 +49,13 @@ def test_every_module_that_a_page_imports_counts(monkeypatch):
 
 @pytest.mark.slow
 def test_pages_of_the_contents_exist(book):
+    """Each page of the table of contents has a source in Markdown or as a notebook."""
     for name in book_pages.in_order():
         assert any((ROOT / f"book/{name}{end}").exists() for end in (".md", ".ipynb"))
 
 
 def test_the_reference_has_every_module():
-    """What can be imported is described; commands and the inside of the sandbox are no library."""
+    """It describes each module of the lab, course and replay as wholes, and none that is gone."""
     told = "".join(p.read_text() for p in (ROOT / "book/reference").glob("*.md"))
     described = set(re.findall(r"automodule:: labkit\.([\w.]+)$", told, re.M))
     gone = {x for x in described if not find_spec(f"labkit.{x}")}
@@ -78,6 +81,7 @@ def test_the_picture_of_the_modules_has_the_order_that_imports_keep():
 
 
 def test_a_quiz_marks_one_answer_right():
+    """A question of two choices has two buttons, and the index of the right one."""
     html = quiz(Question("Two and two?", [("4", "Yes."), ("5", "No.")], 0)).data
     assert 'data-right="0"' in html
     assert html.count('type="radio"') == 2
@@ -85,6 +89,7 @@ def test_a_quiz_marks_one_answer_right():
 
 @pytest.mark.slow
 def test_an_exception_in_a_cell_fails_the_build(tmp_path):
+    """A book whose only cell asserts False ends with an error code and the AssertionError."""
     config = yaml.safe_load((ROOT / "book/_config.yml").read_text())
     (tmp_path / "_config.yml").write_text(yaml.safe_dump({"execute": config["execute"]}))
     (tmp_path / "_toc.yml").write_text("format: jb-book\nroot: index\n")
@@ -99,6 +104,7 @@ def test_an_exception_in_a_cell_fails_the_build(tmp_path):
 
 @pytest.mark.slow
 def test_the_zip_is_small_and_holds_the_book(book):
+    """It is at most 40 MB, and the first page and the viewer are in it."""
     from book_outputs import pack
 
     made = pack()
@@ -144,12 +150,14 @@ def test_the_reference_shows_no_object_of_the_machine_that_built_it(book):
 
 
 def test_a_line_never_breaks_within_an_option():
+    """The word --lower in code receives the class that keeps it whole."""
     page = BeautifulSoup('<code><span class="pre">--lower</span></code>', "html.parser")
     lab.mend(page)
     assert page.select_one("code .pre")["class"] == ["pre", "lab-keep"]
 
 
 def test_a_number_is_shown_as_prose_writes_it():
+    """Two digits of 2381, -0.644 and 12.4 are 2,400, -0.64 with a true minus sign, and 12."""
     assert [shown(x, ".2g") for x in (2381.0, -0.644, 12.4)] == ["2,400", "\u22120.64", "12"]
 
 

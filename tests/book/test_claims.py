@@ -22,24 +22,28 @@ def nothing_kept(tmp_path, monkeypatch):
 
 @pytest.mark.parametrize("wrong", [-7.4, 3.7, 7.9])
 def test_a_number_that_moved_stops_the_build(wrong):
+    """One of another sign, half as large or 7 % larger asks to read the sentence again."""
     told("rms", 7.41)
     with pytest.raises(ConclusionFails, match="read the sentence again"):
         told("rms", wrong)
 
 
 def test_a_conclusion_that_is_false_stops_the_build():
+    """A comparison that its data contradict is an error."""
     with pytest.raises(ConclusionFails, match="the runs say otherwise"):
         claim("joint is better", lambda e: e[0] < e[1], e=(7.4, 6.0))
 
 
 @pytest.mark.parametrize(("kind", "wrong"), [*mutations((6.0, 7.4))])
 def test_every_mutation_of_the_data_stops_the_build(kind, wrong):
+    """Reversed signs, halves, swapped and averaged numbers each break a claim that held."""
     claim("joint is better", lambda e: e[0] < e[1], e=(6.0, 7.4))
     with pytest.raises(ConclusionFails):
         claim("joint is better", lambda e: e[0] < e[1], e=wrong)
 
 
 def test_sentences_that_count_are_those_with_a_number_or_a_comparison():
+    """Glue, units, "larger than" and a row of a table count; code and formulas do not."""
     text = """---
 kernelspec: x
 ---

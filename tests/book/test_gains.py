@@ -10,6 +10,7 @@ pytestmark = pytest.mark.slow
 
 
 def test_forty_random_points_are_run_again_bit_for_bit(book):
+    """Their files and facts in the book are the ones that a new run writes."""
     runs = book / "_static/runs"
     facts = json.loads((runs / "facts.json").read_text())
     for point in random.Random(9).sample(gains.points(), 40):
@@ -19,12 +20,14 @@ def test_forty_random_points_are_run_again_bit_for_bit(book):
 
 
 def test_every_point_of_the_grid_is_recorded_and_small(book):
+    """There is one file for each point, and none has more than 40 kB."""
     files = sorted((book / "_static/runs").glob("gains-*.js"))
     assert len(files) == len(gains.points())
     assert max(f.stat().st_size for f in files) <= 40_000
 
 
 def test_the_dials_are_moved_by_keyboard_and_say_recorded(visit):
+    """A key shows another run; a typed Kp of 12 shows the nearest, 8; the line names the task."""
     page = visit("chapters/velocity.html")
     host = page.locator(".lk-embed:has(.lk-explorer)")
     page.evaluate("""() => [...document.querySelectorAll('.lk-embed')].forEach(e =>

@@ -12,6 +12,7 @@ ROOT = Path(__file__).parents[2]
 
 
 def test_the_scales_of_a_page_hold_every_method():
+    """On the line each method's values are strictly between the ends of their panel's scale."""
     for controller in gallery.SHOWN:
         for (_, values, _), (low, high) in zip(
             gallery._panels(controller, "line"), gallery._limits("line"), strict=True
@@ -22,6 +23,7 @@ def test_the_scales_of_a_page_hold_every_method():
 
 @pytest.mark.slow
 def test_every_run_leads_to_the_same_method_on_the_other_tasks_and_to_all(book):
+    """Each has these links and no other, and the last table links each method."""
     for task in TASKS:
         page = BeautifulSoup((book / f"gallery/{task}.html").read_text(), "html.parser")
         for controller in gallery.SHOWN:

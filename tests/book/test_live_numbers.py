@@ -37,7 +37,7 @@ def test_the_pages_numbers_are_the_labs():
 
 
 def test_mujoco_on_npm_and_on_pypi_are_the_tested_pair():
-    """Whoever raises one version has to look at both, and at the runs that compare them."""
+    """Raising one version means looking at both, and at the runs that compare them."""
     wanted = json.loads((ROOT / "book/_tools/vendor/package.json").read_text())["dependencies"]
     assert (wanted["@mujoco/mujoco"], importlib.metadata.version("mujoco")) == PAIR
 
@@ -109,7 +109,7 @@ def test_the_equations_of_motion_equal_pinocchios():
 
 @pytest.mark.parametrize("plant", PLANTS)
 def test_runs_equal_pythons_on_mujoco(plant):
-    """Five seconds of line and circle, all six ways, within 1e-6 rad of the lab's run."""
+    """Five seconds of line and circle, all six controllers, within 1e-6 rad of the lab's run."""
     requests = [
         {"plant": plant, "controller": name, "task": task, "duration": 5.0}
         for name in [*LAWS, "baxtersOwn"] for task in ("line", "circle")
@@ -175,7 +175,7 @@ def test_half_pixels_flip_a_far_tag_as_the_page_says():
 
 
 def test_without_damping_the_joint_speed_has_no_peak_that_could_be_told():
-    """At the pole a reader is told no number of rad/s, which would be that of a grid."""
+    """At the pole a reader sees no number of rad/s, which would be that of a grid."""
     undamped, damped = javascript(
         {"ask": "stretched", "lambda2": 0}, {"ask": "stretched", "lambda2": 0.01}
     )

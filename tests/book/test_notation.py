@@ -44,6 +44,7 @@ def entries(doc):
 
 @pytest.mark.parametrize("name", sorted(TABLE))
 def test_docstrings_give_this_symbol_the_tables_shape_and_unit(name):
+    """Each argument of this name in labkit has the shape and unit of the table."""
     symbol, seen = TABLE[name], 0
     for where, doc in DOCSTRINGS.items():
         for argument, text in entries(doc):
@@ -58,6 +59,7 @@ def test_docstrings_give_this_symbol_the_tables_shape_and_unit(name):
 
 
 def test_no_symbol_stands_twice():
+    """Symbols and errors together have no name in code twice."""
     names = [s.code for s in (*SYMBOLS, *ERRORS)]
     assert len(names) == len(set(names))
 

@@ -85,6 +85,7 @@ def html_files(book):
 
 
 def test_internal_links_and_downloads_lead_somewhere(book):
+    """Each address within the book is a file, and the part after # is an id or a name in it."""
     pages = {p: BeautifulSoup(p.read_text(), "html.parser") for p in html_files(book)}
     places = {
         path: {tag.get(key) for key in ("id", "name") for tag in page.find_all(attrs={key: True})}
@@ -105,12 +106,14 @@ def test_internal_links_and_downloads_lead_somewhere(book):
 
 
 def test_nothing_points_at_a_network(book):
+    """No page loads a script, style, picture, frame or film from another machine."""
     loaded = re.compile(r'<(?:script|link|img|iframe|source)[^>]*(?:src|href)="https?:[^"]*"')
     found = {p.name: loaded.findall(p.read_text()) for p in html_files(book)}
     assert {k: v for k, v in found.items() if v} == {}
 
 
 def test_every_picture_has_words(book):
+    """Figures have a caption and a description, drawings a label, and images an alt."""
     for path in html_files(book):
         page = BeautifulSoup(path.read_text(), "html.parser")
         for figure in page.select(".lab-figure, .lk-embed"):
@@ -123,6 +126,7 @@ def test_every_picture_has_words(book):
 
 
 def test_ids_are_unique(book):
+    """On no page of the book do two elements have one id."""
     for path in html_files(book):
         ids = [e["id"] for e in BeautifulSoup(path.read_text(), "html.parser").select("[id]")]
         assert len(ids) == len(set(ids)), (path.name, [i for i in ids if ids.count(i) > 1][:5])

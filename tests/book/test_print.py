@@ -19,6 +19,7 @@ def paper(book):
 
 
 def test_every_page_is_there_with_its_title(paper):
+    """There are as many chapters as pages in the contents, and each has a heading with words."""
     chapters = paper.select(".lab-chapter")
     assert len(chapters) == len(in_order())
     assert all(c.select_one("h1").get_text(strip=True) for c in chapters)
@@ -36,6 +37,7 @@ def test_nothing_waits_for_a_hand(paper):
 
 
 def test_links_stay_in_the_document_and_pictures_are_files(paper):
+    """Links go to an id or to an address outside; pictures exist and have an alt."""
     there = {element["id"] for element in paper.select("[id]")}
     for link in paper.select("a[href]"):
         assert re.match(r"#|https?:|mailto:", link["href"]), link

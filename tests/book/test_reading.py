@@ -25,12 +25,14 @@ def test_the_first_page_waits_for_little(visit):
 
 
 def test_the_first_stop_of_the_keyboard_skips_to_the_text(visit):
+    """After one Tab the focus is on "Skip to main content"."""
     page = visit("chapters/paths.html")
     page.keyboard.press("Tab")
     assert "Skip to main content" in page.evaluate("document.activeElement.textContent")
 
 
 def test_every_viewer_is_moved_by_keyboard(visit):
+    """On the page on paths the right arrow moves the first slider of each viewer."""
     page = visit("chapters/paths.html")
     for k in range(page.locator(".lk-embed").count()):
         host = page.locator(".lk-embed").nth(k)
@@ -45,6 +47,7 @@ def test_every_viewer_is_moved_by_keyboard(visit):
 
 
 def test_formulas_are_drawn(visit):
+    """MathJax leaves no TeX source in the text and reports no error."""
     page = visit("chapters/paths.html")
     page.wait_for_selector("mjx-container")
     source = r"\\dot|\\lambda|\\\("
@@ -53,6 +56,7 @@ def test_formulas_are_drawn(visit):
 
 
 def test_the_quiz_answers(visit):
+    """Each choice, taken by keyboard, says whether it is right, and why."""
     page = visit("chapters/paths.html")
     question = page.locator(".lab-question").first
     right = int(question.get_attribute("data-right"))
@@ -75,6 +79,7 @@ def test_answers_to_exercises_are_folded(visit):
 
 
 def test_reduced_motion_stops_the_themes_transitions(visit):
+    """No element of the first page has a transition or an animation that takes time."""
     page = visit("index.html", reduced_motion="reduce")
     moving = page.evaluate("""() => [...document.querySelectorAll('*')].filter((e) => {
         const s = getComputedStyle(e);
@@ -84,6 +89,7 @@ def test_reduced_motion_stops_the_themes_transitions(visit):
 
 
 def test_without_webgl_words_and_plots_remain(visit, blind_chromium):
+    """The still picture with its description and at least one curve are there."""
     page = visit("chapters/torque.html", browser=blind_chromium)
     page.locator(".lk-embed").first.scroll_into_view_if_needed()
     page.wait_for_selector("[data-ready]")
@@ -106,6 +112,7 @@ def test_every_notebook_is_saved_from_the_disk(visit):
 
 
 def test_an_exercise_leads_to_its_notebook(visit):
+    """Its link opens the notebook's page, which offers the download."""
     page = visit("chapters/impedance.html")
     page.get_by_role("link", name="05, impedance").click()
     page.wait_for_url("**/generated/notebooks/05_impedance.html")
@@ -113,6 +120,7 @@ def test_an_exercise_leads_to_its_notebook(visit):
 
 
 def test_words_and_numbers_in_tables_stay_whole_on_a_phone(visit):
+    """Each symbol in the table of notation is on one line."""
     page = visit("notation.html", phone=True)
     heights = page.evaluate("""() => [...document.querySelectorAll('td:first-child code')]
         .map((e) => e.getClientRects().length)""")
@@ -143,6 +151,7 @@ def test_a_wide_formula_is_moved_by_keyboard(visit):
 
 
 def test_a_phone_loads_the_arm_on_tap(visit):
+    """There is no canvas until the reader taps, and then the viewer becomes ready."""
     page = visit("gallery/line.html", phone=True)
     page.wait_for_timeout(300)
     assert page.locator("canvas").count() == 0

@@ -14,6 +14,7 @@ TAGGED = """<article class="bd-article"><section id="top"><h1>Top<a class="heade
 
 
 def test_a_page_is_cut_at_headings_and_names_and_words_stay_whole():
+    """A tagged page has a part for its heading and one for a function, formulas as letters."""
     assert excerpts.parts_of(BeautifulSoup(TAGGED, "html.parser")) == [
         ("top", "Top", "A speed q̇_d is commanded. Do it."),
         ("name", "run", "run() Runs."),
@@ -33,10 +34,12 @@ def test_a_page_is_cut_at_headings_and_names_and_words_stay_whole():
     ],
 )
 def test_a_formula_of_a_sentence_is_read_as_letters(formula, words):
+    """Dots, fractions, Greek, powers, indices and norms become the characters one reads."""
     assert excerpts.spoken(formula) == words
 
 
 def test_a_page_that_was_not_written_again_keeps_its_text(tmp_path):
+    """A new text is added to the old one, and that of a page that has gone is dropped."""
     for name in ("old", "new"):
         (tmp_path / f"{name}.html").touch()
     excerpts.update(tmp_path, {"old": [("a", "A", "as it was")], "gone": [("g", "G", "away")]})
@@ -49,12 +52,14 @@ def test_a_page_that_was_not_written_again_keeps_its_text(tmp_path):
 
 @pytest.mark.slow
 def test_every_page_has_its_text_and_all_of_it_is_small(book):
+    """Each page of the contents has a text, and the file has less than 900 kB."""
     assert set(excerpts.kept(book)) == set(in_order())
     assert (book / excerpts.NAME).stat().st_size < 900_000
 
 
 @pytest.mark.slow
 def test_only_the_page_that_searches_loads_what_searching_needs(book):
+    """No page of the contents loads the index or the tools of the search."""
     for name in in_order():
         page = BeautifulSoup((book / f"{name}.html").read_text(), "html.parser")
         loaded = " ".join(script["src"] for script in page.select("script[src]"))
@@ -71,6 +76,7 @@ def results(visit, words):
 
 @pytest.mark.slow
 def test_a_hit_shows_what_stands_around_it(visit):
+    """The word trapezoid finds its chapter first, marked in over 100 characters of context."""
     page = results(visit, "trapezoid")
     first = page.locator("#search-results li").first
     assert "Paths and time scaling" in first.inner_text()
@@ -82,7 +88,7 @@ def test_a_hit_shows_what_stands_around_it(visit):
 
 @pytest.mark.slow
 def test_the_page_behind_a_hit_is_marked_until_escape(visit):
-    """Also where the word stands in another form; formulas are drawn and nothing is stored."""
+    """Also where the word has another form; formulas are drawn and nothing is stored."""
     page = results(visit, "gravitational dot")
     assert page.evaluate("localStorage.getItem('sphinx_highlight_terms')") is None
     page = results(visit, "gravity")
@@ -100,6 +106,7 @@ def test_the_page_behind_a_hit_is_marked_until_escape(visit):
 
 @pytest.mark.slow
 def test_a_link_into_a_page_brings_the_mark_into_sight(visit):
+    """After a click on a hit's section a marked word is within the window."""
     page = results(visit, "compensation")
     page.locator(".context a", has_text="Who carries the weight").click()
     page.wait_for_selector(".lab-unmark")
@@ -124,4 +131,5 @@ def test_a_slip_of_the_fingers_is_forgiven(visit, typed, offered):
 
 @pytest.mark.slow
 def test_a_word_that_the_book_has_offers_no_other(visit):
+    """A search for singularity does not ask "Did you mean"."""
     assert results(visit, "singularity").get_by_text("Did you mean").count() == 0

@@ -40,7 +40,7 @@ def edited(path, change):
 
 
 def test_an_untouched_notebook_is_whole_and_not_run(folder):
-    """The release itself has nothing to mend, and says that nothing was run."""
+    """The release itself needs no correction, and is said not to have been run."""
     found = examine(folder / "01_paths.ipynb")
     assert found.problems == ()
     assert set(found.verdicts.values()) == {None}
@@ -63,7 +63,7 @@ def test_only_what_there_is_is_counted():
 
 
 def test_what_is_not_yet_right_is_named(folder):
-    """A wrong answer may be handed in, and is told beforehand."""
+    """A wrong answer may be handed in, and is named beforehand."""
 
     def change(cells):
         for cell in cells:
@@ -155,7 +155,7 @@ def test_a_magic_that_keeps_an_answer_to_itself_is_to_be_mended(folder, magic):
     ],
 )  # fmt: skip
 def test_odd_outputs_are_passed_over(folder, odd):
-    """What no check has written is no verdict, and no traceback."""
+    """What no check has written counts as no verdict, and causes no traceback."""
 
     def change(cells):
         cells[-1]["outputs"] = odd
@@ -179,7 +179,7 @@ def test_odd_points_in_a_cell_are_nobodys_concern(folder, odd):
 
 
 def test_another_name_is_to_be_mended(folder):
-    """A notebook that a browser renamed is told its right name."""
+    """For a notebook that a browser renamed, the problem names its right name."""
     path = (folder / "01_paths.ipynb").rename(folder / "01_paths(3).ipynb")
     assert examine(path).problems == (
         "the file is called 01_paths(3).ipynb; rename it to 01_paths.ipynb",
@@ -319,7 +319,7 @@ def test_the_forum_block_holds_verdicts_and_no_answer(folder):
 
 @pytest.mark.parametrize("text", ["", "{", '{"cells": 3}', "\x00\x01"])
 def test_a_damaged_file_is_a_sentence(folder, text):
-    """What is no notebook is said to be none, with the way out."""
+    """A file that cannot be read as a notebook is refused as damaged or cut off."""
     path = folder / "01_paths.ipynb"
     path.write_text(text)
     with pytest.raises(LabkitError, match="not a notebook, or was cut off"):
@@ -328,6 +328,7 @@ def test_a_damaged_file_is_a_sentence(folder, text):
 
 @pytest.mark.parametrize("cell", [1, {"source": "x"}, {"cell_type": "code", "metadata": {}}])
 def test_a_notebook_with_a_cell_that_is_none_is_a_sentence(folder, cell):
+    """A number, or a cell without type, metadata or source, makes the file one that was cut off."""
     path = folder / "01_paths.ipynb"
     path.write_text(json.dumps({"cells": [cell]}))
     with pytest.raises(LabkitError, match="not a notebook, or was cut off"):
@@ -335,6 +336,7 @@ def test_a_notebook_with_a_cell_that_is_none_is_a_sentence(folder, cell):
 
 
 def test_a_cell_may_come_without_metadata(folder):
+    """A cell that defines bang_bang and has no metadata counts as defining it."""
     path = folder / "01_paths.ipynb"
     path.write_text(json.dumps({"cells": [{"cell_type": "code", "source": ["def bang_bang(t):"]}]}))
     found = examine(path)

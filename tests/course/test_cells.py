@@ -42,7 +42,7 @@ def test_a_magic_defines_here_what_it_defines_in_a_notebook(tmp_path):
 
 
 def test_lines_keep_their_numbers():
-    """An error below a magic is told with the line in which it stands."""
+    """An error below a magic has the number of the line that the student sees."""
     assert plain("%%time\n\n%%capture\nx = 1").split("\n")[3] == "x = 1"
     assert plain("x = 1\n%matplotlib inline\n!ls\ny = 2").split("\n")[3] == "y = 2"
 
@@ -71,7 +71,7 @@ def test_what_a_cell_needs_and_binds():
     ],
 )
 def test_no_text_is_too_odd(source):
-    """Whatever stands in a cell, a look at it comes back."""
+    """The analysis of any cell's text has the same parts as that of x = 1."""
     assert set(analyse(source)) == set(analyse("x = 1"))
 
 

@@ -86,7 +86,7 @@ def test_numbers_are_numbers():
 
 
 def test_commands_keep_their_type():
-    """A torque is not a speed, an array is no command, and the numbers count too."""
+    """A torque is not a speed, an array is not a command, and the numbers count too."""
     wanted = lk.JointVelocity(np.zeros(7))
     assert CLOSE(lk.JointVelocity(np.zeros(7)), wanted) is None
     assert "JointVelocity" in says(CLOSE(lk.JointTorque(np.zeros(7)), wanted))
@@ -192,7 +192,7 @@ def test_torques_are_judged_by_what_the_tip_does():
 
 @pytest.mark.parametrize("answer", [np.zeros(7), None, lk.JointVelocity(np.zeros(7))])
 def test_a_torque_is_asked_for_by_name(answer):
-    """What is no torque has no acceleration to be judged by, and is told what it should be."""
+    """Anything but a torque has no acceleration to be judged by; the sentence asks for a torque."""
     judge, (expected, _) = AtTip(), at_tip()
     assert "it should be a JointTorque" in says(judge(answer, expected))
     assert judge.distance(answer, expected) == np.inf

@@ -73,7 +73,7 @@ def test_merging_keeps_an_answer_whatever_stands_around_it(folder):
 
 
 def test_a_stub_below_a_magic_is_still_a_stub(folder):
-    """A magic above an empty stub is no answer; above an answer it goes with it."""
+    """A magic above an empty stub does not make an answer; above an answer it goes with it."""
     new = read_cells(folder / "01_paths.ipynb")
     mine = copy.deepcopy(new)
     (cell,) = (c for c in mine if "def witness" in c["source"])
@@ -85,6 +85,7 @@ def test_a_stub_below_a_magic_is_still_a_stub(folder):
 
 @pytest.mark.parametrize("new", [[], [{"cell_type": "code", "metadata": {}, "source": "x"}]])
 def test_what_is_no_release_is_a_sentence(folder, new):
+    """A new notebook without cells, or without a release's ids, is refused."""
     with pytest.raises(LabkitError, match="the new notebook is not a release"):
         merge(read_cells(folder / "01_paths.ipynb"), new)
 

@@ -111,7 +111,7 @@ def test_one_run_after_the_mouse_commits_and_writes_it_down(place, monkeypatch, 
 
 @pytest.mark.parametrize(("typed", "said"), [("0", 0.0), (" 2.5", 2.5), ("10", None), ("x", None)])
 def test_any_number_can_be_typed(monkeypatch, typed, said):
-    """The field begins empty, so that 0 can be chosen too; what is no prediction is not taken."""
+    """The field begins empty, so that 0 can be chosen too; only a prediction is taken."""
     made = desk.Desk({"x": Prediction("x", "?", Number("mm", 0.0, 9.0), 3).question()})
     shown = []
     monkeypatch.setattr("labkit.course.reveal.desk", lambda: made)
@@ -146,7 +146,7 @@ def test_a_curve_waits_for_each_of_its_sliders(monkeypatch):
 
 
 def test_a_decimal_comma_is_told_how_to_be_written():
-    """Whoever types 8,3 has written one number, and reads which sign is wrong in it."""
+    """A student who types 8,3 has written one number, and reads how to write it."""
     form = Number("mm", 0.0, 9.0)
     assert form.problem("8,3") == "it is '8,3'; write one number with a point, such as 8.5"
     assert form.problem("many").endswith("write one number (mm)")

@@ -57,7 +57,7 @@ def test_a_difference_says_what_where_and_by_how_much():
      {"tests": [{"name": 1}]}, {"mistake": "squared"}, {"withheld": [1]}],
 )  # fmt: skip
 def test_what_is_not_a_verdict_is_refused(change):
-    """A field of another type or beyond its range is no verdict; a notebook's output shows none."""
+    """A field of another type or beyond its range is refused; a notebook's output shows nothing."""
     data = record_data(mark(DOUBLE, square)) | change
     with pytest.raises(LabkitError):
         read_record(Verdict, data)

@@ -78,7 +78,7 @@ def test_an_explanation_asks_for_ones_own_number(course):
 
 
 def test_an_arm_stays_when_others_join_and_after_a_new_release(course, capsys):
-    """Whoever enrols late changes nobody's arm; a release lays the arms out again."""
+    """A student who enrols late changes nobody's arm; a release lays the arms out again."""
     before = json.loads((course.release / NAME / FILE).read_text())
     late = course.root / "late.csv"
     late.write_text(CLASS + "zoe,Zoe,O,\n")

@@ -182,7 +182,7 @@ def test_of_several_that_were_handed_in_together_the_one_called_as_the_assignmen
 
 
 def test_files_of_one_download_are_of_one_time(bare, tmp_path):
-    """Platforms write a class's files one after the other; a sketch that came last is no newer."""
+    """Platforms write a class's files one after the other; the last of them is not a newer one."""
     entries = [(f"Ada_1_assignsubmission_file/{name}.ipynb", name) for name in (NAME, "sketch")]
     zipped(tmp_path / "1.zip", entries[:1])
     with zipfile.ZipFile(tmp_path / "1.zip", "a") as archive:
@@ -284,7 +284,7 @@ def test_a_record_of_an_older_labkit_is_read(bare):
 
 @pytest.mark.parametrize("text", ["", "[]", "{}", '{"seen": [{"when": "soon"}]}', "\x00"])
 def test_a_damaged_record_is_a_sentence_and_costs_nobody_else(bare, tmp_path, text):
-    """Whoever's record cannot be read is named; the others' work is taken."""
+    """The student whose record cannot be read is named; the others' work is taken."""
     take(bare, shown(tmp_path / "1.zip", 1, (f"{NAME}.ipynb", "first")))
     (record,) = bare.root.glob("attempts/*/*/*/attempt.json")
     record.write_text(text)

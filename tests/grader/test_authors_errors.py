@@ -99,7 +99,7 @@ def test_the_outcome_of_a_measurement_is_checked_too(monkeypatch):
     "from . import answers",
 ])  # fmt: skip
 def test_an_import_in_a_stub_that_finds_nothing_is_refused(monkeypatch, wrong):
-    """The solution region is cleared for students, but whoever solves the notebook meets it."""
+    """The solution region is cleared for students, but anyone who solves the notebook meets it."""
     source = f"def double(x):\n    ### BEGIN SOLUTION\n    {wrong}\n    ### END SOLUTION"
     with pytest.raises(LabkitError, match=rf"01_paths\.py:\nthe stub of double says `{wrong}`: "):
         released(monkeypatch, (problem(),), source=source)

@@ -89,7 +89,7 @@ def page(course, student):
 
 
 def test_what_stands_in_a_manual_cell_is_found(authored):
-    """By its name or its id, also where it was doubled; it is no cell of the student's own."""
+    """By its name or its id, also where it was doubled; it does not count as the student's own."""
     given = json.loads((authored.release / NAME / f"{NAME}.ipynb").read_text())
     assert "MARK SCHEME" not in raw(given).decode() and "is short" not in raw(given).decode()
     notebook = written_in(given, WHY, "It is long.")

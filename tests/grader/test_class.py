@@ -185,7 +185,7 @@ def test_a_run_that_is_stopped_leaves_nothing_running_and_loses_nothing(
 
 
 def test_results_outlive_a_crash_while_writing(graded):
-    """A half-written result is no result, and is made again; what could be read of it is kept."""
+    """A half-written result is made again, and what could be read of it is kept."""
     results = Results(graded, NAME)
     who = students(graded, NAME)[0]
     text = results.path(who).read_text()
@@ -325,7 +325,7 @@ def test_command(part, capsys):
 
 
 def test_refuses_without_bubblewrap(part, capsys, monkeypatch):
-    """No bubblewrap: nothing is graded, the line that mends it is said; unsafe must be typed."""
+    """No bubblewrap: nothing is graded, the remedy is printed; unsafe must be typed."""
     folder = Path(sys.executable).parent
     monkeypatch.setenv("PATH", str(folder))
     arguments = ["grade", NAME, "--course", str(part.root)]

@@ -43,5 +43,5 @@ def test_what_people_write_stays(text, clean):
 
 
 def test_one_thing_is_not_a_plural():
-    """Whoever handed in alone is one student, and nobody is no students."""
+    """One is a student, while none and two are students."""
     assert [how_many(n, "student") for n in (0, 1, 2)] == ["0 students", "1 student", "2 students"]

@@ -606,7 +606,7 @@ def test_an_entry_that_is_there_twice_is_named_and_kept_twice(bare, tmp_path):
 
 
 def test_names_in_any_encoding(bare, tmp_path):
-    """UTF-8 that is not announced is read; what is announced and is none is damaged."""
+    """UTF-8 that is not announced is read; what is announced as UTF-8 and is not is damaged."""
     name = f"{MOODLE.format('Zoë', 3)}/n.ipynb"
     silent = zipped(tmp_path / "1.zip", [(name, "z"), BOB])
     data = silent.read_bytes()

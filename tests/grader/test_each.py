@@ -79,7 +79,7 @@ def test_a_lone_surrogate_costs_nobody_a_mark(course, solved, capsys, monkeypatc
 
 @pytest.mark.parametrize("part", [{"source": "x = 1 # \ud800"}, {"notes": ("\ud800",)}])
 def test_a_result_that_cannot_be_written_is_rolled_back_alone(course, part):
-    """Of a class of three, two are recorded and one is named; a rerun with a good one mends it."""
+    """Of a class of three, two are recorded and one is named; a rerun with a good one adds it."""
     done = [result_of(course, student) for student in CLASS]
     done[1] = changed(done[1], **part)
     bad = graded(course, *done, recorded=False) or record(course, NAME, done)
@@ -112,7 +112,7 @@ def test_a_row_that_fails_leaves_the_others_and_is_mended(marked, capsys, monkey
 
 
 def test_a_page_that_fails_is_named_and_the_others_are_written(marked, capsys, monkeypatch):
-    """Whoever comes later in the alphabet has a page all the same."""
+    """A student who comes later in the alphabet has a page all the same."""
     spoil(monkeypatch, feedback, "page", OverflowError("cannot convert float \x1b infinity"))
     code, _, err = verb(marked, capsys, "feedback")
     assert (code, err) == (1, "no page: bob: OverflowError: cannot convert float infinity\n")

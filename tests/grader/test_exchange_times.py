@@ -63,7 +63,7 @@ def test_a_late_hand_in_that_is_dated_back_is_late_and_named(course, tmp_path, c
 
 
 def test_a_notebook_that_is_changed_afterwards_is_late(course, tmp_path):
-    """Whoever writes into their folder after the due date keeps its name and not its time."""
+    """A student who writes into the folder after the due date keeps its name and not its time."""
     folder = handed_in(tmp_path / "in", "root", "1", STATED)
     before = folder.stat()
     (folder / f"{NAME}.ipynb").write_text("2")

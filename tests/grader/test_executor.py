@@ -110,7 +110,7 @@ def test_a_submission_that_takes_too_long_is_named(course, solved):
 
 
 def test_nothing_is_graded_for_nobody(tmp_path):
-    """Whoever leaves early ends what runs, and nothing that waits is begun."""
+    """Leaving early ends what runs, and nothing that waits is begun."""
     with pytest.raises(KeyboardInterrupt), executor(1) as pool:
         running = below(pool.submit(os.getpid).result(120.0), at_least=1)
         futures = [pool.submit(time.sleep, 1000), pool.submit(noted, tmp_path / "later")]
@@ -213,7 +213,7 @@ def test_a_sandbox_killed_while_it_starts_is_made_again(dying_bwrap, here, task,
 
 
 def test_a_forkserver_killed_while_it_loads_is_made_again(here, task):
-    """What is ended when it has said something already, such as a library's banner, is no fault."""
+    """One that ends after it has said something, such as a library's banner, is replaced too."""
     others = running()  # among them other tests' sandboxes
 
     def kill():

@@ -96,7 +96,7 @@ def test_a_mark_that_was_kept_after_a_test_changed_is_told_as_kept(course, solve
 def test_an_answer_that_python_cannot_read_is_shown_with_the_error_at_its_line(
     course, solved, capsys
 ):
-    """The student's text stands in the terminal, on the page and in formgrader, once."""
+    """The student's text is in the terminal, on the page and in formgrader, once."""
     broken = "def bang_bang(t, duration):\n    return (t / duration\n    print(t)\n"
     hand_in(course, NAME, "ada", put(solved, "bang_bang", broken))
     assert main(["grade", NAME, "--course", str(course.root)]) == 0
@@ -110,7 +110,7 @@ def test_an_answer_that_python_cannot_read_is_shown_with_the_error_at_its_line(
 
 
 def test_what_cannot_be_explained_is_a_sentence(course):
-    """A question that is none, a student who handed in nothing."""
+    """An unknown question and a student who handed in nothing are named."""
     with pytest.raises(UnknownName, match="band_bang"):
         explain(course, "ada", "band_bang")
     with pytest.raises(LabkitError, match="nothing was handed in for 01_paths; type"):

@@ -136,7 +136,7 @@ def test_a_notebook_of_another_assignment_is_named(course, bundle, sandbox, solv
 
 
 def test_a_file_that_cannot_be_graded_says_why(course):
-    """It has 0 points, and the reason stands above the questions."""
+    """It has 0 points, and the reason is above the questions."""
     refused = result_of(course, "ada", rejected="the file is empty")
     found = gradescope_results(Bundle.of(course, NAME), {}, refused)
     assert found["score"] == 0 and "the file is empty" in found["output"]

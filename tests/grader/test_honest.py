@@ -44,7 +44,7 @@ class Unmarked(Draft):
 
 
 def test_of_the_synthetic_class_only_cheats_are_suspected(released, bundle, blank):
-    """Odd files, broken cells, magics and prints are no tricks."""
+    """Odd files, broken cells, magics and prints do not count as tricks."""
     problems = {p.name: p for p in released.problems("01_paths")}
     questions = {q.name: q for q in bundle.questions}
     suspected = set()

@@ -35,7 +35,7 @@ def test_the_roster_says_who_a_student_is():
 
 
 def test_a_login_of_the_exchange_is_one():
-    """A folder that was named after a person in a download is none."""
+    """A folder that was named after a person in a download does not count as one."""
     assert row("ada-2", LmsUser("exchange", "ada", "ada")).login == "ada"
     assert row("Ada-Lovelace", LmsUser("moodle", "1", "Ada Lovelace")).login == ""
     assert row("ada").login == "ada"

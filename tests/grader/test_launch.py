@@ -59,7 +59,7 @@ def tree(tmp_path):
 
 
 def test_a_hidden_folder_within_a_shown_one_is_empty(tree):
-    """A course that lies in Python's libraries is covered; what is needed of it is shown again."""
+    """A course within Python's libraries is covered; what is needed of it is shown again."""
     course = tree / "py/lib/course"
     shown = [*launch.python_paths(), tree / "py/lib"]
     assert files(launch.mount_arguments(shown, [course]), tree) == ["py/lib/a"]
@@ -172,7 +172,7 @@ for write in (lambda: open({str(more[0] / "b")!r}, "w"), lambda: open({str(more[
 
 
 def test_devices_work_and_cannot_be_changed(sandbox):
-    """A time set on a device would be seen by whoever comes later; none can be set, by any way."""
+    """A time set on a device would be seen by later students; none can be set, by any method."""
     before = [os.stat(device) for device in DEVICES]
     source = f"""
 import os

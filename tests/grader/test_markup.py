@@ -116,7 +116,7 @@ def test_markdown_of_a_student_does_not_run(show, template, source):
 
 @pytest.mark.parametrize("template", ["formgrade", "feedback"])
 def test_outputs_of_a_student_do_not_run(show, template):
-    """HTML, JavaScript, SVG, widgets and pictures that are none: shown as text, or left out."""
+    """HTML, JavaScript, SVG, widgets and false pictures are shown as text, or left out."""
     outputs = [nbformat.v4.new_output("display_data", data) for data in OUTPUTS]
     outputs.append(nbformat.v4.new_output("stream", text="<script>alert(1)</script>"))
     outputs.append(nbformat.v4.new_output("error", traceback=["<script>alert(1)</script>"]))

@@ -334,7 +334,7 @@ def test_a_name_that_is_unknown_is_told_before_anything_is_archived(course):
 
 
 def test_a_release_that_fails_leaves_the_new_seed(course, monkeypatch):
-    """What is mended and released again has the term's own seed, not the public one."""
+    """What is corrected and released again has the term's own seed, not the public one."""
 
     def fails(*args):
         raise LabkitError("nbgrader could not make it")

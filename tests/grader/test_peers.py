@@ -38,7 +38,7 @@ CLASS = "Login,First name,Last name,Email address,Team\n" + "".join(
 
 @pytest.mark.parametrize("teams", [3, 4, 7, 60])
 def test_everybody_reads_two_reports_of_others_and_each_is_read_twice(teams):
-    """In teams of one to three, whoever of a class handed in nothing; the same seed, the same."""
+    """In teams of one to three, with students who handed in nothing; the same seed, the same."""
     people = {f"s{k}-{m}": f"t{k}" for k in range(teams) for m in range(1 + k % 3)}
     people["late"] = "alone"
     reports = {f"t{k}": f"s{k}-0" for k in range(teams)}
@@ -117,7 +117,7 @@ def typed(course, *words):
 
 
 def test_what_one_member_hands_in_counts_for_the_team(course, capsys):
-    """Bob has Ada's mark, and a page of his own; nobody of his team is called absent."""
+    """Bob has Ada's mark, and his own page, and nobody of the team is called absent."""
     marks = {mark.student: mark for mark in marks_of(course, NAME)}
     assert {name: mark.author for name, mark in marks.items()} == {
         "ada": "", "bob": "ada", "eve": "", "zoe": ""
@@ -182,7 +182,7 @@ def test_reports_go_out_and_reviews_come_back_without_names(course, monkeypatch,
 
 
 def test_who_is_forgotten_takes_no_mark_from_their_team(course, capsys):
-    """Bob has his mark from Ada's report: when she goes it is his, and so is what stands in it."""
+    """Bob has the mark of Ada's report; when she goes, report and mark become Bob's own."""
     with open_gradebook(course) as book:
         for cell in book.find_submission(NAME, "ada").notebooks[0].grades:
             if cell.auto_score is None:

@@ -81,6 +81,6 @@ def test_names_as_platforms_write_them(entry, users):
 
 
 def test_what_moodle_calls_another_way_of_handing_in_is_told():
-    """A file beside a text that was typed is no file that was handed in."""
+    """A name that holds both kinds is read as the text that was typed, by the first person."""
     (one,) = readings("Eve_77_assignsubmission_onlinetext_Ada_42_assignsubmission_file_x.ipynb")
     assert (one.who.number, one.kind) == ("77", "onlinetext")

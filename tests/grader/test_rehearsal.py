@@ -54,7 +54,7 @@ def test_it_goes_on_where_it_was_stopped(played):
 
 
 def test_marks_come_back_under_moodles_own_numbers(played):
-    """The worksheet has each participant's number from the download, and his mark."""
+    """The worksheet has each participant's number from the download, and their mark."""
     course, _, _ = played
     deserved = json.loads(expected_file(course, NAME).read_text())
     with (course.root / "marks-moodle-worksheet.csv").open() as file:

@@ -288,7 +288,7 @@ def test_a_known_mistake_must_give_an_answer():
 
 
 def test_a_solved_cell_brings_only_what_it_needs():
-    """A variable of the answer's own is no function of its module that has the same name."""
+    """A variable of the answer brings no function of its module that has the same name."""
     (coriolis,) = (p for p in COURSE.problems("02_model") if p.name == "coriolis")
     text = inlined(coriolis)
     assert "def coriolis" in text and "def mass_matrix" not in text

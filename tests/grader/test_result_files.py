@@ -179,7 +179,7 @@ ANY = st.text(alphabet=st.characters(exclude_categories=()), max_size=20)  # lon
 
 @given(st.recursive(ANY | st.none() | st.floats(), lambda x: st.lists(x) | st.dictionaries(ANY, x)))
 def test_clean_data_can_be_written(data):
-    """Whatever text stands in it, as key or value, can be written and moves no cursor."""
+    """Any text, as key or value, can be written and moves no cursor."""
     text = json.dumps(clean_data(data), ensure_ascii=False)
     text.encode()
     assert json.dumps(clean_data(clean_data(data)), ensure_ascii=False) == text

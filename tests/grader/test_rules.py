@@ -81,7 +81,7 @@ def test_a_rule_that_changes_changes_marks_that_are_there(late, capsys):
 
 
 def test_the_term_in_one_table(late, capsys):
-    """All assignments with their weights; whoever lacks a mark has no percentage."""
+    """All assignments with their weights; a student who lacks a mark has no percentage."""
     code, out, _ = verb(late, capsys, "export")
     rows = {r["student"]: r for r in csv.DictReader(io.StringIO(out))}
     assert code == 0 and rows["(weight)"][NAME] == "2.0"
@@ -89,7 +89,7 @@ def test_the_term_in_one_table(late, capsys):
 
 
 def test_who_handed_in_nothing_is_listed(late, tmp_path, capsys):
-    """With an empty cell, or with 0 if that is asked for; it is no failure."""
+    """With an empty cell, or with 0 if that is asked for; the command does not fail."""
     people = tmp_path / "people.csv"
     people.write_text("login,first name,last name\nada,Ada,L\nben,Ben,M\ncleo,C,N\nfrank,F,O\n")
     assert verb(late, capsys, "students", "import", str(people))[0] == 0

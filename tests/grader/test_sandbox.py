@@ -55,7 +55,7 @@ def test_no_two_sandboxes_share_a_user():
 
 
 def test_what_can_no_longer_be_confined_is_a_sandbox_lost():
-    """Where it never could, the machine lacks something; later it is no student's fault either."""
+    """Where it never could, the machine lacks something; later it is not a student's fault."""
     impossible = Limits(files=-1)
     with Sandbox() as sandbox:
         with pytest.raises(NoIsolation, match="could not be confined"):

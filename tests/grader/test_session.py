@@ -318,7 +318,7 @@ def test_what_an_exception_says_is_one_clean_line_before_there_is_a_result(bundl
 
 
 def test_the_source_that_runs_is_the_one_that_is_read():
-    """What a cell's text hides from whoever reads it is gone before the cell runs."""
+    """What a cell's text would hide from a reader is gone before the cell runs."""
     sources = ["x = '\u202e\x1b[2J'\r\n", ["# \ud800\r", "y = 1"]]
     cells = [{"cell_type": "code", "source": source} for source in sources]
     found = read(json.dumps({"nbformat": 4, "cells": cells}).encode())["cells"]

@@ -116,7 +116,7 @@ def test_rows_that_contradict_each_other_are_refused(tmp_path, text, words):
 
 
 def test_a_list_that_is_cut_off_is_refused(tmp_path):
-    """Half a character in UTF-16 would stand in the last login."""
+    """Half a character in UTF-16 would be in the last login."""
     (tmp_path / "cut.csv").write_bytes("login\nada\n".encode("utf-16")[:-1])
     with pytest.raises(LabkitError, match="is cut off; download"):
         read_list(tmp_path / "cut.csv")

@@ -79,6 +79,7 @@ def test_a_failure_is_named_as_it_happens(course, monkeypatch, capsys):
 
 @pytest.mark.parametrize("words", [["--student", "ada"], ["--again"], ["--diff"]])
 def test_what_watching_would_ignore_is_refused(course, words, capsys):
+    """--student, --again and --diff end with exit code 2 and the advice to leave out --watch."""
     assert main(["grade", NAME, "--watch", *words, "--course", str(course.root)]) == 2
     assert f"for {words[0]} leave out --watch" in capsys.readouterr().err
 

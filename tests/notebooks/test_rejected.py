@@ -276,7 +276,7 @@ def test_a_delay_of_second_order_is_right():
 
 
 def test_no_typed_gains_serve_both_arms():
-    """Whoever does not ask the runner has no pair that passes, whatever arm the seed draws."""
+    """Without asking the runner no pair of gains passes, whatever arm the seed draws."""
     for slow in (3.6, 3.8):
         unseen = [stiffer(UNSEEN, x) for x in (1.0, RESERVE, slow, slow * RESERVE)]
         most = min(trials.Kp[-2] for trials in unseen)

@@ -94,6 +94,7 @@ def joints(page):
 
 
 def test_a_motion_becomes_ready_and_is_drawn(chromium, visit, pages):
+    """More than 1 % of the canvas has the red of the arms."""
     page = visit(chromium, "motion")
     page.wait_for_selector("[data-ready]")  # how soon is a question for `make bench`
     pixels = page.evaluate("""() => {
@@ -107,6 +108,7 @@ def test_a_motion_becomes_ready_and_is_drawn(chromium, visit, pages):
 
 
 def test_the_keyboard_moves_time_and_pose(chromium, visit):
+    """Ten arrows are 0.4 s and another pose; a typed 2.5 s is shown and said to a screen reader."""
     page = visit(chromium, "motion")
     page.wait_for_selector("[data-ready]")
     before = joints(page)["left_w2"]["p"]
@@ -126,6 +128,7 @@ def test_the_keyboard_moves_time_and_pose(chromium, visit):
 
 
 def test_every_control_is_reached_and_named(chromium, visit):
+    """Within 29 Tabs each of eleven controls has had the focus, by its name."""
     page = visit(chromium, "motion")
     page.wait_for_selector("[data-ready]")
     names = []
@@ -141,6 +144,7 @@ def test_every_control_is_reached_and_named(chromium, visit):
 
 
 def test_arrow_keys_turn_the_view(chromium, visit):
+    """The left arrow turns it, plus comes nearer, and 4 is the view from the top."""
     page = visit(chromium, "motion")
     page.wait_for_selector("[data-ready]")
     page.focus("canvas")
@@ -156,6 +160,7 @@ def test_arrow_keys_turn_the_view(chromium, visit):
 
 
 def test_lines_follow_the_theme_and_the_view_stays(chromium, visit):
+    """The dark theme changes a line's colour, and a new motion keeps the view that was turned."""
     page = visit(chromium, "motion")
     page.wait_for_selector("[data-ready]")
     player = "document.querySelector('[data-ready]').labkit"
@@ -170,6 +175,7 @@ def test_lines_follow_the_theme_and_the_view_stays(chromium, visit):
 
 @pytest.mark.parametrize("reduced", ["no-preference", "reduce"])
 def test_play_waits_for_the_reader_and_honours_reduced_motion(chromium, visit, reduced):
+    """Time is zero until Play; with reduced motion there are four pictures a second at most."""
     page = visit(chromium, "motion", reduced_motion=reduced)
     page.wait_for_selector("[data-ready]")
     page.wait_for_timeout(300)
@@ -189,6 +195,7 @@ def test_play_waits_for_the_reader_and_honours_reduced_motion(chromium, visit, r
 
 
 def test_one_webgl_context_serves_many_viewers(chromium, visit):
+    """Four viewers have four canvases, all of them copies in two dimensions."""
     page = visit(chromium, "several")
     made = page.evaluate("""async () => {
         for (const e of document.querySelectorAll('.lk-embed')) {
@@ -203,6 +210,7 @@ def test_one_webgl_context_serves_many_viewers(chromium, visit):
 
 
 def test_without_webgl_words_plots_and_slider_remain(blind_chromium, visit):
+    """The description and more than seven curves are there, and Page Up moves to 1 s."""
     seen = visit(blind_chromium, "motion")
     seen.wait_for_selector("[data-ready]")
     assert seen.is_visible(".lk-alt")
@@ -234,6 +242,7 @@ def test_a_notebook_shows_the_still_the_moving_picture_or_both(chromium, alive, 
 
 
 def test_a_phone_loads_on_tap_and_does_not_scroll_sideways(chromium, visit):
+    """Before the tap there is neither canvas nor robot; after it the page fits the width."""
     page = visit(chromium, "motion", phone=True)
     page.wait_for_timeout(300)
     assert page.locator("canvas").count() == 0
@@ -254,6 +263,7 @@ def test_a_phone_shows_the_whole_caption_of_the_jacobian(chromium, visit):
 
 
 def test_the_explorer_stops_on_the_grid(chromium, visit):
+    """A key goes to the next run, 33 typed becomes 40, and a missing run becomes the nearest."""
     page = visit(chromium, "explorer")
     page.wait_for_selector("[data-ready]")
     assert page.get_attribute("[data-ready]", "data-run") == "0-0"
@@ -273,6 +283,7 @@ def test_the_explorer_stops_on_the_grid(chromium, visit):
 
 
 def test_the_live_demos_answer_to_their_dials(chromium, visit):
+    """Each of the three demos shows other numbers, such as 15/8 d/T for a duration of 4 s."""
     page = visit(chromium, "demos")
     page.evaluate("document.querySelectorAll('.lk-embed').forEach(e => e.scrollIntoView())")
     page.locator("[data-ready]").nth(2).wait_for()
@@ -294,6 +305,7 @@ def test_the_live_demos_answer_to_their_dials(chromium, visit):
 @pytest.mark.parametrize("name", ["motion", "several", "explorer", "demos"])
 @pytest.mark.parametrize("look", ["light", "dark", "phone"])
 def test_axe_finds_nothing(chromium, visit, name, look):
+    """No rule of accessibility is broken in light or dark or on a phone, all viewers loaded."""
     phone = look == "phone"
     page = visit(chromium, name, phone=phone, theme="light" if phone else look)
     page.evaluate("""async () => {

@@ -363,7 +363,7 @@ def test_a_bad_law_stops_with_its_sentence_and_the_arm_rests(live, law, words):
 
 
 def test_a_law_that_nothing_can_end_asks_for_a_new_kernel(monkeypatch):
-    """A loop around a bare `except:` outlives whatever is thrown into it, and is told so."""
+    """A loop around a bare `except:` outlives whatever is thrown into it; the page says so."""
     monkeypatch.setattr("labkit.replay.watch.PATIENCE", 0.1)
     monkeypatch.setattr("labkit.replay.watch.GIVES_UP", 0.3)
     said, told = [], threading.Event()
@@ -502,7 +502,7 @@ def test_a_model_may_be_shared_by_threads():
 
 
 def test_what_is_given_wrongly_is_a_sentence():
-    """A dial nobody reads, one without a range, a start outside it, a law that is no function."""
+    """A dial nobody reads, one without a range, a start outside it, a law that cannot be called."""
     with lk.Arm("left", q0=READY) as arm:
         hold = lk.Hold(T_READY, 1.0)
         with pytest.raises(UnknownName, match="dial"):

@@ -331,7 +331,7 @@ def test_keys_in_a_view_stay_there(chromium, data):
 
 
 def test_force_and_sentence_are_shown_and_said(page, data):
-    """The force in newtons stands at its arrow; a stopped law's sentence is beside the picture."""
+    """The force in newtons is at its arrow; a stopped law's sentence is beside the picture."""
     first = frame(data)
     tip = json.loads(data)["first"]["things"]["target"]["position"]
     told = frame(data, state="running", force=[0, 10, 0], at=tip, link=7, error=0.0333, t=1.0)
@@ -388,7 +388,7 @@ def test_a_kernel_that_is_gone_is_told_with_what_to_do(chromium, data, how):
 
 
 def test_a_silent_kernel_is_told_only_while_its_arm_should_run(page, data):
-    """Five seconds without a word from a running arm are told, until the next word comes."""
+    """The page says that a running arm was silent for 5 s, until the next word comes."""
 
     def after(seconds, **frame_):
         page.evaluate("(f) => tell(f)", frame(data, **frame_))

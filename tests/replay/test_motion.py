@@ -23,10 +23,12 @@ from labkit.replay.motion import STEPS, _quaternions, pack, unpack
 )
 @settings(deadline=None)
 def test_packing_errs_by_half_a_step_at_most(x, step):
+    """Packed, written as JSON and read again, numbers are off by half of the step at most."""
     assert np.abs(unpack(json.loads(json.dumps(pack(x, step)))) - x).max() <= step / 2 + 1e-12
 
 
 def test_json_keeps_every_channel():
+    """At 25 Hz each number is off by half a step at most, and the last time is the motion's."""
     motion = swing(ghosts=2)
     read = json.loads(motion.to_json(rate=25))
     times = read["start"] + read["period"] * np.arange(len(unpack(read["q"])))
@@ -43,10 +45,12 @@ def test_json_keeps_every_channel():
 
 @pytest.mark.parametrize("ghosts", [0, 2, 4])
 def test_ten_seconds_fit_forty_kilobytes(ghosts):
+    """With none, two or four ghosts the JSON has at most 40,000 bytes."""
     assert len(swing(10.0, ghosts=ghosts).to_json().encode()) <= 40_000
 
 
 def test_alternative_text_says_the_true_numbers():
+    """Errors, duration, largest torque and the joint that travels most are the motion's."""
     motion = swing()
     rms, most = (1000 * f(motion.error) for f in (lambda e: np.sqrt(np.mean(e**2)), np.max))
     assert f"{rms:.1f} mm RMS, {most:.1f} mm at most" in motion.alt
@@ -61,6 +65,7 @@ def test_alternative_text_says_the_true_numbers():
 
 
 def test_quaternions_are_the_rotations_without_jumps():
+    """They give the rotations, and no component changes by 0.1 between two rows."""
     motion = swing()
     x, y, z, w = q = _quaternions(motion.target_rotation).T
     again = np.array([
@@ -82,12 +87,14 @@ def test_quaternions_are_the_rotations_without_jumps():
     ],
 )
 def test_wrong_input_is_named(change, sentence):
+    """An unknown arm, six joints, NaN and a single time are each refused by name."""
     good = {"robot": "left", "t": np.linspace(0, 1, 5), "q": np.zeros((5, 7))}
     with pytest.raises(LabkitError, match=sentence):
         Motion(**(good | change))
 
 
 def test_importing_replay_does_not_import_the_widgets():
+    """After the import of labkit.replay, anywidget is not loaded."""
     import subprocess
 
     code = "import sys; import labkit.replay; print('anywidget' in sys.modules)"

@@ -45,6 +45,7 @@ class Reader(HTMLParser):
 
 
 def test_a_figure_has_words_data_and_no_inline_code():
+    """Title and alt are the motion's, the one script is a file, and no element has a style."""
     motion = swing(2.0)
     page = Reader(motion_html(motion, root="../_static/viewer/", poster="a.png"))
     assert json.loads(page.data)["title"] == motion.title
@@ -55,6 +56,7 @@ def test_a_figure_has_words_data_and_no_inline_code():
 
 
 def test_titles_cannot_break_out():
+    """A title that ends the script and begins another stays data."""
     import dataclasses
 
     motion = dataclasses.replace(swing(1.0), title="</script><script>alert(1)</script>")
@@ -64,17 +66,20 @@ def test_titles_cannot_break_out():
 
 
 def test_too_large_a_motion_is_refused():
+    """A minute with four ghosts is refused, and the error suggests a lower rate."""
     with pytest.raises(OutOfRange, match="lower rate"):
         motion_html(swing(60.0, ghosts=4))
 
 
 def test_viewer_and_robot_are_small():
+    """All files that pages share have 2.5 MB at most."""
     files = shared_files()
     assert sum(p.stat().st_size for p in files.values()) <= 2_500_000
     assert {"boot.js", "viewer.js", "robot.js"} <= set(files)
 
 
 def test_an_explorer_names_its_runs():
+    """Its page has the address of each run, in a file below 20 kB, and the facts that exist."""
     run = swing(2.0, ghosts=0)
     dials = [Dial("Controller", ["PD", "impedance"]), Dial("Kp", [10.0, 20.0], "1/s²")]
     grid = Explorer("gains", "Gains", dials, {(0, 0): run, (1, 1): run}, {(0, 0): "RMS 5 mm."})
@@ -89,16 +94,19 @@ def test_an_explorer_names_its_runs():
 
 @pytest.mark.parametrize("name", ["scaling", "jacobian", "rotation"])
 def test_demos_describe_themselves(name):
+    """The data in a demo's page say which of the three it is."""
     page = Reader(demo_html(name))
     assert json.loads(page.data)["kind"] == name
 
 
 def test_an_unknown_demo_is_a_sentence():
+    """A misspelt name is refused, and the error lists those that exist."""
     with pytest.raises(UnknownName, match="'jacobian'"):
         demo_html("jacobean")
 
 
 def test_the_widget_sends_the_files_when_asked_and_keeps_them_out_of_its_state():
+    """Viewer and robot go whole on request, and the state is below 60 kB."""
     motion = swing(2.0)
     widget = show(motion)
     sent = []

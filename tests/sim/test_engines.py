@@ -111,6 +111,7 @@ def test_wall_band_push_and_payload_are_those_of_the_equations(by_the_equations,
 
 
 def test_the_environment_or_the_world_chooses_the_engine(monkeypatch, capsys):
+    """LABKIT_ENGINE sets it, engine= overrides it, and an unknown name is refused."""
     monkeypatch.setenv("LABKIT_ENGINE", "mujoco")
     assert lk.World().engine == "mujoco"
     lk.ready()
@@ -122,6 +123,7 @@ def test_the_environment_or_the_world_chooses_the_engine(monkeypatch, capsys):
 
 
 def test_without_pybullet_mujoco_moves_the_arm_and_asking_for_it_says_how_to_get_it(monkeypatch):
+    """MuJoCo is then the default, and the error for pybullet has its pip command."""
     monkeypatch.delenv("LABKIT_ENGINE", raising=False)
     monkeypatch.setattr("labkit.sim.find_spec", lambda name: name == "mujoco" or None)
     with lk.World() as world:

@@ -48,7 +48,7 @@ def test_no_attack_wins_here(graded):
 
 
 def test_nobody_else_is_harmed(graded, released):
-    """Whoever did their work among the attackers has full marks in result, export and page."""
+    """Students who worked among the attackers have full marks in result, export and page."""
     of, (full, points) = graded.of, full_marks(released)
     assert not of.failed
     assert {who: of.results.get(who, {}).get("score") for who in HONEST} == dict.fromkeys(

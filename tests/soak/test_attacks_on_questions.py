@@ -105,7 +105,7 @@ def earned(result):
 
 
 def test_public_cases_by_heart_earn_nothing(graded):
-    """Whoever knows only what everybody is shown has no points."""
+    """An answer that knows only what everybody is shown has no points."""
     assert not earned(graded["heart"])
 
 
@@ -118,5 +118,5 @@ def test_public_cases_are_known_by_heart(graded):
 
 
 def test_stand_ins_earn_nothing(graded):
-    """What stands in for an answer is no answer."""
+    """What replaces an answer does not count as one."""
     assert not earned(graded["stand-in"])

@@ -104,7 +104,7 @@ CASES = [pytest.param(n, marks=() if n == "nbgrader_config.py" else soak) for n 
 
 @pytest.mark.parametrize("name", CASES)
 def test_no_file_beside_a_notebook_is_run(course, tmp_path, name):
-    """Whoever stands in a submission's folder to look at it, and grades, runs nothing of it."""
+    """Looking and grading from within a submission's folder run nothing of it."""
     folder = course.submitted / "mallory" / NAME
     folder.mkdir(parents=True)
     shutil.copy(course.release / NAME / f"{NAME}.ipynb", folder)

@@ -131,7 +131,7 @@ def _deserved(course):
 
 
 def test_every_honest_mark_is_exact(graded):
-    """Question by question, whoever sits beside them."""
+    """Question by question, beside any attacker."""
     assert not list(differences(graded.course, NAME))
 
 

@@ -57,6 +57,7 @@ def ends():
 
 @pytest.mark.parametrize("side", ["left", "right"])
 def test_the_arms_own_poses_touch_nothing(side):
+    """Above a table, ready and neutral pose of either arm are free."""
     scene = PlanningScene(side, (lk.Table(),))
     assert scene.free(lk.robot(side).ready) and scene.free(lk.robot(side).neutral)
 
@@ -100,6 +101,7 @@ def distance(shape, points):
 
 
 def test_the_distance_to_a_table_grows_as_the_table_sinks():
+    """The gripper is nearest to it, and 10 mm lower it is 10 mm further away."""
     near, far = (PlanningScene("left", (lk.Table(height=h),)) for h in (-0.05, -0.06))
     (a, arm, table), (b, _, _) = near.clearance(ROBOT.ready), far.clearance(ROBOT.ready)
     assert (arm, table) == ("the left gripper", "the table")
@@ -107,6 +109,7 @@ def test_the_distance_to_a_table_grows_as_the_table_sinks():
 
 
 def test_blocked_places_are_named_with_what_touches_what(scene):
+    """A start in the torso, a goal beyond a joint's range and a flat box are refused in words."""
     folded = np.array([0.4, 0.8, -0.4, 2.5, 0.0, 0.0, 0.7])
     with pytest.raises(Blocked, match=r"start puts the left gripper \d+ mm into the torso;"):
         plan(scene, folded, ROBOT.ready)
@@ -119,6 +122,7 @@ def test_blocked_places_are_named_with_what_touches_what(scene):
 
 
 def test_what_is_no_obstacle_or_no_place_of_the_joints_is_a_sentence(scene):
+    """A spring, six angles and a path of points are refused; lists of seven are not."""
     with pytest.raises(TypeMismatch, match="expected a Box, a Table or a Wall"):
         PlanningScene("left", (lk.Spring([0.6, 0.2, 0.1], 300.0),))
     for q in (np.zeros(6), [0.0] * 6):
@@ -133,6 +137,7 @@ def test_what_is_no_obstacle_or_no_place_of_the_joints_is_a_sentence(scene):
 
 
 def test_the_way_round_a_post_touches_nothing_even_between_the_places_looked_at(scene, ends):
+    """At 1,500 places the arm keeps half of the margin, though the straight line hits the post."""
     way = plan(scene, *ends, seed=3)
     assert first_hit(scene, Line(*ends)) is not None, "straight on is the post"
     np.testing.assert_allclose(way(0.0).position, ends[0], atol=1e-9)
@@ -142,6 +147,7 @@ def test_the_way_round_a_post_touches_nothing_even_between_the_places_looked_at(
 
 
 def test_the_same_seed_gives_the_same_way(scene, ends, capfd):
+    """It is the same bit for bit, another seed's differs, and the planner prints nothing."""
     a, b, c = (plan(scene, *ends, seed=seed) for seed in (5, 5, 6))
     np.testing.assert_array_equal(a.values, b.values)
     assert a.values.shape != c.values.shape or np.abs(a.values - c.values).max() > 1e-3
@@ -149,12 +155,14 @@ def test_the_same_seed_gives_the_same_way(scene, ends, capfd):
 
 
 def test_no_way_is_a_sentence_that_names_the_hindrance(scene, ends, monkeypatch):
+    """After the three places that it may try, it says where the straight line meets the post."""
     monkeypatch.setattr(planning, "CHECKS", 3)
     with pytest.raises(NoWay, match=r"after 3 places; going straight, s = 0\.\d\d .* the post"):
         plan(scene, *ends)
 
 
 def test_a_path_of_the_tip_keeps_its_geometry_and_its_largest_speed():
+    """The tip is off the line by less than 1e-6 m, and its top speed is the target's to 0.2 %."""
     task, model = tasks.line(), lk.Model()
     way = along(PlanningScene("left", (lk.Table(),)), model, task.target, task.q0, HARDWARE)
     start, goal = (task.target(t).pose[:3, 3] for t in (0.0, task.duration))
@@ -171,6 +179,7 @@ def test_a_path_of_the_tip_keeps_its_geometry_and_its_largest_speed():
 
 
 def test_a_path_through_an_obstacle_says_where_and_what():
+    """The sentence names s, the gripper and the board that it would come too near to."""
     task = tasks.line()
     board = Box("board", task.target(0.0).pose[:3, 3] + (0.05, -0.075, 0.05), (0.04, 0.04, 0.04))
     with pytest.raises(
@@ -203,6 +212,7 @@ def test_the_quickest_schedule_keeps_every_limit_and_wastes_none(scene, ends):
 
 
 def test_a_schedule_is_its_own_slope():
+    """Its speed is the slope of s over time, and outside its duration it is at rest."""
     s = np.linspace(0, 1, 30)
     schedule = Schedule(s, np.sin(np.pi * s) + 0.2 * s * (1 - s))
     h = 1e-6
@@ -213,6 +223,7 @@ def test_a_schedule_is_its_own_slope():
 
 
 def test_bad_limits_and_schedules_are_sentences():
+    """A joint without speed and a schedule that never moves are refused."""
     with pytest.raises(lk.LabkitError, match="speed is 0 at a joint"):
         JointLimits(np.zeros(7), np.ones(7))
     with pytest.raises(lk.LabkitError, match=r"stands still at s = 0\.000"):
@@ -236,6 +247,7 @@ def test_the_velocity_server_trails_by_its_targets_speed_over_kp():
 
 @pytest.mark.parametrize("server", [PositionServer(), VelocityServer()])
 def test_the_server_gives_up_where_rethinks_does(server):
+    """A joint 0.3 rad off its trajectory ends the run of either server; 0.2 rad are allowed."""
     far = ROBOT.ready + 0.3 * np.eye(7)[2]
     with (
         lk.Arm(q0=ROBOT.ready) as arm,
@@ -246,6 +258,7 @@ def test_the_server_gives_up_where_rethinks_does(server):
 
 
 def test_the_recorded_runs_are_what_the_command_records():
+    """Approach and line, driven again, have the angles and targets that ship, to 1e-6."""
     fresh = drive(tasks.line(), PositionServer())
     for name, log in zip(("baseline_approach", "baseline_line"), fresh, strict=True):
         kept = recordings.load(name)
@@ -254,6 +267,7 @@ def test_the_recorded_runs_are_what_the_command_records():
 
 
 def test_without_the_extra_a_sentence_tells_what_to_install():
+    """Where toppra is missing, the import fails with the pip command for it."""
     code = "import sys; sys.modules['toppra'] = None\nimport solutions.study.baseline"
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True)
     assert 'the baseline needs toppra, which is not installed: pip install "labkit[baseline]"' in (

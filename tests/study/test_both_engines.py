@@ -49,6 +49,7 @@ def test_engines_agree_to_five_per_cent_or_a_tenth_of_a_millimetre(change, count
 
 
 def test_the_book_is_told_how_far_the_engines_are_apart():
+    """It receives the claims, those that agree, the runs, and the largest difference in mm."""
     other = copy.deepcopy(found())
     other["rows"][0]["late_max_mm"] += 0.25
     other["verdicts"][0]["overall"]["outcome"] = "held"
@@ -57,7 +58,7 @@ def test_the_book_is_told_how_far_the_engines_are_apart():
 
 
 def test_every_engine_that_is_installed_is_compared_with_the_first(tmp_path, monkeypatch, capsys):
-    """A third engine needs no line here; what the book is told is of the farthest."""
+    """Of three engines the third is the farthest, and the book receives its distance."""
     monkeypatch.chdir(tmp_path)
     monkeypatch.setattr(both_engines, "installed", lambda: ["one", "two", "three"])
     monkeypatch.setattr(both_engines, "KEPT", tmp_path / "engines.json")

@@ -27,6 +27,7 @@ def rows():
 
 
 def test_any_number_of_workers_gives_the_same_rows_bit_for_bit(rows):
+    """Two processes give the four rows of one, all different, and count each as it is done."""
     told = []
     again = work_through(report.numbers, SMALL, jobs=2, progress=lambda *x: told.append(x))
     assert again == rows
@@ -35,6 +36,7 @@ def test_any_number_of_workers_gives_the_same_rows_bit_for_bit(rows):
 
 
 def test_a_dask_cluster_gives_the_same_rows_bit_for_bit(rows):
+    """A scheduler with one worker gives the rows of one process."""
     from distributed import LocalCluster
 
     quiet = {"n_workers": 1, "threads_per_worker": 1, "dashboard_address": None}
@@ -44,7 +46,7 @@ def test_a_dask_cluster_gives_the_same_rows_bit_for_bit(rows):
 
 
 def test_a_dask_cluster_that_is_not_there_is_a_sentence():
-    """At an address that is none; from the command line too, which then ends with 2."""
+    """A wrong address is named; from the command line that is one line, and exit code 2."""
     with pytest.raises(lk.LabkitError, match="no Dask scheduler at nonsense"):
         work_through(report.numbers, SMALL, dask="nonsense")
     command = [sys.executable, "-m", "solutions.study", "--dask", "nonsense"]
@@ -54,6 +56,7 @@ def test_a_dask_cluster_that_is_not_there_is_a_sentence():
 
 
 def test_every_way_starts_a_seed_at_the_same_place():
+    """With seed 3 each controller starts the line at the same angles, bit for bit."""
     starts = [
         report.perform(controller, "line", "ideal", 3).q[0] for controller in report.CONTROLLERS
     ]
@@ -62,10 +65,12 @@ def test_every_way_starts_a_seed_at_the_same_place():
 
 
 def test_the_five_controllers_are_the_ones_with_stated_gains():
+    """The report's five names are those of the course's controllers."""
     assert set(report.FIVE) == set(course_controllers(lk.Model()))
 
 
 def test_a_run_that_is_refused_is_a_row_and_the_rest_goes_on():
+    """One job of three fails; its row has the sentence, and the table counts it."""
     rows = work_through(fails_on_two, cells(n=(1, 2, 3)), jobs=1)
     assert [row["failed"] for row in rows] == [None, "two is too many", None]
     assert table(rows, "failed", "n", "n").count("failed 1 of 1") == 1
@@ -78,11 +83,13 @@ def fails_on_two(n):
 
 
 def test_a_bug_in_a_job_is_no_finding():
+    """An error that is not a LabkitError ends the work instead of becoming a row."""
     with pytest.raises(ZeroDivisionError):
         row_of(fails_on_two, {"n": 0})
 
 
 def test_a_table_shows_the_mean_and_the_spread_over_seeds():
+    """Runs of 1, 2 and 6 are shown as 3 [1, 6], and one without a number as never."""
     rows = [
         {"controller": "a", "task": "line", "x": x, "failed": None} for x in (1.0, 2.0, 6.0)
     ] + [{"controller": "b", "task": "line", "x": None, "failed": None}]
@@ -97,6 +104,7 @@ def test_a_table_shows_the_mean_and_the_spread_over_seeds():
 
 
 def test_bad_grids_and_columns_are_sentences():
+    """An empty axis, an unknown column and zero jobs are each named."""
     with pytest.raises(lk.LabkitError, match="axis 'seed' is empty"):
         cells(controller=("a",), seed=())
     with pytest.raises(lk.LabkitError, match="no column 'rms'; there is"):
@@ -153,6 +161,7 @@ def rows_of(by_task):
     ],
 )
 def test_a_claim_is_held_refuted_or_undecided(differences, outcome):
+    """Three differences of one sign hold or refute it; if one has the other sign it stays open."""
     found = judge("a is larger", "mm", *rows_of({"line": differences}))
     assert found.overall.outcome is outcome
 
@@ -179,6 +188,7 @@ def test_several_claims_together_have_wider_intervals():
 
 
 def test_no_interval_is_narrower_than_the_clock_can_tell():
+    """Equal differences have the given least half-width of 0.005 s."""
     found = judge("faster", "s", *rows_of({"": (0.575, 0.575, 0.575)}), least=0.005)
     assert found.overall.half_width == 0.005
 
@@ -248,6 +258,7 @@ def test_a_controller_alone_is_printed_and_not_written(tmp_path, monkeypatch, ca
 
 
 def test_the_rows_kept_for_notebooks_are_those_of_the_campaign(rows):
+    """There is one for each run of five seeds, and four run again agree to 0.1 %."""
     kept = recordings.campaign()
     assert len(kept) == len(report.grid(5))
     for fresh in rows:

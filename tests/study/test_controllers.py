@@ -238,7 +238,7 @@ def limit_of(name):
 
 
 def test_a_controller_without_a_limit_is_told_where_to_enter_it():
-    """A new controller of the campaign is told what to measure, and where to write it."""
+    """The error for a controller without a limit names the table that lacks it."""
     with pytest.raises(AssertionError, match=r"'my own' of .* has no entry in BAXTER_LIMITS"):
         limit_of("my own")
 

@@ -14,15 +14,18 @@ def test_passivity_takes_half_of_k_t_and_all_of_the_damper(K, B):
 
 
 def test_without_a_damper_the_passive_limit_is_the_stable_one():
+    """The stiffest stable wall with B = 0 is 2 b / T, to 1 %."""
     assert passivity.stiffest(8.0, 5.0, 0.0, 0.005) == pytest.approx(2.0 * 5.0 / 0.005, rel=0.01)
 
 
 def test_a_loop_that_is_not_passive_is_stable_at_a_hard_wall():
+    """With 5 N s/m, less than passivity asks for, it is stable at 5e5 N/m."""
     assert passivity.least_damping(300.0, 60.0, 0.005) > 5.0
     assert passivity.is_stable(passivity.loop(8.0, 5.0, 300.0, 60.0, 0.005, 5e5))
 
 
 def test_by_the_image_a_wrong_focal_length_does_no_harm_and_by_the_pose_it_does():
+    """At 20 % off, the first ends within 0.5 mm and the second beyond 20 mm."""
     image, pose = (
         image_servoing.approach(method, 0.2).distance[-1]
         for method in ("image", "pose, goal measured")
@@ -31,6 +34,7 @@ def test_by_the_image_a_wrong_focal_length_does_no_harm_and_by_the_pose_it_does(
 
 
 def test_a_posture_brings_the_elbow_back():
+    """After two laps the joints are off by more than three times as much without one."""
     model = lk.Model("left")
     q0 = model.robot.ready
     free, held = (np.abs(redundancy.laps(model, q0, 2, k)[-1] - q0).max() for k in (0.0, 2.0))

@@ -23,6 +23,7 @@ def forward(state, target):
 
 
 def test_the_film_shows_the_arm_move_and_where_the_target_went(log):
+    """Pictures differ, and the last has the target's colour where the target is seen."""
     first, second, _, last = film.frames(log, 4.0, lens=LENS)
     assert first.shape == (144, 192, 3)
     assert np.abs(last.astype(int) - second).sum() > 10_000, "something moved"
@@ -34,6 +35,7 @@ def test_the_film_shows_the_arm_move_and_where_the_target_went(log):
 
 
 def test_a_film_and_its_poster_are_written(log, tmp_path):
+    """Both have 192 x 144 pixels; of a second at 4 Hz the film has four pictures."""
     import imageio.v3 as imageio
 
     poster = film.film(log, tmp_path / "line.mp4", 4.0, lens=LENS)
@@ -42,6 +44,7 @@ def test_a_film_and_its_poster_are_written(log, tmp_path):
 
 
 def test_a_run_without_duration_makes_no_film(log):
+    """A log of one row is refused, because it has no duration."""
     from dataclasses import replace
 
     with pytest.raises(lk.LabkitError, match="this log has no duration"):

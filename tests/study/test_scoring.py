@@ -7,6 +7,7 @@ from solutions.study.joint_velocity import JointVelocityPD
 
 
 def test_a_controller_is_scored_on_every_case_and_seed_with_its_spread():
+    """Two cases and two seeds give four rows, and twice as fast has the larger error."""
     rows = scoring.score(
         Candidate(JointVelocityPD(5.0), 200.0, True), scoring.CASES[::2], seeds=(0, 1)
     )
@@ -19,6 +20,8 @@ def test_a_controller_is_scored_on_every_case_and_seed_with_its_spread():
 
 
 def test_a_controller_that_loses_the_arm_is_a_row_with_a_sentence():
+    """A wrong sign of torque is a row that names the controller and the time."""
+
     def wrong_sign(state, target):
         return lk.JointTorque(100.0 * (state.q - target.position))
 

@@ -10,6 +10,7 @@ from solutions.study.sensing import Setup, consistency, random_poses, read
 
 
 def test_random_poses_are_as_the_setup_says():
+    """Distance and tilt are within the setup; a tilt, distance or count that cannot be is named."""
     setup = Setup(distance=0.9, tilt=(0.2, 0.5))
     for T in random_poses(setup, 50, np.random.default_rng(0)):
         ray = T[:3, 3] / np.linalg.norm(T[:3, 3])
@@ -79,6 +80,7 @@ def test_a_tag_square_to_the_camera_is_read_as_well_as_any():
 
 
 def test_a_tag_too_far_away_is_counted_as_missed():
+    """At 9 m none of three pictures gives a pose."""
     setup = Setup(distance=9.0)
     missed = read(setup, random_poses(setup, 3, np.random.default_rng(0)))
     assert not missed.found.any()

@@ -26,6 +26,7 @@ def test_position_velocity_and_acceleration_are_continuous(task):
 
 @pytest.mark.parametrize("task", TASKS, ids=lambda task: task.name)
 def test_the_joints_take_the_tip_along_the_task(task):
+    """The pose of the joint angles is the target's to 1e-7 at 60 times."""
     model = lk.Model()
     for t in np.linspace(0.0, task.duration, 60):
         assert np.abs(model.pose_error(task.target(t).pose, task.joints(t).position)).max() < 1e-7
@@ -33,6 +34,7 @@ def test_the_joints_take_the_tip_along_the_task(task):
 
 
 def test_the_square_visits_current_goals_and_current_again():
+    """Between its sides the tip rests in the corners of a square of 0.15 m, the first one last."""
     task = TASKS[2]
     p = task.target(0.0).pose[:3, 3]
     corners = p + np.array([(0, 0, 0), (0.15, 0, 0), (0.15, -0.15, 0), (0, -0.15, 0), (0, 0, 0)])
@@ -43,11 +45,13 @@ def test_the_square_visits_current_goals_and_current_again():
 
 
 def test_the_circle_returns_exactly():
+    """In x and y its last place is exactly its first."""
     start, end = (TASKS[1].target(t).pose for t in (0.0, TASKS[1].duration))
     np.testing.assert_array_equal(start[:2, 3], end[:2, 3])
 
 
 def test_a_seed_means_one_start_about_a_centimetre_off():
+    """Twenty seeds give twenty starts, on average between 3 and 20 mm off the path's."""
     model, task = lk.Model(), TASKS[0]
     np.testing.assert_array_equal(task.start(4), task.start(4))
     p = task.target(0.0).pose[:3, 3]

@@ -36,6 +36,7 @@ def test_the_decay_of_a_damped_swing_is_its_formula():
 
 
 def test_the_procedure_finds_the_ultimate_gain_and_halves_it():
+    """It is the computed one to 12 %, and of the Kd tried the best is kept."""
     joint = VelocityJoint(LAG, DELAY)
     found = report_procedure(simulated, growth=1.1, most=60)
     assert found.ultimate == pytest.approx(ultimate_gain(joint), rel=0.12)
@@ -46,6 +47,8 @@ def test_the_procedure_finds_the_ultimate_gain_and_halves_it():
 
 
 def test_a_loop_that_never_oscillates_is_a_sentence():
+    """If the error decays without a swing at every gain, the sentence names the largest tried."""
+
     def exact(Kp, Kd):
         t = np.linspace(0.0, 2.0, 200)
         return t, np.exp(-Kp * t)

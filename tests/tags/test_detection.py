@@ -60,6 +60,7 @@ def test_corners_have_no_bias():
 
 @pytest.mark.parametrize("tilt", [0.0, 0.4, 0.9])
 def test_the_pose_in_a_picture_made_without_the_renderer_is_the_true_one(tilt):
+    """At 0, 0.4 and 0.9 rad of tilt the tag is found to 1.5 mm and 1 degree."""
     tag, T_cm = lk.Tag(11), tilted(tilt)
     found = lk.tags.find_tag(lk.detect_tags(painted(tag, T_cm), LENS, 0.1), 11)
     np.testing.assert_allclose(found.T_cm[:3, 3], T_cm[:3, 3], atol=1.5e-3)
@@ -89,6 +90,7 @@ def test_the_better_of_the_two_poses_comes_first_and_their_ratio_is_told():
 
 
 def test_corners_may_be_a_list_and_must_be_those_of_a_square():
+    """A list gives the array's pose; four equal corners and crossed ones are refused."""
     pixels = LENS.project(lk.Tag().corners @ tilted(0.8)[:3, :3].T + tilted(0.8)[:3, 3])
     np.testing.assert_array_equal(tag_pose(pixels.tolist(), LENS, 0.1), tag_pose(pixels, LENS, 0.1))
     for none in (np.zeros((4, 2)), [[0, 0], [9, 9], [9, 0], [0, 9]]):
@@ -123,6 +125,7 @@ def test_the_covariance_is_what_noise_on_the_corners_does():
 
 
 def test_no_tag_in_view_is_an_empty_answer_and_a_named_error():
+    """Detection gives an empty tuple, and asking it for tag 4 is a TagNotFound."""
     blank = np.full((480, 640), 200, np.uint8)
     found = lk.detect_tags(blank, LENS, 0.1)
     assert found == ()
@@ -131,6 +134,7 @@ def test_no_tag_in_view_is_an_empty_answer_and_a_named_error():
 
 
 def test_two_tags_with_one_number_are_a_named_error():
+    """Both are detected, with one size or one for each number, and asking for 7 is refused."""
     left, right = (
         painted(lk.Tag(7), se3.pose(tilted(0.3)[:3, :3], np.array([x, 0.0, 0.7])))
         for x in (-0.15, 0.15)
@@ -144,17 +148,20 @@ def test_two_tags_with_one_number_are_a_named_error():
 
 
 def test_tags_of_other_numbers_are_passed_over_when_sizes_are_named():
+    """With a size for 8 alone, a picture of 7 gives nothing."""
     picture = painted(lk.Tag(7), tilted(0.3))
     assert lk.detect_tags(picture, LENS, {8: 0.1}) == ()
 
 
 def test_a_covered_tag_is_not_found_and_does_no_harm():
+    """A tag whose lower part is hidden gives an empty answer and no error."""
     picture = painted(lk.Tag(7), tilted(0.3))
     picture[230:, :] = 60
     assert lk.detect_tags(picture, LENS, 0.1) == ()
 
 
 def test_noise_in_the_picture_is_survived():
+    """With 15 grey levels of noise the tag is found to 3 mm."""
     random = np.random.default_rng(0)
     picture = painted(lk.Tag(7), tilted(0.5)) + 15.0 * random.standard_normal((480, 640))
     noisy = np.clip(picture, 0, 255).astype(np.uint8)
@@ -175,6 +182,7 @@ def test_noise_in_the_picture_is_survived():
     ],
 )
 def test_what_cannot_be_used_is_refused_in_a_sentence(ask, error, says):
+    """A size that is not positive, and images and lenses of a wrong type or shape, are named."""
     with pytest.raises(error, match=says) as caught:
         ask(np.zeros((480, 640), np.uint8))
     assert isinstance(caught.value, LabkitError)

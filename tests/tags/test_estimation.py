@@ -20,6 +20,7 @@ def test_a_reading_moves_the_estimate_as_the_information_says():
 
 
 def test_the_first_reading_says_nothing_about_the_speed():
+    """The first speed is zero with the given deviation, and the place is the reading's."""
     first = first_estimate(2.0, [1.0, 2.0, 3.0], 1e-6 * np.eye(3), 0.2)
     np.testing.assert_array_equal(first.mean, [1, 2, 3, 0, 0, 0])
     np.testing.assert_allclose(np.diag(first.covariance), [1e-6] * 3 + [0.04] * 3)

@@ -21,6 +21,7 @@ def test_the_printed_image_reads_as_its_number():
 
 
 def test_the_border_is_white_and_as_wide_as_stated():
+    """Two cells of white surround black edges, and the paper is 12/8 of the tag."""
     tag = lk.Tag(3, border=2)
     picture = tag.image(cell=10)
     assert picture.shape == (120, 120)
@@ -50,6 +51,7 @@ def test_corners_go_clockwise_for_who_looks_at_the_tag():
     ],
 )
 def test_a_tag_that_cannot_be_is_refused_in_a_sentence(make, error, says):
+    """The error for size 0, number 587 or no border says what is allowed."""
     with pytest.raises(error, match=says) as caught:
         make()
     assert isinstance(caught.value, LabkitError)
@@ -60,6 +62,7 @@ def turned(angle, place=(0.7, 0.0, 0.0)):
 
 
 def test_a_board_stays_is_moved_by_hand_and_moves_on_a_trajectory():
+    """It is halfway at half of the time and stays at the end, in the orientation it had."""
     with lk.World() as world:
         board = lk.tags.Board(world, lk.Tag(), turned(0.3))
         world.step(100)
@@ -76,6 +79,7 @@ def test_a_board_stays_is_moved_by_hand_and_moves_on_a_trajectory():
 
 
 def test_a_board_follows_a_trajectory_of_poses():
+    """At half of the time it is halfway, and turned by half of the angle."""
     with lk.World() as world:
         board = lk.tags.Board(world, lk.Tag(), turned(0.0))
         line = lk.Line([0.7, 0, 0], [0.7, 0.2, 0])
@@ -100,6 +104,7 @@ def test_several_boards_are_seen_at_once():
 
 
 def test_a_motion_of_joint_angles_moves_no_board():
+    """The error asks for a PoseSample, and where a pose is given suggests board.place."""
     with lk.World() as world:
         board = lk.tags.Board(world, lk.Tag(), turned(0.0))
         with pytest.raises(TypeMismatch, match=r"lk\.PoseSample"):
@@ -109,6 +114,7 @@ def test_a_motion_of_joint_angles_moves_no_board():
 
 
 def test_a_board_is_a_tag_in_a_world():
+    """A number for the tag, or an arm for the world, is refused, and the error asks for both."""
     with lk.Arm("left") as arm:
         for world, tag in ((arm.world, 5), (arm, lk.Tag(5))):
             with pytest.raises(TypeMismatch, match=r"a World .an arm's is arm.world. and a Tag"):
