@@ -127,8 +127,9 @@ def message(
             call = f'hint("{question.name}", 1)'
             hint = f"Stuck? Run `{call}` in a new cell (press Esc, then B). It is free."
         if depends_on:
-            names = " and ".join(depends_on)
-            helps.append(f"It uses your {names}, not right yet: correct {names} first.")
+            names, one = " and ".join(depends_on), len(depends_on) == 1
+            says = "is not right yet; correct that" if one else "are not right yet; correct those"
+            helps.append(f"It uses your {names}, which {says} first.")
     tests: list[str] = []
     numbers: list[str] = []
     match verdict.outcome:
@@ -137,7 +138,8 @@ def message(
         case Outcome.RIGHT:
             helps += [] if verdict.complete or awaits_marking(verdict) else _unseen(question)
         case Outcome.NOT_COUNTED:
-            helps.append("You may use it elsewhere in the notebook; here, write it yourself.")
+            it = "it" if len(verdict.withheld) == 1 else "them"
+            helps.append(f"You may use {it} elsewhere in the notebook; here, write {it} yourself.")
         case _:
             helps += _helps(verdict)
             tests = [test_name(test) for test in verdict.tests]
@@ -214,7 +216,7 @@ def test_name(test: TestResult) -> str:
 
 
 def test_status(test: TestResult) -> str:
-    """The status of a test in a word, such as "passed"."""
+    """The status of a test: "passed", "failed" or "not tried here"."""
     return _SHORT.get(test.outcome, "failed")
 
 

@@ -147,7 +147,7 @@ def encode(value: Any) -> Any:
         return _number(float(value))
     if isinstance(value, np.ndarray):
         if value.dtype.kind not in "fiub":
-            raise TypeMismatch(f"an array of {value.dtype} cannot be compared; give real numbers")
+            raise TypeMismatch(f"an array of {value.dtype} cannot be compared; return real numbers")
         numbers = [_number(x) for x in value.ravel().tolist()]
         return {"$": "array", "shape": list(value.shape), "numbers": numbers}
     name = type(value).__name__

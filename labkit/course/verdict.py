@@ -125,7 +125,7 @@ class Verdict:
         points: Full marks.
         tests: The result of each test.
         withheld: The withheld tools that the answer used.
-        complete: Whether all hidden cases were tried, so that the verdict is final.
+        complete: Whether the question came with all its cases, so that the verdict is final.
         mistake: The known mistake that gives the same answers, if there is one.
     """
 

@@ -85,7 +85,7 @@ def test_an_answer_that_leans_on_a_wrong_one_is_told(capsys):
     check("double", answers["double"])
     assert "it uses your" not in capsys.readouterr().out
     check("again", answers["again"])
-    assert "It uses your double, not right yet: correct double first." in capsys.readouterr().out
+    assert "It uses your double, which is not right yet; correct" in capsys.readouterr().out
     assert notebook.desk().wrong_dependencies("again", answers["again"]) == ("double",)
     assert notebook.desk().wrong_dependencies("again", answers["method"]) == ()
 

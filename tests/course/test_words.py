@@ -82,7 +82,9 @@ def test_a_known_mistake_is_named_first():
 def test_an_answer_that_is_wrong_already_is_named_before_all_else():
     """Who uses a wrong answer of theirs reads first that it is to be corrected first."""
     words = said(square, depends_on=("half", "third")).splitlines()
-    assert words[1] == "  It uses your half and third, not right yet: correct half and third first."
+    assert (
+        words[1] == "  It uses your half and third, which are not right yet; correct those first."
+    )
 
 
 def test_errors_are_told_with_their_call():
@@ -118,7 +120,7 @@ def test_a_withheld_tool_is_an_outcome_of_its_own():
         "double: not counted: uses lk.Circle and numpy.multiply, which this question asks you to "
         "write. 0 of 4 points. "
     )
-    assert "write it yourself" in words and "passed" not in words
+    assert "write them yourself" in words and "passed" not in words
     assert head(not_counted(DOUBLE, ("pinocchio",))) == (
         "double: not counted: uses pinocchio, which may not be used in this answer. 0 of 4 points."
     )
