@@ -48,15 +48,15 @@ def test_it_holds_the_neutral_pose_in_each_mode_with_torque_to_spare(arm, mode):
         arm.apply(command)
         arm.world.step(100)
         assert (np.abs(arm.torque) < 0.6 * arm.robot.effort).all()
-    assert_allclose(arm.state().q, q, atol=1e-4)
-    assert_allclose(arm.torque, arm.model.gravity(q), atol=0.02)
+    assert_allclose(arm.state().q, q, rtol=0, atol=1e-4)
+    assert_allclose(arm.torque, arm.model.gravity(q), rtol=0, atol=0.02)
     assert not arm.saturated
 
 
 def test_it_stays_where_it_was_put_without_any_command(arm):
     """After 1 s without a command its angles are within 2e-5 rad of the neutral ones."""
     arm.world.step(1000)
-    assert_allclose(arm.state().q, arm.robot.neutral, atol=2e-5)
+    assert_allclose(arm.state().q, arm.robot.neutral, rtol=0, atol=2e-5)
 
 
 def test_it_goes_to_a_position(arm):
@@ -65,7 +65,7 @@ def test_it_goes_to_a_position(arm):
     for _ in range(10):
         arm.apply(lk.JointPosition(goal))
         arm.world.step(100)
-    assert_allclose(arm.state().q, goal, atol=5e-4)
+    assert_allclose(arm.state().q, goal, rtol=0, atol=5e-4)
 
 
 def steps():
@@ -106,10 +106,10 @@ def test_it_turns_at_a_speed(arm):
     speed = np.array([0.2, -0.1, 0.3, 0.1, -0.4, 0.2, 0.5])
     arm.apply(lk.JointVelocity(speed))
     arm.world.step(100)
-    assert_allclose(arm.state().dq, speed, atol=1e-4)
+    assert_allclose(arm.state().dq, speed, rtol=0, atol=1e-4)
     before = arm.state().q
     arm.world.step(100)
-    assert_allclose(arm.state().q, before + 0.1 * speed, atol=1e-5)
+    assert_allclose(arm.state().q, before + 0.1 * speed, rtol=0, atol=1e-5)
 
 
 def test_a_torque_accelerates_it_as_the_equations_of_motion_say(arm):
@@ -118,7 +118,7 @@ def test_a_torque_accelerates_it_as_the_equations_of_motion_say(arm):
     arm.apply(lk.JointTorque(tau))
     arm.world.step()
     M, g = arm.model.mass_matrix(arm.robot.neutral), arm.model.gravity(arm.robot.neutral)
-    assert_allclose(arm.state().dq / arm.world.dt, np.linalg.solve(M, tau - g), atol=1e-6)
+    assert_allclose(arm.state().dq / arm.world.dt, np.linalg.solve(M, tau - g), rtol=0, atol=1e-6)
     assert_array_equal(arm.torque, tau)
 
 
@@ -149,12 +149,12 @@ def test_after_the_command_timeout_it_holds_its_place(arm):
     """As Rethink's arm does after 0.2 s: a program that hangs does not keep the arm moving."""
     arm.apply(lk.JointVelocity(np.full(7, 0.2)))
     arm.world.step(200)
-    assert_allclose(arm.state().dq, np.full(7, 0.2), atol=1e-4)
+    assert_allclose(arm.state().dq, np.full(7, 0.2), rtol=0, atol=1e-4)
     arm.world.step(50)
     place = arm.state().q
     arm.world.step(1000)
-    assert_allclose(arm.state().q, place, atol=2e-3)
-    assert_allclose(arm.state().dq, np.zeros(7), atol=1e-4)
+    assert_allclose(arm.state().q, place, rtol=0, atol=2e-3)
+    assert_allclose(arm.state().dq, np.zeros(7), rtol=0, atol=1e-4)
 
 
 def test_stop_brings_it_to_rest(arm):
@@ -163,7 +163,7 @@ def test_stop_brings_it_to_rest(arm):
     arm.world.step(100)
     arm.stop()
     arm.world.step(150)
-    assert_allclose(arm.state().dq, np.zeros(7), atol=1e-4)
+    assert_allclose(arm.state().dq, np.zeros(7), rtol=0, atol=1e-4)
 
 
 def test_reset_puts_it_anywhere_at_rest(arm):
@@ -174,7 +174,7 @@ def test_reset_puts_it_anywhere_at_rest(arm):
     assert_array_equal(arm.state().q, arm.robot.ready)
     assert not arm.state().dq.any()
     arm.world.step(100)
-    assert_allclose(arm.state().q, arm.robot.ready, atol=1e-5)
+    assert_allclose(arm.state().q, arm.robot.ready, rtol=0, atol=1e-5)
     arm.reset()
     assert_array_equal(arm.state().q, arm.robot.neutral)
 
@@ -216,7 +216,7 @@ def test_angles_that_cannot_be_are_refused_and_the_arm_stays_usable(arm, q, erro
             use(q)
         assert isinstance(caught.value, LabkitError)
     arm.world.step(50)
-    assert_allclose(arm.state().q, arm.robot.neutral, atol=1e-5)
+    assert_allclose(arm.state().q, arm.robot.neutral, rtol=0, atol=1e-5)
 
 
 @pytest.mark.parametrize("command", [None, np.zeros(7), [0.0] * 7, "stop", lk.JointTorque])
@@ -226,7 +226,7 @@ def test_what_is_no_command_is_refused_with_those_that_are(arm, command):
         arm.apply(command)
     assert len(str(caught.value)) < 300
     arm.world.step(50)
-    assert_allclose(arm.state().q, arm.robot.neutral, atol=1e-5)
+    assert_allclose(arm.state().q, arm.robot.neutral, rtol=0, atol=1e-5)
 
 
 @pytest.mark.parametrize("side", ["middle", None, 3, "LEFT"])

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import ast
 import shutil
 import subprocess
 import sys
@@ -123,3 +124,15 @@ def test_what_shares_a_group_shares_a_worker(tmp_path):
     subprocess.run(command, cwd=tmp_path, check=True, capture_output=True)
     workers = where.read_text().split()
     assert len(workers) == 6 and len(set(workers)) == 1
+
+
+def test_every_test_says_what_it_proves():
+    """Each test has a docstring, the sentence that it proves."""
+    silent = [
+        f"{path.relative_to(ROOT)}: {node.name}"
+        for path in sorted((ROOT / "tests").rglob("test_*.py"))
+        for node in ast.walk(ast.parse(path.read_text(encoding="utf-8")))
+        if isinstance(node, ast.FunctionDef)
+        if node.name.startswith("test_") and not ast.get_docstring(node)
+    ]
+    assert not silent

@@ -40,7 +40,7 @@ def test_joint_error_is_target_minus_actual(joint_log):
 def test_tip_error_is_target_minus_actual_in_world_axes(pose_log):
     """A target 10 mm above and turned by 0.1 rad about z gives just these numbers."""
     e = metrics.tip_error(pose_log)
-    assert_allclose(e, np.tile([0, 0, 0.01, 0, 0, 0.1], (len(pose_log), 1)), atol=1e-5)
+    assert_allclose(e, np.tile([0, 0, 0.01, 0, 0, 0.1], (len(pose_log), 1)), rtol=0, atol=1e-5)
 
 
 def test_the_tip_error_of_a_joint_run_is_that_of_its_poses(joint_log):
@@ -49,19 +49,21 @@ def test_the_tip_error_of_a_joint_run_is_that_of_its_poses(joint_log):
     e = metrics.tip_error(joint_log, model)
     for k in (0, 500, 1000):
         T_wd = model.pose(joint_log.target.position[k])
-        assert_allclose(e[k], model.pose_error(T_wd, joint_log.q[k]), atol=1e-12)
+        assert_allclose(e[k], model.pose_error(T_wd, joint_log.q[k]), rtol=0, atol=1e-12)
 
 
 def test_velocity_error_is_the_slope_of_the_position_error(joint_log):
     """Apart from five ticks at either end the two agree to 1 mm/s."""
     e = metrics.tip_error(joint_log)[:, :3]
     slope = np.gradient(e, joint_log.t, axis=0)
-    assert_allclose(metrics.velocity_error(joint_log)[5:-5], slope[5:-5], atol=1e-3)
+    assert_allclose(metrics.velocity_error(joint_log)[5:-5], slope[5:-5], rtol=0, atol=1e-3)
 
 
 def test_the_velocity_error_of_a_still_pose_is_the_tips_own_speed(pose_log):
     """For an arm that holds still it is zero to 0.1 mm/s."""
-    assert_allclose(metrics.velocity_error(pose_log), np.zeros((len(pose_log), 3)), atol=1e-4)
+    assert_allclose(
+        metrics.velocity_error(pose_log), np.zeros((len(pose_log), 3)), rtol=0, atol=1e-4
+    )
 
 
 def test_a_run_after_poses_has_no_joint_error(pose_log):

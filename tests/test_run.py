@@ -62,8 +62,8 @@ def test_a_closed_loop_is_the_same_in_mujoco(side, armature):
     m.opt.timestep, m.opt.integrator = 1e-3, mujoco.mjtIntegrator.mjINT_EULER
     d.qpos[:] = log.q[0]
     for t, q, dq in zip(log.t, log.q, log.dq, strict=True):
-        assert_allclose(d.qpos, q, atol=1e-6)
-        assert_allclose(d.qvel, dq, atol=1e-6)
+        assert_allclose(d.qpos, q, rtol=0, atol=1e-6)
+        assert_allclose(d.qvel, dq, rtol=0, atol=1e-6)
         state = lk.State(t, d.qpos.copy(), d.qvel.copy())
         d.qfrc_applied[:] = controller(state, target(t)).value
         mujoco.mj_step(m, d)
@@ -77,7 +77,7 @@ def test_the_same_torques_give_the_same_motion_in_mujoco():
     d = mujoco.MjData(m)
     m.opt.timestep, d.qpos[:] = 1e-3, log.q[0]
     for q, tau in zip(log.q, log.tau, strict=True):
-        assert_allclose(d.qpos, q, atol=1e-6)
+        assert_allclose(d.qpos, q, rtol=0, atol=1e-6)
         d.qfrc_applied[:] = tau
         mujoco.mj_step(m, d)
 
@@ -86,7 +86,7 @@ def test_a_log_has_a_row_for_each_tick_and_both_ends(ideal):
     """Half a second at 100 Hz gives 51 rows in each column, and the log knows who ran."""
     log = lk.run(ideal, still(ideal, 0.5), follow, rate=100)
     assert len(log) == 51
-    assert_allclose(log.t, np.arange(51) * 0.01, atol=1e-12)
+    assert_allclose(log.t, np.arange(51) * 0.01, rtol=0, atol=1e-12)
     for rows in (log.q, log.dq, log.tau, log.command, log.measured.q, log.target.position):
         assert rows.shape == (51, 7)
     assert log.saturated.shape == (51,)
@@ -121,7 +121,7 @@ def test_at_a_slower_rate_the_command_is_held_between_ticks(ideal):
         return lk.JointVelocity(np.full(7, 0.1))
 
     lk.run(ideal, still(ideal, 0.1), controller, rate=50)
-    assert_allclose(calls, np.arange(6) * 0.02, atol=1e-12)
+    assert_allclose(calls, np.arange(6) * 0.02, rtol=0, atol=1e-12)
     assert ideal.world.t == pytest.approx(0.1)
 
 
@@ -238,7 +238,7 @@ def test_a_log_is_described_in_a_line(ideal):
 def assert_stopped(arm):
     """At rest soon, and ready for the next run."""
     arm.world.step(100)
-    assert_allclose(arm.state().dq, np.zeros(7), atol=1e-3)
+    assert_allclose(arm.state().dq, np.zeros(7), rtol=0, atol=1e-3)
     q = np.clip(arm.state().q, arm.robot.lower, arm.robot.upper)
     assert len(lk.run(arm, lk.Hold(q, 0.05), follow)) == 11
 
@@ -373,7 +373,7 @@ def test_a_wrong_sign_is_stopped_with_the_time_the_joint_and_the_log(ideal):
     assert_stopped(ideal)
     q = ideal.truth().q
     again = lk.run(ideal, lk.Hold(q, 0.1), follow)
-    assert_allclose(again.q[-1], q, atol=1e-3)
+    assert_allclose(again.q[-1], q, rtol=0, atol=1e-3)
 
 
 def test_a_controller_that_wants_joints_and_gets_poses_is_told_so(ideal):

@@ -119,8 +119,8 @@ def test_a_chain_starts_each_part_when_the_one_before_has_ended():
     assert c.starts == [0.0, 1.0, 2.0]
     assert c.duration == 2.5
     assert_at_rest(c(-1.0), A)
-    assert_allclose(c(1.0).position, B, atol=1e-15)
-    assert_allclose(c(2.0).position, C, atol=1e-15)
+    assert_allclose(c(1.0).position, B, rtol=0, atol=1e-15)
+    assert_allclose(c(2.0).position, C, rtol=0, atol=1e-15)
     assert_at_rest(c(9.0), C)
 
 
@@ -136,8 +136,8 @@ def test_a_chain_is_continuous_in_position_and_velocity_at_its_joints():
     c = chain()
     for t in c.starts[1:]:
         before, after = c(t - 1e-9), c(t)
-        assert_allclose(before.position, after.position, atol=1e-8)
-        assert_allclose(before.velocity, after.velocity, atol=1e-7)
+        assert_allclose(before.position, after.position, rtol=0, atol=1e-8)
+        assert_allclose(before.velocity, after.velocity, rtol=0, atol=1e-7)
 
 
 def test_chains_nest_and_parts_without_duration_are_passed_over():
@@ -174,8 +174,8 @@ def test_a_pose_path_turns_evenly_from_its_first_to_its_last_orientation(a, b):
     """It has both at its ends, and a quarter of the turn at s = 0.25."""
     R_wt, R_goal = se3.rotation(a), se3.rotation(b)
     path = PosePath(Line(A, B), R_wt, R_goal)
-    assert_allclose(path(0.0).pose[:3, :3], R_wt, atol=1e-14)
-    assert_allclose(path(1.0).pose[:3, :3], R_goal, atol=1e-8)
+    assert_allclose(path(0.0).pose[:3, :3], R_wt, rtol=0, atol=1e-14)
+    assert_allclose(path(1.0).pose[:3, :3], R_goal, rtol=0, atol=1e-8)
     whole = se3.angle_between(R_wt, R_goal)
     assert se3.angle_between(R_wt, path(0.25).pose[:3, :3]) == pytest.approx(whole / 4, abs=1e-7)
 

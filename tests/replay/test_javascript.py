@@ -47,10 +47,10 @@ def test_kinematics_equal_pinocchio(node, baxter, side):
         body = pin.computeFrameJacobian(baxter, data, q, frame, pin.LOCAL)[:, columns]
         pin.framesForwardKinematics(baxter, data, q)
         T = data.oMf[frame]
-        np.testing.assert_allclose(np.reshape(js["R"], (3, 3)), T.rotation, atol=1e-6)
-        np.testing.assert_allclose(js["p"], T.translation, atol=1e-6)
-        np.testing.assert_allclose(np.transpose(js["J"]), world, atol=1e-6)
-        np.testing.assert_allclose(np.transpose(js["B"]), body, atol=1e-6)
+        np.testing.assert_allclose(np.reshape(js["R"], (3, 3)), T.rotation, rtol=0, atol=1e-6)
+        np.testing.assert_allclose(js["p"], T.translation, rtol=0, atol=1e-6)
+        np.testing.assert_allclose(np.transpose(js["J"]), world, rtol=0, atol=1e-6)
+        np.testing.assert_allclose(np.transpose(js["B"]), body, rtol=0, atol=1e-6)
         measure = np.sqrt(np.linalg.det(world @ world.T))
         assert js["w"] == pytest.approx(measure, abs=1e-6)
 
@@ -68,8 +68,10 @@ def test_every_joint_frame_equals_pinocchio(node, baxter):
     for name, frame in node("kinematics.frames(robot, x)", angles).items():
         if name != "base":
             T = data.oMi[baxter.getJointId(name)]
-            np.testing.assert_allclose(frame["p"], T.translation, atol=1e-6)
-            np.testing.assert_allclose(np.reshape(frame["R"], (3, 3)), T.rotation, atol=1e-6)
+            np.testing.assert_allclose(frame["p"], T.translation, rtol=0, atol=1e-6)
+            np.testing.assert_allclose(
+                np.reshape(frame["R"], (3, 3)), T.rotation, rtol=0, atol=1e-6
+            )
 
 
 def test_logarithm_equals_pinocchio(node):
@@ -82,7 +84,7 @@ def test_logarithm_equals_pinocchio(node):
     lengths = np.concatenate([rng.uniform(0, np.pi, 50), small, nearly_half])
     vectors = axes * lengths[:, None]
     rotations = [pin.exp3(v).ravel().tolist() for v in vectors]
-    np.testing.assert_allclose(node("x.map(so3.log)", rotations), vectors, atol=1e-6)
+    np.testing.assert_allclose(node("x.map(so3.log)", rotations), vectors, rtol=0, atol=1e-6)
 
 
 def test_euler_angles_equal_pinocchio(node):
@@ -91,8 +93,10 @@ def test_euler_angles_equal_pinocchio(node):
     angles = rng.uniform([-np.pi, -1.5, -np.pi], [np.pi, 1.5, np.pi], (50, 3))
     rotations = node("x.map(so3.fromEuler)", angles.tolist())
     for rpy, R in zip(angles, rotations, strict=True):
-        np.testing.assert_allclose(np.reshape(R, (3, 3)), pin.rpy.rpyToMatrix(rpy), atol=1e-12)
-    np.testing.assert_allclose(node("x.map(so3.toEuler)", rotations), angles, atol=1e-9)
+        np.testing.assert_allclose(
+            np.reshape(R, (3, 3)), pin.rpy.rpyToMatrix(rpy), rtol=0, atol=1e-12
+        )
+    np.testing.assert_allclose(node("x.map(so3.toEuler)", rotations), angles, rtol=0, atol=1e-9)
 
 
 def test_orientation_error_turns_actual_into_target(node):
@@ -101,7 +105,7 @@ def test_orientation_error_turns_actual_into_target(node):
     for target, actual in rng.uniform(-1.4, 1.4, (20, 2, 3)):
         found = node("rotation_demo.errors(...x)", [target.tolist(), actual.tolist()])
         Rd, Ra = (pin.rpy.rpyToMatrix(a) for a in (target, actual))
-        np.testing.assert_allclose(pin.exp3(np.array(found["log"])) @ Ra, Rd, atol=1e-9)
+        np.testing.assert_allclose(pin.exp3(np.array(found["log"])) @ Ra, Rd, rtol=0, atol=1e-9)
         assert found["angle"] == pytest.approx(np.linalg.norm(found["log"]))
 
 
@@ -115,7 +119,7 @@ def test_polynomial_scalings_equal_numpy(node, name):
     t = np.linspace(0, T, 101)[:-1]
     found = np.array(node(f"x.map((t) => scaling.profile('{name}', {T}, t))", t.tolist()))
     exact = np.column_stack([p(t / T), p.deriv()(t / T) / T, p.deriv(2)(t / T) / T**2])
-    np.testing.assert_allclose(found, exact, atol=1e-12)
+    np.testing.assert_allclose(found, exact, rtol=0, atol=1e-12)
     assert node(f"scaling.profile('{name}', {T}, {T})") == [1, 0, 0]
 
 
@@ -133,11 +137,11 @@ def test_ramped_scalings_are_their_accelerations_integrated(node, expression, T,
     found = np.array(node(f"x.map((t) => {expression})", t.tolist()))
     dds = np.where(t < ramp, a, np.where(t < T - ramp, 0.0, -a))
     inside = np.minimum(np.abs(t - ramp), np.abs(t - T + ramp)) > 1e-6
-    np.testing.assert_allclose(found[inside, 2], dds[inside], atol=1e-9)
+    np.testing.assert_allclose(found[inside, 2], dds[inside], rtol=0, atol=1e-9)
     first = np.minimum(a * ramp, np.minimum(a * t, a * (T - t)))
-    np.testing.assert_allclose(found[:, 1], first, atol=1e-6)
+    np.testing.assert_allclose(found[:, 1], first, rtol=0, atol=1e-6)
     way = np.concatenate([[0], np.cumsum(0.5 * (first[1:] + first[:-1]) * np.diff(t))])
-    np.testing.assert_allclose(found[:, 0], way, atol=1e-5)
+    np.testing.assert_allclose(found[:, 0], way, rtol=0, atol=1e-5)
     assert found[-1, 0] == pytest.approx(1.0, abs=1e-6)
 
 
@@ -152,10 +156,10 @@ def test_browser_unpacks_what_python_packs(node):
     data = swing(3.0).data()
     read = node("recording.read(x)", data)
     for name in ("q", "target", "tau", "error", "target_quaternion"):
-        np.testing.assert_allclose(read[name], unpack(data[name]), atol=1e-12)
+        np.testing.assert_allclose(read[name], unpack(data[name]), rtol=0, atol=1e-12)
     assert read["end"] == pytest.approx(3.0)
     halfway = node("(m => recording.at(m, m.q, 1.5 * m.period))(recording.read(x))", data)
-    np.testing.assert_allclose(halfway, np.mean(unpack(data["q"])[1:3], axis=0), atol=1e-12)
+    np.testing.assert_allclose(halfway, np.mean(unpack(data["q"])[1:3], axis=0), rtol=0, atol=1e-12)
 
 
 def test_missing_grid_points_go_to_the_nearest(node):

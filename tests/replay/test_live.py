@@ -101,7 +101,7 @@ def test_a_hand_pushes_any_link_as_statics_says():
             _, q, dq, _ = arm.truth()
             assert np.abs(dq).max() < 2e-3
             _, J = arm.model.point_on(q, body, point)
-            np.testing.assert_allclose(SPRINGS * (q - READY), J.T @ force, atol=0.05)
+            np.testing.assert_allclose(SPRINGS * (q - READY), J.T @ force, rtol=0, atol=0.05)
 
 
 def test_a_point_of_a_link_moves_as_its_jacobian_says(random):
@@ -114,7 +114,7 @@ def test_a_point_of_a_link_moves_as_its_jacobian_says(random):
             moved = (
                 model.point_on(q + turn, body, point)[0] - model.point_on(q - turn, body, point)[0]
             )
-            np.testing.assert_allclose(moved / 2e-6, J[:, joint], atol=1e-7)
+            np.testing.assert_allclose(moved / 2e-6, J[:, joint], rtol=0, atol=1e-7)
     np.testing.assert_allclose(model.point_on(q, 7, np.zeros(3))[0], model.pose(q)[:3, 3])
 
 
@@ -143,7 +143,7 @@ def test_the_arm_feels_the_hand_in_a_world_without_things(live):
     session.close()
     state = max(felt, key=lambda state: np.abs(state.tau_ext).max())
     expected = lk.Model("left").tip_jacobian(state.q).T @ [0, 0, -40, 0, 0, 0]
-    np.testing.assert_allclose(state.tau_ext, expected, atol=0.05)
+    np.testing.assert_allclose(state.tau_ext, expected, rtol=0, atol=0.05)
 
 
 def test_a_session_that_ended_leaves_no_hand_behind(live):
@@ -220,7 +220,7 @@ def test_reset_and_stop_let_go_at_once(live, first, end):
     session.tell({"kind": end})
     ended = until(frames, lambda f: f["force"] is None)
     if end == "reset":
-        np.testing.assert_allclose(ended["q"], READY, atol=1e-5)
+        np.testing.assert_allclose(ended["q"], READY, rtol=0, atol=1e-5)
     else:
         until(frames, lambda f: f["state"] == "closed")
         frames.clear()
@@ -240,7 +240,7 @@ def test_reset_puts_the_arm_back_also_after_stop(live):
     session.close()
     session.tell({"kind": "reset"})
     assert frames[-1]["state"] == "ready"
-    np.testing.assert_allclose(frames[-1]["q"], READY, atol=1e-5)
+    np.testing.assert_allclose(frames[-1]["q"], READY, rtol=0, atol=1e-5)
 
 
 def test_a_run_is_kept_once(live):
@@ -398,7 +398,7 @@ def test_two_laws_pause_step_and_reset(live):
     assert later["law"] == "still"
     session.tell({"kind": "reset"})
     back = until(frames, lambda f: f["state"] == "ready")
-    np.testing.assert_allclose(back["q"], READY, atol=1e-5)
+    np.testing.assert_allclose(back["q"], READY, rtol=0, atol=1e-5)
 
 
 @pytest.mark.parametrize("first", [None, "pause"])
@@ -570,6 +570,6 @@ def test_only_a_target_that_moves_has_a_path():
     with lk.Arm("left", q0=READY) as arm:
         for target in (poses, model.joint_trajectory(poses, READY)):
             wide = np.ptp(Surroundings(arm, target).path(), axis=0)
-            np.testing.assert_allclose(wide, [0.2, 0.2, 0.0], atol=1e-3)
+            np.testing.assert_allclose(wide, [0.2, 0.2, 0.0], rtol=0, atol=1e-3)
         for target in (lk.Hold(T_READY, 1.0), lambda t: poses(t % 4.0)):
             assert Surroundings(arm, target).path() == []

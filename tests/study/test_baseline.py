@@ -140,8 +140,8 @@ def test_the_way_round_a_post_touches_nothing_even_between_the_places_looked_at(
     """At 1,500 places the arm keeps half of the margin, though the straight line hits the post."""
     way = plan(scene, *ends, seed=3)
     assert first_hit(scene, Line(*ends)) is not None, "straight on is the post"
-    np.testing.assert_allclose(way(0.0).position, ends[0], atol=1e-9)
-    np.testing.assert_allclose(way(1.0).position, ends[1], atol=1e-9)
+    np.testing.assert_allclose(way(0.0).position, ends[0], rtol=0, atol=1e-9)
+    np.testing.assert_allclose(way(1.0).position, ends[1], rtol=0, atol=1e-9)
     least = min(scene.clearance(way(s).position)[0] for s in np.linspace(0, 1, 1500))
     assert least > 0.5 * scene.margin
 
@@ -262,8 +262,8 @@ def test_the_recorded_runs_are_what_the_command_records():
     fresh = drive(tasks.line(), PositionServer())
     for name, log in zip(("baseline_approach", "baseline_line"), fresh, strict=True):
         kept = recordings.load(name)
-        np.testing.assert_allclose(kept.q, log.q, atol=1e-6)
-        np.testing.assert_allclose(kept.target.position, log.target.position, atol=1e-6)
+        np.testing.assert_allclose(kept.q, log.q, rtol=0, atol=1e-6)
+        np.testing.assert_allclose(kept.target.position, log.target.position, rtol=0, atol=1e-6)
 
 
 def test_without_the_extra_a_sentence_tells_what_to_install():

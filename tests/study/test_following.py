@@ -59,7 +59,7 @@ def test_a_turn_goes_on_as_a_circle_and_without_one_as_a_parabola():
             [-r * w * s, r * w * c, 0],
             [-r * w * w * c, -r * w * w * s, 0],
         ]
-        np.testing.assert_allclose(turn_on(place.ravel(), age), np.ravel(then), atol=1e-12)
+        np.testing.assert_allclose(turn_on(place.ravel(), age), np.ravel(then), rtol=0, atol=1e-12)
     straight = np.array([0, 0, 0, 0.1, 0, 0, 0.2, 0, 0])
     np.testing.assert_allclose(turn_on(straight, 0.5)[[0, 3]], [0.075, 0.2])
     np.testing.assert_array_equal(turn_on(np.zeros(9), 0.5), np.zeros(9))
@@ -91,11 +91,11 @@ def test_a_blend_starts_and_ends_as_it_should_and_its_derivatives_are_slopes():
     b = sample([0.3, 1, 2.2], [0, 0.2, 0], [0, 0, 0])
     for t, end in ((0.0, a), (0.8, b)):
         for got, wanted in zip(blend(t, a, b, 0.8), end, strict=True):
-            np.testing.assert_allclose(got, wanted, atol=1e-12)
+            np.testing.assert_allclose(got, wanted, rtol=0, atol=1e-12)
     for t in (0.1, 0.5, 0.7, 1.3):
         low, here, high = (blend(t + d, a, b, 0.8) for d in (-1e-5, 0.0, 1e-5))
-        np.testing.assert_allclose((high[0] - low[0]) / 2e-5, here[1], atol=1e-8)
-        np.testing.assert_allclose((high[1] - low[1]) / 2e-5, here[2], atol=1e-6)
+        np.testing.assert_allclose((high[0] - low[0]) / 2e-5, here[1], rtol=0, atol=1e-8)
+        np.testing.assert_allclose((high[1] - low[1]) / 2e-5, here[2], rtol=0, atol=1e-6)
 
 
 class Watched(TagFollower):
@@ -181,7 +181,7 @@ def test_a_still_tag_is_followed_to_a_stand():
     )
     log = lk.run(scene.arm, target, WorkspaceVelocityPD(scene.arm.model), duration=4.0)
     tip = scene.arm.model.pose(log.q[-1])[:3, 3]
-    np.testing.assert_allclose(tip, scene.T_wt[:3, 3] + [0.03, 0.0, 0.0], atol=4e-3)
+    np.testing.assert_allclose(tip, scene.T_wt[:3, 3] + [0.03, 0.0, 0.0], rtol=0, atol=4e-3)
     scene.arm.close()
 
 

@@ -21,7 +21,7 @@ def test_position_velocity_and_acceleration_are_continuous(task):
     assert np.abs(np.diff(p, axis=0)).max() <= tasks.V_MAX * dt * 1.001
     assert np.abs(np.diff(v, axis=0)).max() <= 1.2 * tasks.A_MAX * dt
     assert np.abs(np.diff(a, axis=0)).max() < 0.02
-    np.testing.assert_allclose(np.gradient(p, dt, axis=0)[2:-2], v[2:-2], atol=1e-5)
+    np.testing.assert_allclose(np.gradient(p, dt, axis=0)[2:-2], v[2:-2], rtol=0, atol=1e-5)
 
 
 @pytest.mark.parametrize("task", TASKS, ids=lambda task: task.name)
@@ -30,7 +30,7 @@ def test_the_joints_take_the_tip_along_the_task(task):
     model = lk.Model()
     for t in np.linspace(0.0, task.duration, 60):
         assert np.abs(model.pose_error(task.target(t).pose, task.joints(t).position)).max() < 1e-7
-    np.testing.assert_allclose(task.joints(0.0).position, task.q0, atol=1e-9)
+    np.testing.assert_allclose(task.joints(0.0).position, task.q0, rtol=0, atol=1e-9)
 
 
 def test_the_square_visits_current_goals_and_current_again():
@@ -40,8 +40,8 @@ def test_the_square_visits_current_goals_and_current_again():
     corners = p + np.array([(0, 0, 0), (0.15, 0, 0), (0.15, -0.15, 0), (0, -0.15, 0), (0, 0, 0)])
     for start, corner in zip([*task.target.starts, task.duration], [*corners, p], strict=True):
         sample = task.target(start)
-        np.testing.assert_allclose(sample.pose[:3, 3], corner, atol=1e-12)
-        np.testing.assert_allclose(sample.twist, 0.0, atol=1e-12)
+        np.testing.assert_allclose(sample.pose[:3, 3], corner, rtol=0, atol=1e-12)
+        np.testing.assert_allclose(sample.twist, 0.0, rtol=0, atol=1e-12)
 
 
 def test_the_circle_returns_exactly():

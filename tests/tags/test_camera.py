@@ -54,7 +54,7 @@ def test_the_renderer_looks_where_the_intrinsics_say(world, axis):
             covered = camera.image()[looked_at][0] < 128
             low, high = (low, at) if covered else (at, high)
         offsets.append(0.5 * (low + high) - pixel)
-    np.testing.assert_allclose(offsets, 0.0, atol=4e-3)
+    np.testing.assert_allclose(offsets, 0.0, rtol=0, atol=4e-3)
 
 
 def test_points_project_where_they_should():
@@ -73,7 +73,7 @@ def test_looking_at_puts_the_point_in_the_middle_and_up_upwards():
     """The point is on the optical axis in front; a camera that looks along up is refused."""
     T_wc = lk.looking_at((1.0, -1.0, 0.5), (0.5, 0.2, 0.0))
     inside = se3.inverse(T_wc) @ [0.5, 0.2, 0.0, 1.0]
-    np.testing.assert_allclose(inside[:2], 0.0, atol=1e-12)
+    np.testing.assert_allclose(inside[:2], 0.0, rtol=0, atol=1e-12)
     assert inside[2] > 0.0
     assert T_wc[2, 1] < 0.0, "y goes down in the picture"
     with pytest.raises(OutOfRange, match=r"up=\(1, 0, 0\)"):
@@ -88,7 +88,7 @@ def test_the_robot_seen_is_where_the_model_says(side):
     for _ in range(20):
         q = random.uniform(robot.lower, robot.upper)
         T = joint_frames({side: q})[f"{side}_w2"] @ robot.T_hand_tip
-        np.testing.assert_allclose(T, model.pose(q), atol=1e-4)
+        np.testing.assert_allclose(T, model.pose(q), rtol=0, atol=1e-4)
 
 
 def test_the_robot_is_seen_in_its_colours_and_moves(world):
@@ -178,14 +178,16 @@ def test_the_hand_camera_sees_the_tag_below_and_moves_with_the_arm(world):
     camera = lk.Camera.in_hand(arm)
     tip = arm.model.pose(arm.truth().q)
     forward = camera.T_wc[:3, 2]
-    np.testing.assert_allclose(forward, tip[:3, 2], atol=1e-6)
+    np.testing.assert_allclose(forward, tip[:3, 2], rtol=0, atol=1e-6)
     board = lk.tags.Board(world, lk.Tag(), se3.pose(np.eye(3), camera.T_wc[:3, 3] + 0.45 * forward))
     found = lk.tags.find_tag(lk.detect_tags(camera.tag_image(), camera, 0.1), 0)
-    np.testing.assert_allclose((camera.T_wc @ found.T_cm)[:3, 3], board.T_wm[:3, 3], atol=2e-3)
+    np.testing.assert_allclose(
+        (camera.T_wc @ found.T_cm)[:3, 3], board.T_wm[:3, 3], rtol=0, atol=2e-3
+    )
     before = camera.T_wc
     arm.reset(arm.robot.ready + 0.1)
     assert np.linalg.norm(camera.T_wc[:3, 3] - before[:3, 3]) > 0.01
-    np.testing.assert_allclose(camera.reported_T_wc, camera.T_wc, atol=1e-12)
+    np.testing.assert_allclose(camera.reported_T_wc, camera.T_wc, rtol=0, atol=1e-12)
 
 
 def test_noise_is_as_loud_as_stated_and_repeats_with_the_seed(world):

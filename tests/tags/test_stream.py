@@ -50,7 +50,7 @@ def test_readings_come_at_the_rate_and_as_late_as_stated(scene):
     board, camera = scene
     readings = polled(lk.TagStream(camera, board.tag, rate=10, delay=0.1), 1.0)
     stamps = [r.stamp for _, r in readings]
-    np.testing.assert_allclose(stamps, np.arange(9) * 0.1, atol=1e-9)
+    np.testing.assert_allclose(stamps, np.arange(9) * 0.1, rtol=0, atol=1e-9)
     for seen_at, reading in readings:
         assert seen_at == pytest.approx(reading.arrived, abs=1e-9)
         assert reading.arrived - reading.stamp == pytest.approx(0.1)
@@ -129,7 +129,7 @@ def test_a_follower_counts_its_times_from_the_start_of_the_run(scene):
     for k in range(40):
         target(k * 0.005)
         board.world.step(5)
-    np.testing.assert_allclose(got, [[0.05, 0, 0.05], [0.15, 0.1, 0.15]], atol=1e-9)
+    np.testing.assert_allclose(got, [[0.05, 0, 0.05], [0.15, 0.1, 0.15]], rtol=0, atol=1e-9)
 
 
 def test_dials_out_of_range_are_refused(scene):
