@@ -97,7 +97,7 @@ def grade_class(
     with exclusive_run(results.folder):
         for student in who:
             submission = Submission.of(course, assignment, student)
-            before = None if options.again else reusable(results, submission, bundle, options)
+            before = reusable(results, submission, bundle, options)
             ready = None if before else reusable(results.provisional, submission, bundle, options)
             if before is not None:
                 yield GradedSubmission(before, "as before")
@@ -267,8 +267,8 @@ def common_failures(results: Sequence[Result]) -> Iterator[str]:
 def reusable(
     results: Results, submission: Submission, bundle: Bundle, options: GradeOptions
 ) -> Result | None:
-    """The stored result, if the same submission, release and engine led to it."""
-    before = results.get(submission.student)
+    """The stored result, if the same submission, release and engine led to it; not ``again``."""
+    before = None if options.again else results.get(submission.student)
     if before is None or (options.isolated and before.isolation.startswith("none")):
         return None
     data, _, _ = submission.read()
