@@ -138,6 +138,7 @@ def test_a_mark_that_is_missing_is_an_empty_cell(marked, capsys, fault):
     ("change", "says"),
     [
         ({"points": 5}, "circle was 4 points then and is 5 points now"),
+        ({"points": 1}, "circle was 4 points then and is 1 point now"),
         ({"name": "ellipse"}, "circle was 4 points then and is not asked now"),
     ],
 )

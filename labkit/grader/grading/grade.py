@@ -21,7 +21,7 @@ from ...course.receipt import receipt
 from ...course.serialize import read_record, record_data
 from ...course.verdict import Kind, Outcome, Verdict
 from ...course.withheld import withheld_tools
-from ..clean import clean_data, clean_line
+from ..clean import clean_data, clean_line, how_many
 from ..sandbox.launch import Sandbox
 from ..sandbox.limits import MAX_TEXT, MAX_TRICKS, Limits, TextBudget
 from ..sandbox.protocol import Disconnected, ProtocolError
@@ -143,7 +143,7 @@ def _cut_to_budget(result: Result) -> Result:
     for part, names in _STUDENT_TEXTS.items():
         data |= cut({part: data[part]}, names, theirs=False)
     data["tricks"] += [f"and {more} more such things"] * (more > 0)
-    note = f"only {MAX_TEXT // 10**6} MB of text is kept, so {budget.cut} texts are cut short here"
+    note = f"only {MAX_TEXT // 10**6} MB of text is kept; cut short: {how_many(budget.cut, 'text')}"
     data["notes"] = [*data["notes"], *[note] * bool(budget.cut)]
     return read_record(Result, clean_data(data))
 
