@@ -95,8 +95,8 @@ def _student(path: Path, bundle: Bundle) -> tuple[str, str]:
     mails = [clean_line(str(user.get("email", ""))).casefold() for user in users] or [""]
     known = [mail for mail in mails if mail in bundle.arms.handles]
     unknown = (
-        f"The course's list has no address {mails[0]}, so answers about your own arm were held "
-        'against the arm "demo"; tell your instructor.'
+        f"The course's list has no address {mails[0]}, so answers about your own arm were "
+        'judged by the public arm "demo"; tell your instructor.'
     )
     return (known or mails)[0], unknown if bundle.arms.handles and not known else ""
 

@@ -230,7 +230,7 @@ def _refuse_to_lower(result: Result, recorded: Mapping[str, float]) -> None:
     if had > has + 0.01:
         raise LabkitError(
             f"the previous result cannot be read, and the gradebook has {had:g} for what now earns "
-            f"{has:g}; if that is to count, type: labkit grade {result.assignment} --student "
+            f"{has:g}; if {has:g} is to count, type: labkit grade {result.assignment} --student "
             f"{shlex.quote(result.student)} --lower"
         )
 

@@ -26,9 +26,9 @@ def current_results(
         student: Look at this student only.
 
     Yields:
-        In order of name, the result; or why none counts, and what to type.  A result does not
-        count if another submission has been handed in since, if the questions or their points
-        have been changed by a later release, or if the file is damaged.
+        In order of name, the result; or why none counts, and what to type.  None counts if the
+        submission is not graded, if another one has been handed in since, if a later release has
+        other questions or points, or if the file is damaged.
     """
     if assignment in {CUP, DEFENCE}:
         return  # these have commands of their own, and no result files

@@ -32,8 +32,8 @@ from .plan import Plan, plan
 from .results import OTHER_NOTEBOOK, Answer, FailedCell, Hashes, OwnCell, Result, engine
 
 ADDED = (
-    "this question was added after the notebook was handed in, so the notebook lacks it; it counts "
-    "0 until the new notebook is handed in, into which `labkit merge` copies the work done so far"
+    "this question was added in a later release, and this notebook does not have it; it counts 0 "
+    "until the new notebook is handed in, into which `labkit merge` copies the work done so far"
 )
 
 PUBLIC_ARM = (
@@ -191,7 +191,7 @@ def _other_notebook(cells: list[dict[str, Any]], bundle: Bundle) -> str:
 
 
 def _try_public(function: RemoteFunction) -> PublicResult:
-    """Try the public cases; all of them come before any hidden one, so none can reveal it."""
+    """Try the public cases, which come before all questions' hidden ones, so as to reveal none."""
     try:
         tried = try_public(function.question, function)
         if tried.outcome is Outcome.RIGHT:

@@ -7,7 +7,7 @@ and so be mistaken for others.  Users of Canvas and of the exchange keep their n
 Moodle's participants have another number in each assignment, so only a roster can connect them.
 
 ``course_private/lms.json`` lists the users whose work was collected, by assignment and by folder.
-Git ignores the file, and it goes with the term.
+Git ignores the file, and it is archived with the term.
 """
 
 from __future__ import annotations
