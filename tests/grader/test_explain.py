@@ -78,7 +78,7 @@ def test_a_mark_that_was_kept_after_a_test_changed_is_told_as_kept(course, solve
     hidden["expected"] = [[0.0, 0.1]]  # so that the right answer is wrong
     path.write_text(json.dumps(data | {"hash": "0" * 64}))
     assert main(["grade", *words]) == 0
-    assert "kept; --lower lets it fall" in capsys.readouterr().out
+    assert "kept; --lower lets the mark fall" in capsys.readouterr().out
     assert main(["explain", "ada", "witness", *words[1:]]) == 0
     said = " ".join(capsys.readouterr().out.split())
     earns = "has changed: now the answer earns 0 of 2"

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import shlex
 import time
 from collections import Counter
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
@@ -20,6 +19,7 @@ from ..lock import exclusive_run
 from ..sandbox.limits import Limits
 from ..sandbox.mounts import NoIsolation
 from ..submission import Submission, students
+from .current_results import how_to_grade
 from .executor import executor
 from .grade import hashes
 from .results import Result, Results
@@ -212,7 +212,7 @@ def keep_unless_lower(results: Results, result: Result, options: GradeOptions) -
     before = results.get(result.student)
     if before is not None and not options.lower and result.falls_from(before):
         now = f"{result.score:g} of {result.points:g}"
-        return GradedSubmission(before, f"kept; --lower lets it fall to {now}")
+        return GradedSubmission(before, f"kept; --lower lets the mark fall to {now}")
     if before is None and not options.lower and results.path(result.student).exists():
         _refuse_to_lower(result, options.recorded(result.student))
     results.keep(result)
@@ -230,8 +230,8 @@ def _refuse_to_lower(result: Result, recorded: Mapping[str, float]) -> None:
     if had > has + 0.01:
         raise LabkitError(
             f"the previous result cannot be read, and the gradebook has {had:g} for what now earns "
-            f"{has:g}; if {has:g} is to count, type: labkit grade {result.assignment} --student "
-            f"{shlex.quote(result.student)} --lower"
+            f"{has:g}; if {has:g} is to count, "
+            f"{how_to_grade(result.assignment, result.student)} --lower"
         )
 
 
