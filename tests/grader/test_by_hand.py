@@ -154,7 +154,7 @@ def test_another_answer_is_looked_at_again(written, capsys):
         give(written, "ada", name, 1.0)
     (said,) = graded(written, "ada", b'{"cells": [], "again": 1}', **{WHY: "No.", REPORT: ""})
     assert said == (
-        f"ada: {WHY} was marked 1 by hand, and the answer is another one now; look at it again"
+        f"ada: {WHY} was marked 1 by hand, and the answer has changed since; look at it again"
     )
     assert f"ada ({WHY})" in verb(written, capsys, "feedback")[2]
     assert row(written, capsys, "ada")["score"] == "", "it waits, as the page does"

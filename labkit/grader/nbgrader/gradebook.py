@@ -199,13 +199,13 @@ def _write_scores(
             elif grade.name in changed:
                 yield (
                     f"{result.student}: {grade.name} was marked {given:g} by hand, and the answer "
-                    "is another one now; look at it again"
+                    "has changed since; look at it again"
                 )
                 grade.needs_manual_grade = True
             elif score is not None and grade.auto_score not in {None, score}:
                 yield (
-                    f"{result.student}: {grade.name} was marked {given:g} by hand and is {score:g} "
-                    "now by itself; look at it again"
+                    f"{result.student}: {grade.name} was marked {given:g} by hand, and the grader "
+                    f"gives {score:g} now; look at it again"
                 )
                 grade.needs_manual_grade = True
             grade.auto_score = score

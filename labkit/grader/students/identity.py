@@ -100,7 +100,7 @@ def identity_lock(course: Course) -> Iterator[None]:
     Raises:
         LabkitError: Another command holds the lock.
     """
-    busy = "somebody else is collecting or changes who is in the class; wait for it to end"
+    busy = "another command is collecting work or changing the roster; wait for it to end"
     with locked(course.root / "course_private" / ".identity", busy):
         yield
 
