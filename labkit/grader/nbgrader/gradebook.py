@@ -83,8 +83,13 @@ def _record(course: Course, book: Any, source: Any, result: Result) -> list[str]
         submission, result, automatic_scores(notebook, result), _changed(path, notebook)
     )
     book.db.flush()
+    before = path.read_bytes() if path.exists() else None
     write(path, written)
-    book.db.commit()
+    try:
+        book.db.commit()
+    except BaseException:  # the next try must see again which answers have changed
+        path.unlink() if before is None else write(path, before)
+        raise
     return notes
 
 
