@@ -160,7 +160,7 @@ def quiet_database() -> Iterator[None]:
 
 
 def timestamp(course: Course, result: Result) -> tuple[datetime | None, str]:
-    """When a submission came in, as its collector says; and a note if that is unreadable."""
+    """When a submission was handed in, by the file beside it, and a note if that is unreadable."""
     text = read_stamp(course.submitted / result.student / result.assignment)
     when = read_time(text)
     bad = f"timestamp.txt says {text[:40]!r}, which is not a time; counted as in time"
@@ -174,7 +174,7 @@ def automatic_scores(notebook: Any, result: Result) -> dict[str, float | None]:
 
     Args:
         notebook: The submission in the release's form.
-        result: Of the submission.
+        result: The result of the submission.
     """
     from nbgrader.utils import determine_grade
 
@@ -194,7 +194,7 @@ def automatic_scores(notebook: Any, result: Result) -> dict[str, float | None]:
 def _write_scores(
     submission: Any, result: Result, scores: Mapping[str, float | None], changed: Set[str]
 ) -> Iterator[str]:
-    """Write automatic scores; marks given by hand stay, and are looked at again where need be."""
+    """Write automatic scores; marks by hand stay, to be looked at again after a change."""
     missing = 0.0 if result.rejected else None
     for notebook in submission.notebooks:
         for grade in notebook.grades:

@@ -95,7 +95,7 @@ def save_lms_users(course: Course, known: Mapping[str, Mapping[str, LmsUser]]) -
 
 @contextmanager
 def identity_lock(course: Course) -> Iterator[None]:
-    """Hold the lock on the roster and the records of users, so that one command changes them.
+    """Lock the roster and the records of users, which one command at a time may change.
 
     Raises:
         LabkitError: Another command holds the lock.
