@@ -52,9 +52,9 @@ def from_no_formula(cell: str) -> str:
     return cell[1:] if cell[:1] == "'" and cell.lstrip("'")[:1] in _FORMULAS else cell
 
 
-def how_many(count: int, what: str) -> str:
-    """A number of things, for a sentence: 0 students, 1 student, 2 students."""
-    return f"{count} {what}{'s' * (count != 1)}"
+def how_many(count: float, what: str) -> str:
+    """A number of things, for a sentence: 0 students, 1 student, 2.5 points."""
+    return f"{count:.12g} {what}{'s' * (count != 1)}"
 
 
 def few(names: Sequence[str]) -> str:

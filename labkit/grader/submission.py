@@ -98,7 +98,7 @@ def none_of(course: Course, assignment: str, student: str | None = None) -> str:
 
 
 def did_you_mean(name: str, known: Iterable[str]) -> str:
-    """Names similar to an unknown one, as the end of a sentence; "" if there are none."""
+    """Similar names, or else some known ones, as the end of a sentence; "" if none is known."""
     plain = {one.casefold(): one for one in known}
     near = [one for key, one in plain.items() if name.casefold() in key]
     near = near or [plain[key] for key in get_close_matches(name.casefold(), plain)]

@@ -140,7 +140,7 @@ def test_an_added_question_leaves_other_marks_alone(marked, capsys):
     for result in Results(course, NAME):
         found = {q.verdict.name: q.verdict for q in result.questions}[LATER]
         assert (found.outcome, found.earned) == ("not attempted", 0.0)
-        assert "was added after the notebook was handed in" in page(result)
+        assert "was added in a later release, and this notebook does not have it" in page(result)
         assert not [q for q in result.questions if q.verdict.name != LATER and q.notes]
 
 

@@ -12,12 +12,16 @@ import pytest
 from by_hand import BLANK, REPORT, WHY, author, written_in
 from handmade import ROOT, hand_in, nbgrader, raw
 from made import NAME, notebook_of, result_of
+from sqlalchemy.exc import OperationalError
+from sqlalchemy.orm import Session
 
 from labkit.__main__ import main
 from labkit.course.authoring.bundle import Bundle
 from labkit.course.authoring.layout import Course
+from labkit.errors import LabkitError
 from labkit.grader.grading.plan import plan
 from labkit.grader.grading.results import Results
+from labkit.grader.nbgrader import gradebook
 from labkit.grader.nbgrader.gradebook import open_gradebook, record
 from labkit.grader.sandbox.parse import read
 from labkit.grader.terms.release import release
@@ -154,7 +158,7 @@ def test_another_answer_is_looked_at_again(written, capsys):
         give(written, "ada", name, 1.0)
     (said,) = graded(written, "ada", b'{"cells": [], "again": 1}', **{WHY: "No.", REPORT: ""})
     assert said == (
-        f"ada: {WHY} was marked 1 by hand, and the answer is another one now; look at it again"
+        f"ada: {WHY} was marked 1 by hand, and the answer has changed since; look at it again"
     )
     assert f"ada ({WHY})" in verb(written, capsys, "feedback")[2]
     assert row(written, capsys, "ada")["score"] == "", "it waits, as the page does"
@@ -162,6 +166,27 @@ def test_another_answer_is_looked_at_again(written, capsys):
     assert code == 1 and f"no mark: ada: changed after the mark by hand: {WHY}; look at it" in err
     give(written, "ada", WHY, 1.0)
     assert row(written, capsys, "ada")["score"] == "13.0"
+
+
+def test_another_answer_is_looked_at_though_the_gradebook_was_locked(written, monkeypatch):
+    """A mark by hand does not count for new words because the first try to record them failed."""
+    give(written, "ada", WHY, 1.0)
+    write, new = gradebook.write, b'{"cells": [], "again": 1}'
+
+    def fail(*_):
+        raise OperationalError("COMMIT", {}, Exception("database is locked"))
+
+    with monkeypatch.context() as patch:
+
+        def write_and_lock(*args):
+            write(*args)
+            patch.setattr(Session, "commit", fail)
+
+        patch.setattr(gradebook, "write", write_and_lock)
+        with pytest.raises(LabkitError, match="locked; correct that and type the same again"):
+            graded(written, "ada", new, **{WHY: "No.", REPORT: ""})
+    (said,) = graded(written, "ada", new, **{WHY: "No.", REPORT: ""})
+    assert "the answer has changed since; look at it again" in said
 
 
 def test_a_cell_by_hand_can_be_added_and_goes_only_unmarked(course, monkeypatch):

@@ -760,7 +760,7 @@ def test_two_do_not_collect_at_once(bare, tmp_path):
     source = zipped(tmp_path / "1.zip", [BOB])
     one = collect(bare, NAME, source)
     next(one)
-    with pytest.raises(LabkitError, match="somebody else is collecting"):
+    with pytest.raises(LabkitError, match="another command is collecting"):
         take(bare, source)
     one.close()
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 from dataclasses import replace
 from datetime import date
 
@@ -13,6 +14,7 @@ from labkit import Sample, State
 from labkit.__main__ import main
 from labkit.course.authoring.layout import CUP, DEFENCE
 from labkit.course.baxter_cup import BENCHMARKS, PUBLIC_SEEDS
+from labkit.course.own_arm import HANDLES, Arms
 from labkit.grader.cup import entries as cup
 from labkit.grader.cup.entries import A_DAY, SEEDS, Entry, entries, latest, play, seeds
 from labkit.grader.cup.table import as_text, give_bonus, page
@@ -71,6 +73,8 @@ def enter(course, student, *cells):
     ]  # fmt: skip
     hand_in(course, CUP, student, {"cells": cells, "metadata": {}, "nbformat": 4,
                                    "nbformat_minor": 5})  # fmt: skip
+    (path,) = (course.submitted / student / CUP).glob("*.ipynb")
+    return path
 
 
 def begin_term(course, seed):
@@ -164,6 +168,21 @@ def test_a_handle_has_three_runs_a_day_and_each_begins_anew(course, instant):
     enter(course, "bob", HONEST)
     assert [x.student for x in play(course, TODAY, final=False)] == ["ada", "bob"]
     assert [x.student for x in play(course, TOMORROW, final=False)] == ["ada"]
+
+
+def test_the_last_hand_in_of_a_handle_counts_whoever_made_it(course, instant):
+    """Of a team's two notebooks the later one, whatever the names; and an earlier one again."""
+    (course.root / HANDLES).parent.mkdir(parents=True, exist_ok=True)
+    (course.root / HANDLES).write_text(Arms(5, {"ada": "team", "zoe": "team"}).text())
+    for student, source, when in [("zoe", COUNTS, 1e9), ("ada", HONEST, 2e9)]:
+        os.utime(enter(course, student, source), (when, when))
+    assert len(list(play(course, TODAY, final=True))) == 2
+    (one,) = latest(course, final=True)
+    assert (one.student, one.scores) == ("ada", (0.0,) * SEEDS)
+    for source, score in [(COUNTS, 1.0), (HONEST, 0.0)]:
+        os.utime(enter(course, "ada", source), (2e9, 2e9))
+        list(play(course, TODAY, final=True))
+        assert latest(course, final=True)[0].scores == (score,) * SEEDS
 
 
 def test_the_final_has_other_seeds_and_benchmarks_beaten_are_extra_credit(

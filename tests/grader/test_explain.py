@@ -78,18 +78,18 @@ def test_a_mark_that_was_kept_after_a_test_changed_is_told_as_kept(course, solve
     hidden["expected"] = [[0.0, 0.1]]  # so that the right answer is wrong
     path.write_text(json.dumps(data | {"hash": "0" * 64}))
     assert main(["grade", *words]) == 0
-    assert "kept; --lower lets it fall" in capsys.readouterr().out
+    assert "kept; --lower lets the mark fall" in capsys.readouterr().out
     assert main(["explain", "ada", "witness", *words[1:]]) == 0
     said = " ".join(capsys.readouterr().out.split())
     earns = "has changed: now the answer earns 0 of 2"
-    assert f"Since this mark was made the release {earns}" in said
+    assert f"Since this mark was made, the release {earns}" in said
     assert f"type: labkit grade {NAME} --student ada, and add --lower" in said
     assert "ATTENTION" not in said and "The hidden case that decided" not in said
     other = first["hashes"] | {"engine": "0" * 64, "bundle": "0" * 64}
     kept.write_text(json.dumps(first | {"hashes": other}))
     assert main(["explain", "ada", "witness", *words[1:]]) == 0
     said = " ".join(capsys.readouterr().out.split())
-    assert f"Since this mark was made labkit {earns}" in said and "ATTENTION" not in said
+    assert f"Since this mark was made, labkit {earns}" in said and "ATTENTION" not in said
 
 
 @pytest.mark.slow

@@ -15,8 +15,9 @@ from made import NAME, changed, graded, handed_in, notebook_of, result_of
 
 from labkit.__main__ import main
 from labkit.errors import LabkitError
+from labkit.grader.grading import batch
 from labkit.grader.grading.batch import GradeOptions, common_failures, keep_unless_lower
-from labkit.grader.grading.changes import Change, summary
+from labkit.grader.grading.changes import Change, changes, summary
 from labkit.grader.grading.results import OTHER_NOTEBOOK, Results
 from labkit.grader.marks.export import LAYOUTS
 from labkit.grader.nbgrader import autograde
@@ -137,6 +138,7 @@ def test_a_mark_that_is_missing_is_an_empty_cell(marked, capsys, fault):
     ("change", "says"),
     [
         ({"points": 5}, "circle was 4 points then and is 5 points now"),
+        ({"points": 1}, "circle was 4 points then and is 1 point now"),
         ({"name": "ellipse"}, "circle was 4 points then and is not asked now"),
     ],
 )
@@ -236,7 +238,7 @@ def test_nbgraders_own_button_lowers_no_mark_of_an_unchanged_submission(marked, 
     new = changed(none, 0, {"name": "new"})
     monkeypatch.setattr(autograde, "grade_without_saving", lambda *_: iter([new]))
     autograde._known.clear()
-    with pytest.raises(LabkitError, match=f"--lower lets it fall.*type: labkit grade {NAME}"):
+    with pytest.raises(LabkitError, match=f"--lower lets the mark fall.*{GRADE} --lower$"):
         autograde._grade({"assignment": NAME, "student": "ada"})
 
 
@@ -367,3 +369,24 @@ def test_a_mark_by_hand_counts_and_a_question_without_one_is_missing(marked, cap
     code, out, err = verb(marked, capsys, "export")
     assert (code, table(out)["ada"]["score"], table(out)["bob"]["score"]) == (1, "", "15.0")
     assert "no mark: ada: no mark for essay; give it by hand, in formgrader" in err
+
+
+@pytest.mark.parametrize("again", [False, True])
+def test_what_diff_graded_is_graded_again_if_somebody_says_so(marked, monkeypatch, again):
+    """With --again a result that --diff kept, of a busy day perhaps, does not count as graded."""
+    asked = []
+    monkeypatch.setattr(batch, "_graded", lambda _, __, ___, todo, ____: asked.extend(todo) or ())
+    results = Results(marked, NAME)
+    results.path("ada").unlink()
+    results.provisional.keep(result_of(marked, "ada", share=0.5))
+    options = GradeOptions(again=again)
+    done = [one.result.score for one in batch.grade_class(marked, NAME, ["ada"], options)]
+    assert (len(asked), done) == ((1, []) if again else (0, [11.0]))
+    assert list(changes(marked, NAME, ["ada"], options)) == [] or not again
+
+
+def test_diff_compares_the_result_that_counts_with_itself(marked):
+    """Once a result of this very release counts, what an earlier --diff graded is forgotten."""
+    Results(marked, NAME).provisional.keep(result_of(marked, "ada", share=0.5))
+    (one,) = changes(marked, NAME, ["ada"], GradeOptions())
+    assert (one.by, one.falls) == (0.0, False)

@@ -59,7 +59,7 @@ def test_the_worksheets_time_is_when_it_was_handed_in(bare, tmp_path, capsys):
     [
         ("Sonntag, 1. März 2026, 11:30", "which is not a time that labkit can read"),
         (LATER, "the download that was collected is from 2026-03-01 12:00; collect a newer"),
-        ("-", "says no time"),
+        ("-", "says nothing; download the worksheet again"),
     ],
 )
 def test_a_time_that_is_not_taken_is_named(bare, tmp_path, capsys, when, says):

@@ -121,7 +121,7 @@ def _on_top(course: Course, assignment: str) -> Iterator[str]:
     from ...course.authoring.bundle import Bundle
 
     if by_hand := Bundle.of(course, assignment).by_hand:
-        yield f"not included: {by_hand:g} points that are marked by hand"
+        yield f"not included: {how_many(by_hand, 'point')}, to be marked by hand"
 
 
 def _line(one: GradedSubmission, as_json: bool, number: str = "") -> str:

@@ -123,9 +123,9 @@ def _wait_for_marks(marks: Iterable[Mark]) -> None:
     waiting = [f"{mark.student} ({', '.join(mark.open)})" for mark in open_ones]
     if waiting:
         raise LabkitError(
-            f"{few(waiting)}: these answers wait for a mark by hand, of "
-            f"{how_many(len(waiting), 'student')} in all; give it in formgrader, or add "
-            "--unmarked to write the pages without these marks"
+            f"{few(waiting)}: answers of {how_many(len(waiting), 'student')} still wait for a mark "
+            "by hand; mark them in formgrader, or add --unmarked to write the pages without these "
+            "marks"
         )
 
 

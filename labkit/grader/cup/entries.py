@@ -105,7 +105,9 @@ def seeds(course: Course, final: bool) -> tuple[int, ...]:
 
 
 def play(course: Course, today: date, final: bool) -> Iterator[Entry | Failure]:
-    """Run each notebook that was not run yet, on the board at most `A_DAY` per handle and day.
+    """Run each notebook that is not its student's last entry, at most `A_DAY` per handle and day.
+
+    The final has no such limit.
 
     Yields:
         Each entry that was run, or why it was not.
@@ -121,7 +123,7 @@ def play(course: Course, today: date, final: bool) -> Iterator[Entry | Failure]:
         handle = handles.get(student, student)
         new = Entry(student, handle, digest(data), str(today), final, why=why)
         past = of_student(course, student)
-        if any((x.notebook, x.final) == (new.notebook, final) for x in past):
+        if [x.notebook for x in past if x.final is final][-1:] == [new.notebook]:
             continue
         if not final and had[handle] >= A_DAY:
             yield Failure(student, f"{handle} had {A_DAY} runs today; type the same tomorrow")
@@ -155,8 +157,17 @@ def of_student(course: Course, student: str) -> list[Entry]:
 
 
 def latest(course: Course, final: bool) -> list[Entry]:
-    """The last entry of each handle on the board or in the final, the best first."""
-    last = {x.handle: x for x in entries(course) if x.final is final}
+    """The last entry of each handle on the board or in the final, the best first.
+
+    Of the entries of a team, the one whose notebook was handed in last.
+    """
+
+    def handed_in(one: Entry) -> float:
+        folder = Submission.of(course, CUP, one.student).folder
+        return max((path.stat().st_mtime for path in folder.glob("*.ipynb")), default=0.0)
+
+    found = sorted(entries(course), key=handed_in)
+    last = {x.handle: x for x in found if x.final is final}
     return sorted(last.values(), key=lambda x: (x.score, x.handle))
 
 

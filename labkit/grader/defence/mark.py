@@ -34,7 +34,7 @@ def give_mark(course: Course, student: str, points: Sequence[int]) -> None:
     """Write the points of a defence that was held, one number for each question.
 
     Raises:
-        LabkitError: The number of points is wrong, one is too high, or no page was printed.
+        LabkitError: There are too few or too many numbers, one is too high, or no page was printed.
     """
     if len(points) != ASKED or not all(0 <= x <= FULL for x in points):
         raise LabkitError(

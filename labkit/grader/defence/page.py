@@ -14,7 +14,7 @@ from ..rules import read_rules
 from .draw import ASKED, FULL, Asked
 
 RUBRIC = (
-    "says which line was changed, and what stood there",
+    "says which line was changed, and what it was before",
     "says what the arm will do, or what is returned, before the answer is shown",
     "explains the picture by the line: which term, which sign, which frame",
 )

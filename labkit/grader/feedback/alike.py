@@ -18,7 +18,7 @@ SHORT = 3
 
 
 def same_text(graded: Sequence[Result], who: Mapping[str, str]) -> Iterator[str]:
-    """A sentence for each group of three or more students who share two or more longer answers."""
+    """A sentence for each of the ten largest groups of three or more who share two long answers."""
     by_text: dict[tuple[str, str], set[str]] = defaultdict(set)
     for result in graded:
         for q in result.questions:

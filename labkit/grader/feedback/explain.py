@@ -22,6 +22,7 @@ from ...course.source import parsed
 from ...course.verdict import Outcome
 from ...errors import LabkitError, UnknownName
 from ..atomic import write
+from ..grading.current_results import how_to_grade
 from ..grading.grade import PUBLIC_ARM, grade
 from ..grading.plan import imports
 from ..grading.results import Result
@@ -78,8 +79,8 @@ def _by_a_person(assignment: str, question: str, mark: Mark, result: Result) -> 
         says = f"It was left empty or as it was handed out. If it earns more, give it {where}."
     elif line.automatic is not None:
         says = (
-            "This why was not one of those that are drawn for a person to mark, so it has full "
-            f"points because it was written. A mark that you give counts instead, {where}."
+            "This why is not one of those that are drawn for a person to mark, so it has full "
+            f"points for being written. A mark that you give counts instead, {where}."
         )
     yield _heading(mark, line)
     yield wrapped(says)
@@ -126,9 +127,10 @@ def _by_the_grader(
         says = "ATTENTION: this time the outcome was a different one:"
         if changed:
             says = (
-                f"Since this mark was made {changed} has changed: now the answer earns "
-                f"{now.earned:g} of {now.points:g}. If that is to count, type: labkit grade "
-                f"{result.assignment} --student {student}, and add --lower if the mark is kept"
+                f"Since this mark was made, {changed} has changed: now the answer earns "
+                f"{now.earned:g} of {now.points:g}. If that is to count, "
+                f"{how_to_grade(result.assignment, student)}, and add --lower if that keeps the "
+                "old mark"
             )
         yield "\n" + wrapped(says)
         yield from map(wrapped, summary(now))

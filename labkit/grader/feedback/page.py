@@ -196,13 +196,13 @@ def moodle_zip(course: Course, assignment: str, pages: Iterable[Path], to: Path)
     ]
     if not mine:
         raise LabkitError(
-            f"no {assignment} was collected from Moodle, and the zip needs Moodle's numbers of the "
-            f"students; first type: labkit collect {assignment} MOODLES.zip"
+            f"none of these students' {assignment} was collected from Moodle, and the zip needs "
+            f"Moodle's numbers of them; first type: labkit collect {assignment} MOODLE.zip"
         )
     to.parent.mkdir(parents=True, exist_ok=True)
     with zipfile.ZipFile(to, "w", zipfile.ZIP_DEFLATED) as archive:
         for who, page in mine:
-            name = re.sub(r"[_/\\]", " ", who.name)  # its first underscore ends a name
+            name = re.sub(r"[_/\\]", " ", who.name)  # the first underscore ends it
             folder = f"{name}_{who.number}_assignfeedback_file"
             archive.write(page, f"{folder}/{page.name}")
     return len(mine)

@@ -57,10 +57,10 @@ def main() -> None:
     grader.join(SECONDS)
     if grader.exitcode == 0:
         return
-    why = "it took too long" if grader.is_alive() else "the grader was ended, perhaps by its memory"
+    why = "it took too long" if grader.is_alive() else "perhaps memory ran out"
     grader.kill()
     found = json.loads(results.read_text())
-    says = f"Grading stopped before its end: {why}. What was graded until then counts."
+    says = f"Grading did not finish: {why}. What was graded until then counts."
     write(results, json.dumps(found | {"output": says}))
     print(says)
 
@@ -95,8 +95,8 @@ def _student(path: Path, bundle: Bundle) -> tuple[str, str]:
     mails = [clean_line(str(user.get("email", ""))).casefold() for user in users] or [""]
     known = [mail for mail in mails if mail in bundle.arms.handles]
     unknown = (
-        f"The course's list has no address {mails[0]}, so answers about your own arm were held "
-        'against the arm "demo"; tell your instructor.'
+        f"The course's list has no address {mails[0]}, so answers about your own arm were "
+        'judged by the public arm "demo"; tell your instructor.'
     )
     return (known or mails)[0], unknown if bundle.arms.handles and not known else ""
 
@@ -130,8 +130,8 @@ def gradescope_results(
     if result:
         lines += [f"It could not be graded: {result.rejected}."] if result.rejected else []
         lines += [f"Note: {note}." for note in result.notes]
-        lines += [f"Cell {x['cell'] + 1} did not run: {x['error']}" for x in result.cells]
-        look = "\n".join([*result.tricks, f"Kept apart by: {result.isolation}"])
+        lines += [f"Cell {x['cell'] + 1} failed: {x['error']}" for x in result.cells]
+        look = "\n".join([*result.tricks, f"Isolated by: {result.isolation}"])
         tests.append({"name": "for the instructor", "output": look, "visibility": "hidden"})
     score = round(sum(verdict.earned for verdict in verdicts.values()), 2)
     return {"score": score, "output": "\n".join(filter(None, lines)), "tests": tests}

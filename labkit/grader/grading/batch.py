@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import shlex
 import time
 from collections import Counter
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
@@ -20,6 +19,7 @@ from ..lock import exclusive_run
 from ..sandbox.limits import Limits
 from ..sandbox.mounts import NoIsolation
 from ..submission import Submission, students
+from .current_results import how_to_grade
 from .executor import executor
 from .grade import hashes
 from .results import Result, Results
@@ -97,7 +97,7 @@ def grade_class(
     with exclusive_run(results.folder):
         for student in who:
             submission = Submission.of(course, assignment, student)
-            before = None if options.again else reusable(results, submission, bundle, options)
+            before = reusable(results, submission, bundle, options)
             ready = None if before else reusable(results.provisional, submission, bundle, options)
             if before is not None:
                 yield GradedSubmission(before, "as before")
@@ -212,7 +212,7 @@ def keep_unless_lower(results: Results, result: Result, options: GradeOptions) -
     before = results.get(result.student)
     if before is not None and not options.lower and result.falls_from(before):
         now = f"{result.score:g} of {result.points:g}"
-        return GradedSubmission(before, f"kept; --lower lets it fall to {now}")
+        return GradedSubmission(before, f"kept; --lower lets the mark fall to {now}")
     if before is None and not options.lower and results.path(result.student).exists():
         _refuse_to_lower(result, options.recorded(result.student))
     results.keep(result)
@@ -230,8 +230,8 @@ def _refuse_to_lower(result: Result, recorded: Mapping[str, float]) -> None:
     if had > has + 0.01:
         raise LabkitError(
             f"the previous result cannot be read, and the gradebook has {had:g} for what now earns "
-            f"{has:g}; if that is to count, type: labkit grade {result.assignment} --student "
-            f"{shlex.quote(result.student)} --lower"
+            f"{has:g}; if {has:g} is to count, "
+            f"{how_to_grade(result.assignment, result.student)} --lower"
         )
 
 
@@ -267,8 +267,8 @@ def common_failures(results: Sequence[Result]) -> Iterator[str]:
 def reusable(
     results: Results, submission: Submission, bundle: Bundle, options: GradeOptions
 ) -> Result | None:
-    """The stored result, if the same submission, release and engine led to it."""
-    before = results.get(submission.student)
+    """The stored result, if the same submission, release and engine led to it; not ``again``."""
+    before = None if options.again else results.get(submission.student)
     if before is None or (options.isolated and before.isolation.startswith("none")):
         return None
     data, _, _ = submission.read()

@@ -71,8 +71,8 @@ def changes(
     todo: list[Submission] = []
     for student in students:
         submission = Submission.of(course, assignment, student)
-        done = reusable(now.provisional, submission, bundle, options)
-        done = done or reusable(now, submission, bundle, options)
+        done = reusable(now, submission, bundle, options)
+        done = done or reusable(now.provisional, submission, bundle, options)
         if done is None:
             todo.append(submission)
         else:

@@ -9,6 +9,7 @@ from functools import partial
 from ...course.authoring.bundle import Bundle
 from ...course.authoring.layout import CUP, DEFENCE, Course
 from ...errors import LabkitError
+from ..clean import how_many
 from ..each import Failure, for_student
 from ..submission import Submission, digest, is_name, misnamed, plain_name, students
 from .results import Result, Results
@@ -25,9 +26,9 @@ def current_results(
         student: Look at this student only.
 
     Yields:
-        In order of name, the result; or why none counts, and what to type.  A result does not
-        count if another submission has been handed in since, if the questions or their points
-        have been changed by a later release, or if the file is damaged.
+        In order of name, the result; or why none counts, and what to type.  None counts if the
+        submission is not graded, if another one has been handed in since, if a later release has
+        other questions or points, or if the file is damaged.
     """
     if assignment in {CUP, DEFENCE}:
         return  # these have commands of their own, and no result files
@@ -96,5 +97,7 @@ def _current_result(
 def _changed(graded: Mapping[str, float], released: Mapping[str, float]) -> str:
     """A sentence that names the first difference between a result and the release."""
     name = min(x for x in {*graded, *released} if graded.get(x) != released.get(x))
-    was, now = (f"{x[name]:g} points" if name in x else "not asked" for x in (graded, released))
+    was, now = (
+        how_many(x[name], "point") if name in x else "not asked" for x in (graded, released)
+    )
     return f"graded before the last release: {name} was {was} then and is {now} now"

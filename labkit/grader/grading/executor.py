@@ -137,5 +137,5 @@ def dask_client(address: str) -> Any:
 
 
 def _allow_one_failure(dask_scheduler: Any) -> None:
-    """Let a task end one worker, and not four, which is the scheduler's default."""
+    """Try a task twice if its worker dies, and not four times, which is the default."""
     dask_scheduler.allowed_failures = TRIES - 1

@@ -21,7 +21,7 @@ from ...course.receipt import receipt
 from ...course.serialize import read_record, record_data
 from ...course.verdict import Kind, Outcome, Verdict
 from ...course.withheld import withheld_tools
-from ..clean import clean_data, clean_line
+from ..clean import clean_data, clean_line, how_many
 from ..sandbox.launch import Sandbox
 from ..sandbox.limits import MAX_TEXT, MAX_TRICKS, Limits, TextBudget
 from ..sandbox.protocol import Disconnected, ProtocolError
@@ -32,8 +32,8 @@ from .plan import Plan, plan
 from .results import OTHER_NOTEBOOK, Answer, FailedCell, Hashes, OwnCell, Result, engine
 
 ADDED = (
-    "this question was added after the notebook was handed in, so the notebook lacks it; it counts "
-    "0 until the new notebook is handed in, into which `labkit merge` copies the work done so far"
+    "this question was added in a later release, and this notebook does not have it; it counts 0 "
+    "until the new notebook is handed in, into which `labkit merge` copies the work done so far"
 )
 
 PUBLIC_ARM = (
@@ -143,7 +143,7 @@ def _cut_to_budget(result: Result) -> Result:
     for part, names in _STUDENT_TEXTS.items():
         data |= cut({part: data[part]}, names, theirs=False)
     data["tricks"] += [f"and {more} more such things"] * (more > 0)
-    note = f"only {MAX_TEXT // 10**6} MB of text is kept, so {budget.cut} texts are cut short here"
+    note = f"only {MAX_TEXT // 10**6} MB of text is kept; cut short: {how_many(budget.cut, 'text')}"
     data["notes"] = [*data["notes"], *[note] * bool(budget.cut)]
     return read_record(Result, clean_data(data))
 
@@ -191,7 +191,7 @@ def _other_notebook(cells: list[dict[str, Any]], bundle: Bundle) -> str:
 
 
 def _try_public(function: RemoteFunction) -> PublicResult:
-    """Try the public cases; all of them come before any hidden one, so none can reveal it."""
+    """Try the public cases, which come before all questions' hidden ones, so as to reveal none."""
     try:
         tried = try_public(function.question, function)
         if tried.outcome is Outcome.RIGHT:

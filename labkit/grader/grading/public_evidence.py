@@ -23,7 +23,7 @@ RATES = (25.0, 12.5, 6.25, 3.0)
 MIN_SAMPLES = 50
 """The least number of samples of a motion, however short."""
 MAX_NUMBERS = 400
-"""How many numbers of an answer are kept, each with the expected one."""
+"""The most numbers of an answer that are kept, each with the expected one."""
 
 
 def runs(question: Question, tried: PublicResult) -> tuple[Run, ...]:

@@ -126,7 +126,7 @@ class Mark:
 
     @property
     def login(self) -> str:
-        """The login; by default the name of the folder, if it is one that could be a login."""
+        """The login; else the folder's name, unless a download or the roster gave the folder."""
         made = self.user or self.listed or not is_name(self.student)
         return self.person.login or (self.number("exchange") if made else self.student)
 

@@ -23,6 +23,7 @@ from ...course.authoring.layout import Course
 from ...errors import LabkitError
 from ..each import Failure, for_student
 from ..grading.batch import GradeOptions, grade_without_saving, keep_unless_lower
+from ..grading.current_results import how_to_grade
 from ..grading.results import Result, Results
 from ..lock import exclusive_run
 from ..submission import Submission, is_name, unfit_name
@@ -133,6 +134,6 @@ def _grade(about: dict[str, Any]) -> Result:
                 raise LabkitError(str(kept))
         result = kept.result
         if result.asked != graded.asked:
-            raise LabkitError(f"{result.student}: {kept.says}; type: labkit grade {key[0]} --lower")
+            raise LabkitError(f"{result.student}: {kept.says}; {how_to_grade(*key)} --lower")
         _known[key] = result
     return result

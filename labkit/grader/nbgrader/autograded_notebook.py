@@ -25,7 +25,7 @@ def in_release_form(source: Notebook, result: Result) -> Notebook:
 
     Args:
         source: The release, from nbgrader's source folder.
-        result: Of the submission.
+        result: The result of the submission.
     """
     notebook = copy.deepcopy(source)
     answers = {q.verdict.name: q.source for q in result.questions}

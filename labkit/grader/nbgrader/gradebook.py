@@ -92,8 +92,13 @@ def _record(course: Course, book: Any, source: Any, result: Result) -> list[str]
         submission, result, automatic_scores(notebook, result), _changed(path, notebook)
     )
     book.db.flush()
+    before = path.read_bytes() if path.exists() else None
     write(path, written)
-    book.db.commit()
+    try:
+        book.db.commit()
+    except BaseException:  # the next try must see again which answers have changed
+        path.unlink() if before is None else write(path, before)
+        raise
     return notes
 
 
@@ -164,7 +169,7 @@ def quiet_database() -> Iterator[None]:
 
 
 def timestamp(course: Course, result: Result) -> tuple[datetime | None, str]:
-    """When a submission came in, as its collector says; and a note if that is unreadable."""
+    """When a submission was handed in, by the file beside it, and a note if that is unreadable."""
     text = read_stamp(course.submitted / result.student / result.assignment)
     when = read_time(text)
     bad = f"timestamp.txt says {text[:40]!r}, which is not a time; counted as in time"
@@ -178,7 +183,7 @@ def automatic_scores(notebook: Any, result: Result) -> dict[str, float | None]:
 
     Args:
         notebook: The submission in the release's form.
-        result: Of the submission.
+        result: The result of the submission.
     """
     from nbgrader.utils import determine_grade
 
@@ -198,7 +203,7 @@ def automatic_scores(notebook: Any, result: Result) -> dict[str, float | None]:
 def _write_scores(
     submission: Any, result: Result, scores: Mapping[str, float | None], changed: Set[str]
 ) -> Iterator[str]:
-    """Write automatic scores; marks given by hand stay, and are looked at again where need be."""
+    """Write automatic scores; marks by hand stay, to be looked at again after a change."""
     missing = 0.0 if result.rejected else None
     for notebook in submission.notebooks:
         for grade in notebook.grades:
@@ -208,13 +213,13 @@ def _write_scores(
             elif grade.name in changed:
                 yield (
                     f"{result.student}: {grade.name} was marked {given:g} by hand, and the answer "
-                    "is another one now; look at it again"
+                    "has changed since; look at it again"
                 )
                 grade.needs_manual_grade = True
             elif score is not None and grade.auto_score not in {None, score}:
                 yield (
-                    f"{result.student}: {grade.name} was marked {given:g} by hand and is {score:g} "
-                    "now by itself; look at it again"
+                    f"{result.student}: {grade.name} was marked {given:g} by hand, and the grader "
+                    f"gives {score:g} now; look at it again"
                 )
                 grade.needs_manual_grade = True
             grade.auto_score = score

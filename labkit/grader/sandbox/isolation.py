@@ -43,7 +43,7 @@ class Bare:
                 os.waitpid(child, 0)
 
     def close(self) -> None:
-        """Remove what is left; nothing to do here, as it disappears with the sandbox."""
+        """Remove what is left when the sandbox ends; here there is nothing to do."""
 
 
 class Namespaces(Bare):

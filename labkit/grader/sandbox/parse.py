@@ -55,7 +55,7 @@ def _notebook(data: bytes) -> dict[str, Any]:
     if notebook.get("nbformat") != 4:
         raise Rejected(f"the notebook's format is {str(notebook.get('nbformat'))[:20]}, not 4")
     if len(notebook["cells"]) > MOST_CELLS:
-        raise Rejected(f"{len(notebook['cells'])} cells are too many; the limit is {MOST_CELLS}")
+        raise Rejected(f"it has {len(notebook['cells'])} cells; the limit is {MOST_CELLS}")
     return notebook
 
 
@@ -71,7 +71,9 @@ def _cells(notebook: dict[str, Any]) -> Iterator[dict[str, Any]]:
             source = ""
         total += len(source)
         if total > MOST_SOURCE:
-            raise Rejected(f"the sources are over {MOST_SOURCE // 10**6} MB of text")
+            raise Rejected(
+                f"its cells have over {MOST_SOURCE // 10**6} MB of text; delete some of it"
+            )
         source = clean_text(source.replace("\r\n", "\n").replace("\r", "\n"))
         kind = "code" if cell.get("cell_type") == "code" else "text"
         yield {

@@ -206,7 +206,7 @@ class Session:
                 error = clean_line(str(said.get("error", "")), 400)
                 output = str(said.get("output", ""))[: min(20_000, self._output)]
             else:
-                error = "it broke into the conversation with the grader"
+                error = "it disturbed the messages to the grader"
         except Timeout:
             error = f"it was stopped after {seconds:g} s"
         except ProtocolError:

@@ -129,7 +129,7 @@ def collect(
 
 
 def _made(file: File, at: datetime | None, exact: bool) -> File:
-    """The file with the time at which its source was made, if that is known."""
+    """The file, dated by the time of its source if that is known, as an ``exact`` time or not."""
     return file if at is None else replace(file, when=at, exact=exact)
 
 

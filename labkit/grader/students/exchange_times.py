@@ -45,7 +45,7 @@ class Times:
         """The later time at which the hand-in really came; None if nothing contradicts its name.
 
         Args:
-            others: The other hand-ins in the same folder.
+            others: The times of the other hand-ins in the exchange.
         """
         if any(self._shown_by(other) for other in others):
             came = self.changed

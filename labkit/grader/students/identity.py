@@ -7,7 +7,7 @@ and so be mistaken for others.  Users of Canvas and of the exchange keep their n
 Moodle's participants have another number in each assignment, so only a roster can connect them.
 
 ``course_private/lms.json`` lists the users whose work was collected, by assignment and by folder.
-Git ignores the file, and it goes with the term.
+Git ignores the file, and it is archived with the term.
 """
 
 from __future__ import annotations
@@ -95,12 +95,12 @@ def save_lms_users(course: Course, known: Mapping[str, Mapping[str, LmsUser]]) -
 
 @contextmanager
 def identity_lock(course: Course) -> Iterator[None]:
-    """Hold the lock on the roster and the records of users, so that one command changes them.
+    """Lock the roster and the records of users, which one command at a time may change.
 
     Raises:
         LabkitError: Another command holds the lock.
     """
-    busy = "somebody else is collecting or changes who is in the class; wait for it to end"
+    busy = "another command is collecting work or changing the roster; wait for it to end"
     with locked(course.root / "course_private" / ".identity", busy):
         yield
 

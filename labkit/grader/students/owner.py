@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from ..clean import how_many
 from .platforms import File, LmsUser, Named
 from .roster import Roster
 
@@ -13,9 +14,9 @@ def find_owner(file: File, roster: Roster) -> Named | str:
     if len(file.readings) == 1:
         who = file.readings[0].who
         if who.system == "files" and roster.students and len(roster.whose(who)) != 1:
-            known = len(roster.whose(who)) or "no"
+            known = how_many(len(roster.whose(who)), "student")
             return (
-                f"not taken; the roster has {known} students who are {who.name!r}; correct it with "
+                f"not taken; {who.name!r} matches {known} of the roster; correct the roster with "
                 "labkit students import LIST.csv, and collect again"
             )
         return file.readings[0]

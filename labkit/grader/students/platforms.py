@@ -193,7 +193,7 @@ def in_zip(archive: zipfile.ZipFile, made: datetime, read: Reader = readings) ->
         who = () if refused else read(name)
         yield File(label, who, when, partial(_read, archive, entry), refused=refused)
         if name in names and not refused:
-            twice = "it is in the zip twice; both are kept, so look which one counts"
+            twice = "it is in the zip twice; both are kept; check which one counts"
             yield File(label, (), when, bytes, refused=twice)
         names.add(name)
 

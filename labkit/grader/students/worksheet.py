@@ -67,7 +67,7 @@ def keep_times(
     if left and not any(entry.handed_in for entry, _ in rows):
         left = [
             "no hand-in time is set; the worksheet has none, or its column is not called 'Last "
-            "modified (submission)'; take it in English"
+            "modified (submission)'; download it in English"
         ]
     if waiting:
         left.append(
@@ -83,8 +83,9 @@ def _time(said: str, zone: ZoneInfo, chosen: Counted, all: Sequence[Attempt]) ->
     others = [x.when for one in all if one is not chosen.attempt for x in one.hand_ins]
     earlier = max((x for x in others if x < first), default=None)
     if when is None:
-        unread = "which is not a time that labkit can read; take the worksheet in English"
-        return f"{said!r}, {unread}" if said else "no time"
+        unread = "which is not a time that labkit can read; download the worksheet in English"
+        nothing = "nothing; download the worksheet again, and import it"
+        return f"{said!r}, {unread}" if said else nothing
     if when > first:
         return (
             f"{said!r}, and the download that was collected is from {_local(first, zone)}; "

@@ -100,7 +100,7 @@ def forget(
             if move_work(term, name, {student: mate}):
                 raise LabkitError(
                     f"{student} handed in {name} for {mate} too, who has other files in "
-                    f"{term.root / 'attempts' / mate / name}; move these away and type it again"
+                    f"{term.root / 'attempts' / mate / name}; move these away, then try again"
                 )
         for path in found:
             if path.is_dir() and not path.is_symlink():

@@ -65,10 +65,11 @@ class Released:
     outdated: int
 
     def __str__(self) -> str:
+        by_hand = self.by_hand.items()
         lines = [
             f"{self.name}: {self.questions} questions, {self.points:g} points, "
             f"{self.hidden} hidden cases",
-            *(f"to be marked by hand: {k}, {v:g} points" for k, v in self.by_hand.items()),
+            *(f"to be marked by hand: {k}, {how_many(v, 'point')}" for k, v in by_hand),
         ]
         if self.outdated:
             lines.append(
