@@ -321,7 +321,9 @@ def test_marks_go_with_the_work(course, tmp_path):
     source = from_moodle(tmp_path / "1.zip", [(("Ada Lovelace", 42), f"{NAME}.ipynb", data)])
     assert take(course, source)
     results = Results(course, NAME)
+    results.keep(result_of(course, "Ada-Lovelace-42", data=notebook_of("an earlier one")))
     results.keep(result := result_of(course, "Ada-Lovelace-42", data=data))
+    results.provisional.keep(result)
     record(course, NAME, [result])
     with open_gradebook(course) as book:
         book.find_grade("circle-check", NAME, NAME, "Ada-Lovelace-42").manual_score = 1.5
@@ -337,6 +339,8 @@ def test_marks_go_with_the_work(course, tmp_path):
     assert mark.score == before.score != result.score and not mark.missing
     assert [results.students(), (results.read("ada") or result).score] == [["ada"], result.score]
     assert (course.root / "autograded" / "ada" / NAME / f"{NAME}.ipynb").exists()
+    assert len(list(results.folder.glob("old/ada/*.json"))) == 1
+    assert not list(results.folder.rglob("Ada-Lovelace-42*")), "forget finds all by the name"
     (defence,) = marks_of(course, DEFENCE)
     assert (defence.student, defence.score) == ("ada", 6.0)
     with open_gradebook(course) as book:

@@ -7,7 +7,7 @@ import hashlib
 import json
 import shutil
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import cache
 from pathlib import Path
 from typing import TypedDict
@@ -279,6 +279,22 @@ class Results:
             else:  # a folder that somebody made, which must make room
                 path.rename(old)
         write(path, result.text())
+
+    def rename(self, old: str, new: str) -> None:
+        """Give the results of a student, also the earlier ones, another student's name.
+
+        What `labkit grade --diff` made is deleted.  A result is left if it is damaged, or if the
+        other student has one.
+        """
+        result = self.get(old)
+        if result is not None and not self.path(new).exists():
+            self.keep(replace(result, student=new))
+            self.path(old).unlink()
+        self.provisional.path(old).unlink(missing_ok=True)
+        for folder in (self.folder / "old", self.provisional.folder / "old"):
+            if (folder / old).is_dir():
+                shutil.copytree(folder / old, folder / new, dirs_exist_ok=True)
+                shutil.rmtree(folder / old)
 
     def __iter__(self) -> Iterator[Result]:
         """All complete results; `current_results` also names those missing or damaged."""

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import shutil
 from collections.abc import Iterator, Mapping
-from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -107,10 +106,7 @@ def _work(course: Course, student: str, assignment: str) -> list[Path]:
 def _move_marks(course: Course, assignment: str, moves: Mapping[str, str]) -> None:
     results = Results(course, assignment)
     for old, new in moves.items():
-        result = results.get(old)
-        if result is not None and not results.path(new).exists():
-            results.keep(replace(result, student=new))
-            results.path(old).unlink()
+        results.rename(old, new)
     if not moves or not (course.root / "gradebook.db").exists():
         return
     with open_gradebook(course) as book:
