@@ -128,6 +128,8 @@ def undefended(folder, name, env):
         if name.startswith("nbgrader")
         else ["-c", f"import {name.partition('.')[0].partition('/')[0]}"]
     )
+    if name == "sitecustomize.py":
+        words = ["-S", *words]  # Debian's Python has loaded one of its own
     subprocess.run(
         [sys.executable, *words], cwd=folder, env=env | {"PYTHONPATH": ""}, capture_output=True
     )

@@ -354,7 +354,10 @@ def harmless(here: Place, *, init: bool = False) -> list[str]:
     """What keeps the machine from harm: it can be read, and only the course can be written to."""
     root, loot = str(here.course.root), str(here.loot)
     words = ["bwrap", "--ro-bind", "/", "/", "--dev", "/dev", "--proc", "/proc"]
-    words += ["--tmpfs", "/tmp", "--tmpfs", "/var/tmp", "--bind", root, root, "--bind", loot, loot]
+    words += ["--tmpfs", "/tmp", "--tmpfs", "/var/tmp"]
+    for needed in (str(ROOT), sys.prefix):  # which may lie below /tmp
+        words += ["--ro-bind", needed, needed]
+    words += ["--bind", root, root, "--bind", loot, loot]
     words += ["--unshare-pid", "--unshare-ipc", "--unshare-uts", "--die-with-parent"]
     words += ["--cap-add", "ALL", "--new-session", *(["--as-pid-1"] if init else [])]
     if os.geteuid():
