@@ -24,8 +24,8 @@ URDF = SHARE / "example-robot-data/robots/baxter_description/urdf/baxter.urdf"
 OUT = Path(__file__).parents[2] / "labkit/data/baxter.json"
 JOINTS = ("s0", "s1", "e0", "e1", "w0", "w1", "w2")
 
-# In the packaged file s1 has 50 N m, less than gravity requires at the neutral pose.  Rethink raised
-# its limit to 100 N m, as the simulated shoulder has no counter-spring (baxter_common, pull request
+# In the packaged file s1 has 50 N m, less than gravity requires at the neutral pose.  Rethink
+# raised it to 100 N m, as the simulated shoulder has no counter-spring (baxter_common, pull request
 # 45).
 EFFORT = {"s1": 100.0}
 # The packaged gripper has placeholders: 0.01 kg m^2 for a finger of 20 g (a radius of gyration near
