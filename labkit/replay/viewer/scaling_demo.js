@@ -1,4 +1,4 @@
-// Live demo of the time scalings: the same way in the same time, four shapes.
+// Live demo of the time scalings: four shapes cover the same distance in the same time.
 import { Plot } from "./plots.js";
 import { choice, dial, fixed, h } from "./dom.js";
 import { profile, trapezoid, trapezoidAcceleration } from "./scaling.js";
@@ -16,7 +16,7 @@ export class ScalingDemo {
     this.bold = choice({ label: "Emphasise", values: NAMES, value: "quintic", onchange: redraw });
     this.time = dial({ label: "Time", unit: "s", min: 0, max: 2, step: 0.01, value: 1, digits: 2, oninput: () => this.mark() });
     const plot = (title) => new Plot({ title, series: [], x: [0, 1], scrub: (t) => { this.time.set(t); this.mark(); } });
-    this.plots = [plot("Way along the path [m]"), plot("Speed [m/s]"), plot("Acceleration [m/s²]")];
+    this.plots = [plot("Distance along the path [m]"), plot("Speed [m/s]"), plot("Acceleration [m/s²]")];
     this.table = h("table", { class: "lk-table" });
     this.element.append(
       h("div", { class: "lk-dials" }, [this.length, this.duration, this.cruise, this.bold, this.time].map((d) => d.element)),
@@ -27,11 +27,11 @@ export class ScalingDemo {
     host.dataset.ready = "1";
   }
 
-  /** [s, ds, dds] of a named scaling now. */
+  /** [s, ds, dds] of a named scaling with the present settings. */
   sample(name, t) {
     const [d, T] = [this.length.get(), this.duration.get()];
     if (name !== "trapezoid") return profile(name, T, t);
-    const v = (2 * d) / (T * (1 + this.cruise.get())); // no cruising at all is bang-bang
+    const v = (2 * d) / (T * (1 + this.cruise.get())); // without cruising this is bang-bang
     return trapezoid(d, v, trapezoidAcceleration(d, v, T), t);
   }
 
@@ -52,8 +52,8 @@ export class ScalingDemo {
     this.plots.forEach((p) => p.time(t));
     const cells = (values) => values.map((v) => h("td", {}, fixed(v)));
     this.table.replaceChildren(
-      h("caption", {}, `At t = ${t.toFixed(2)} s, and the largest values on the way`),
-      h("thead", {}, h("tr", {}, ["time scaling", "way [m]", "speed [m/s]", "accel. [m/s²]", "peak speed [m/s]", "peak accel. [m/s²]"].map((n) => h("th", { scope: "col" }, n)))),
+      h("caption", {}, `At t = ${t.toFixed(2)} s, and the largest values during the motion`),
+      h("thead", {}, h("tr", {}, ["time scaling", "distance [m]", "speed [m/s]", "accel. [m/s²]", "peak speed [m/s]", "peak accel. [m/s²]"].map((n) => h("th", { scope: "col" }, n)))),
       h("tbody", {}, NAMES.map((name, i) => h("tr", {}, h("th", { scope: "row" }, name),
         cells(this.sample(name, t).map((v) => d * v)), cells(this.peaks[i])))));
   }
