@@ -17,7 +17,7 @@ import numpy as np
 ROOT = Path(__file__).resolve().parents[2]
 sys.path[:0] = [str(ROOT)]
 OUT = ROOT / "book/live/numbers.js"
-HEAD = "// Made by book/_tools/make_live.py from labkit and solutions; never edited.\n"
+HEAD = "// Made by book/_tools/make_live.py from labkit and solutions; do not edit it.\n"
 
 import labkit as lk  # noqa: E402
 from labkit import joints, motors, scene  # noqa: E402
