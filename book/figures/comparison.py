@@ -225,8 +225,8 @@ def claims() -> HTML:
         rows.append((v["claim"], x["outcome"], said, "<br>".join(alone) or "–"))
     return table(
         ("Claim", "Outcome", "Difference", "Task by task"), rows,
-        "Paired differences; a positive one supports the claim. Intervals hold jointly, at 95 %, for "
-        "all claims of a kind. Task by task: ✓ held, ✗ did not hold, ? undecided",
+        "Paired differences; a positive one supports the claim. Intervals hold jointly, at 95 %, "
+        "for all claims of a kind. Task by task: ✓ held, ✗ did not hold, ? undecided",
     )  # fmt: skip
 
 

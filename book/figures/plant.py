@@ -143,8 +143,8 @@ def hangs() -> HTML:
         "Difference of the RMS errors on the line, in mm: positive where the claim above is true. "
         "One assumption at a time is at the end of its range; below 0.5 mm nothing is decided. "
         "Red if the verdict differs from that of the first row, or an arm is lost.",
-        f"A table of {len(names)} plants and {len(claims)} claims. The assumptions that change verdicts are: "
-        f"{words}.",
+        f"A table of {len(names)} plants and {len(claims)} claims. The "
+        f"assumptions that change verdicts are: {words}.",
     )
 
 
