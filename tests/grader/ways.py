@@ -1,4 +1,4 @@
-"""Ways around a withheld tool: what a student may write to let labkit's BangBang answer."""
+"""Tricks that circumvent a withheld tool: code in which labkit's BangBang gives the answer."""
 
 from __future__ import annotations
 
@@ -7,14 +7,14 @@ from dataclasses import dataclass
 
 @dataclass(frozen=True)
 class Way:
-    """One way.
+    """One trick.
 
     Attributes:
         cell: A cell above the answers.
-        body: Of ``bang_bang(t, duration)``.
-        counted: Whether it earns points, so that only the list of tricks tells of it.
-        fails: Whether cells fail of it: the forkserver's objects are hidden from `gc`, and without
-            `isinstance` the process that runs the cells reads nothing any more.
+        body: The body of ``bang_bang(t, duration)``.
+        counted: Whether it earns points, so that only the list of tricks reveals it.
+        fails: Whether it makes cells fail: the forkserver's objects are hidden from `gc`, and
+            without `isinstance` the process that runs the cells cannot read any more.
     """
 
     body: str
@@ -24,7 +24,7 @@ class Way:
 
     @property
     def answer(self) -> str:
-        """The answer's cell."""
+        """The cell of the answer."""
         return "def bang_bang(t, duration):\n    " + "\n    ".join(self.body.splitlines())
 
 
