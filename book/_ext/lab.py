@@ -110,18 +110,18 @@ def repair(app: Sphinx, problem: Exception | None) -> None:
         if "_static" in path.parts:
             continue
         text = path.read_text(encoding="utf-8")
-        if "<!-- mended -->" in text:
+        if "<!-- corrected -->" in text:
             continue
         page = BeautifulSoup(text, "html.parser")
         name = path.relative_to(app.outdir).with_suffix("").as_posix()
         if name in app.env.found_docs:
             texts[name] = excerpts.parts_of(page)
-        mend(page, notebooks)
-        path.write_text(f"{page}\n<!-- mended -->\n", encoding="utf-8")
+        correct_page(page, notebooks)
+        path.write_text(f"{page}\n<!-- corrected -->\n", encoding="utf-8")
     excerpts.update(Path(app.outdir), texts)
 
 
-def mend(page: BeautifulSoup, notebooks: Sequence[str] = ()) -> None:
+def correct_page(page: BeautifulSoup, notebooks: Sequence[str] = ()) -> None:
     """Give a page the names, roles and landmarks that assistive technology needs."""
     _exercises(page, notebooks)
     for rule in (
