@@ -14,7 +14,7 @@
 .lk-player legend { font-size: 0.9rem; font-weight: 600; padding: 0 0.3rem; margin: 0; width: auto; float: none; color: var(--lk-text); }
 .lk-player fieldset .lk-dials { padding: 0; }
 .lk-player .lk-dial label, .lk-player .lk-choice label { flex-basis: 6.4rem; font-size: 0.9rem; }
-.lk-player .lk-livebar .lk-choice label { flex-basis: 5.4rem; } /* leaves room for the longest controller */
+.lk-player .lk-livebar .lk-choice label { flex-basis: 5.4rem; } /* leaves room for the longest name of a controller */
 .lk-player .lk-dial .lk-unit { flex-basis: 3rem; }
 .lk-player .lk-pushes { display: flex; flex-wrap: wrap; gap: 0.4rem; align-items: center; margin-top: 0.4rem; }
 .lk-player .lk-pushes button { min-width: 2.6rem; }
@@ -33,15 +33,15 @@
 .lk-live .lk-scroll { padding: 0 0.75rem; }
 .lk-kept { margin: 0; padding: 0.1rem 0.75rem 0.5rem; font-size: 0.9rem; }
 @media (max-width: 500px) {
-  .lk-live .lk-player { overflow: clip; } /* \`hidden\` would keep the picture from staying in sight */
+  .lk-live .lk-player { overflow: clip; } /* with \`hidden\` the sticky picture would not stay in sight */
   .lk-live .lk-stage { position: sticky; top: 3.5rem; z-index: 2; } /* below the theme's bar */
-  .lk-live .lk-player :is(button, input, select, summary) { scroll-margin-top: 20rem; } /* and not behind the picture */
+  .lk-live .lk-player :is(button, input, select, summary) { scroll-margin-top: 20rem; } /* so that no control is behind the picture */
   .lk-live .lk-stage .lk-canvas { aspect-ratio: 16 / 11; }
   .lk-live .lk-player fieldset { margin-inline: 0.4rem; padding-inline: 0.4rem; }
   .lk-live .lk-player :is(.lk-dial, .lk-choice) label { flex-basis: 4.5rem; }
   .lk-live .lk-player .lk-dial .lk-unit { flex-basis: 3.3rem; }
   .lk-live .lk-player .lk-dial input[type="number"] { width: 4.4rem; }
-  .lk-live .lk-player .lk-choice select { padding-inline: 0.2rem; font-size: 0.85rem; } /* the longest controller's name is seen whole */
+  .lk-live .lk-player .lk-choice select { padding-inline: 0.2rem; font-size: 0.85rem; } /* so that the longest name of a controller is fully visible */
   .lk-live .lk-livebar { padding-inline: 0.5rem; }
   .lk-barrow { grid-template-columns: 1fr 1fr; }
   .lk-barrow > :first-child { grid-column: 1 / -1; }
