@@ -1,14 +1,14 @@
-# Two images.  A student's, which JupyterHub can start; in it are labkit and the notebooks, no answers:
+# Two images.  The student's, which JupyterHub can start, contains labkit and the notebooks, no answers:
 #   docker build -t baxter-lab .
 #   docker run --rm -p 8888:8888 baxter-lab                          Jupyter, with a token
-# And the whole course's, for instructors, graders and the dev container:
+# The image of the whole course is for instructors, graders and the dev container:
 #   docker build --target course -t baxter-course .
 #   docker run --rm OPTIONS baxter-course make demo                  everything, isolation included
-# Grading makes sandboxes, which Docker forbids unasked. OPTIONS, for a container that does nothing else:
+# Grading makes sandboxes, which Docker forbids by default. OPTIONS, for a container that does nothing else:
 #   --security-opt=seccomp=unconfined --security-opt=apparmor=unconfined
 #   --security-opt=systempaths=unconfined --cap-add=SYS_ADMIN --cap-add=NET_ADMIN
-# `labkit doctor` says inside whether that suffices. Our gate, which has no Docker, tries the sandbox
-# with these rights, but not the images.
+# Inside the container, `labkit doctor` says whether these rights suffice. Our gate has no Docker: it
+# tests the sandbox with these rights, but not the images.
 FROM python:3.11-slim-bookworm AS python
 RUN apt-get update && apt-get install -y --no-install-recommends libgomp1 git \
     && rm -rf /var/lib/apt/lists/*
@@ -30,7 +30,8 @@ COPY --from=course /handout/baxter-lab /lab/.ci/start_container.sh /opt/baxter-l
 RUN pip install --quiet --no-cache-dir --disable-pip-version-check --root-user-action=ignore \
       --constraint /opt/baxter-lab/constraints.txt \
       /opt/baxter-lab/labkit-*.whl "jupyterhub==$HUB" nbgitpuller nbgrader
-# Of nbgrader, a student has the list of assignments; a hub mounts its exchange here. No news is asked for.
+# Of nbgrader's extensions, a student has only the list of assignments; a hub mounts its exchange in the
+# folder made here. JupyterLab does not ask for news.
 RUN for part in formgrader course_list validate_assignment; do \
       jupyter server extension disable --sys-prefix "nbgrader.server_extensions.$part"; done \
     && for part in jupyter/nbgrader:formgrader jupyter/nbgrader:create-assignment \
@@ -38,7 +39,7 @@ RUN for part in formgrader course_list validate_assignment; do \
       jupyterlab/apputils-extension:announcements; do \
       jupyter labextension disable --level=system "@$part"; done \
     && mkdir -m 777 -p /usr/local/share/nbgrader/exchange
-# The user and the home that hubs expect; a volume laid over it is filled at the start.
+# The user and the home folder that hubs expect; start_container.sh also fills a volume mounted there.
 RUN useradd --create-home --uid 1000 jovyan
 USER jovyan
 WORKDIR /home/jovyan

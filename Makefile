@@ -1,30 +1,30 @@
-# One verb for each thing that one does here; `make help` lists them.
+# One target for each task of this project; `make help` lists them.
 .DEFAULT_GOAL := help
 SHELL := /bin/sh
 BIN := .venv/bin
 INSTALL = $(BIN)/pip install --quiet --disable-pip-version-check --constraint constraints.txt
-# What Debian brings, for a student, for whoever grades, for whoever tests.
+# Things that Debian's packages supply: for students, for graders and for tests.
 FOR_ALL := ensurepip.py:python3.11-venv libgomp.so.1:libgomp1
 FOR_GRADING := $(FOR_ALL) bwrap:bubblewrap
 FOR_TESTS := $(FOR_GRADING) node:nodejs libatomic.so.1:libatomic1
-# Ubuntu's Chromium is a snap, which cannot be driven: there Playwright brings its own.
+# Ubuntu's Chromium is a snap, which programs cannot control; there Playwright installs its own.
 FOR_TESTS += $(shell grep -qs '^ID=debian' /etc/os-release && echo chromium,google-chrome:chromium)
 AS_ROOT = $(filter 0,$(shell id -u))
 SEED ?= 2019
 ASSIGNMENT ?= 01_paths
-# A newer Python, on which PyBullet has no wheels: MuJoCo moves the arm there.
+# A newer Python, for which PyBullet has no wheels, so MuJoCo moves the arm there.
 SECOND := .venv-313/bin
 ON_SECOND := -m "not slow and not soak and not pybullet"
 
 .PHONY: help demo test test-313 wheels zip dev quick soak count record lab release grade book book-zip book-pdf film vendor campaign campaign-engines bench tag-bench report-card doctor lint types format clean
 
-help: ## list the verbs
+help: ## list the targets
 	@grep -hE '^[a-z0-9-]+:.*##' $(MAKEFILE_LIST) | awk -F':.*## ' '{printf "  make %-12s %s\n", $$1, $$2}'
 
-demo: for-grading .venv/.course ## release, grade a small class, build the book, say where to look
+demo: for-grading .venv/.course ## make a release, grade a small class, build the book and say where to look
 	@PATH="$(CURDIR)/$(BIN):$$PATH" $(BIN)/python .ci/demo.py
 
-test: for-tests .venv/.dev browser lint types test-313 ## everything: style, types, all tests, a second Python
+test: for-tests .venv/.dev browser lint types test-313 ## everything: style, types, all tests and a second Python
 	@PATH="$(CURDIR)/$(BIN):$$PATH" $(BIN)/python -m pytest -n 2 --dist loadgroup --no-loadscope-reorder
 
 test-313: .venv-313/.made ## on Python 3.13 without PyBullet: the lab, Run All, a report card
@@ -33,15 +33,15 @@ test-313: .venv-313/.made ## on Python 3.13 without PyBullet: the lab, Run All, 
 	&& $(SECOND)/python -m pytest -q -n 2 $(ON_SECOND) tests/notebooks/test_always_runs.py -k "all or none"; \
 	tests=$$?; wait $$card && exit $$tests
 
-wheels: .venv/.dev ## on which systems pip can install what a student needs
+wheels: .venv/.dev ## find the systems on which pip can install what a student needs
 	@PATH="$(CURDIR)/$(BIN):$$PATH" $(BIN)/python .ci/wheels.py
 
 dev: for-all .venv/.dev ## make the environment, .venv, and nothing else
 
-quick: for-all .venv/.dev ## the quick tests, with Python alone: those of the lab and the course
+quick: for-all .venv/.dev ## the quick tests of the lab and the course, which need only Python
 	@PATH="$(CURDIR)/$(BIN):$$PATH" $(BIN)/python -m pytest -n 2 --quick -m "not slow and not soak" --ignore tests/grader --ignore tests/book --ignore tests/replay --ignore tests/soak
 
-soak: for-tests .venv/.dev browser ## what the gate leaves out: all fuzz, attacks, kills, large classes, pages
+soak: for-tests .venv/.dev browser ## what the gate leaves out: all fuzz tests, attacks, kills, large classes and pages
 	@PATH="$(CURDIR)/$(BIN):$$PATH" $(BIN)/python -m pytest -n 2 --dist loadgroup --no-loadscope-reorder -m soak
 
 lab: .venv/.student ## open the notebooks of this checkout; students start theirs from the zip
@@ -50,22 +50,22 @@ lab: .venv/.student ## open the notebooks of this checkout; students start their
 zip: .venv/.course ## what students get: dist/baxter-lab.zip
 	@$(BIN)/labkit student-bundle
 
-release: .venv/.course ## make the students' notebooks; SEED=n for hidden cases of your own
+release: .venv/.course ## make the students' notebooks; SEED=n draws other hidden cases
 	@$(BIN)/labkit release $(if $(filter command line environment,$(origin SEED)),--seed $(SEED))
 
-grade: for-grading .venv/.course ## grade submitted/ ; ASSIGNMENT=01_paths
+grade: for-grading .venv/.course ## grade the notebooks in submitted/; ASSIGNMENT=01_paths
 	@$(BIN)/labkit grade $(ASSIGNMENT)
 
 book: .venv/.course ## build the book: book/_build/html/index.html
 	@$(BIN)/python book/_tools/build_book.py
 
-book-zip: .venv/.course build/campaign.json ## the book as one file to hand out
+book-zip: .venv/.course build/campaign.json ## make one file of the book to hand out
 	@$(BIN)/python book/_tools/build_book.py --zip
 
-book-pdf: for-tests .venv/.dev browser ## the book to print
+book-pdf: for-tests .venv/.dev browser ## make the PDF of the book to print
 	@$(BIN)/python book/_tools/build_book.py --pdf
 
-film: for-tests .venv/.dev browser ## photograph the built book: the first page's film, the stills of the live arm
+film: for-tests .venv/.dev browser ## make the first page's film and the live arm's stills from the built book
 	@$(BIN)/python book/_tools/make_stills.py
 	@$(BIN)/python book/_tools/make_film.py
 
@@ -73,31 +73,31 @@ vendor: .venv/.dev ## make the book's browser files again (node 20)
 	@sh .ci/need.sh node:nodejs npm:npm
 	@PYTHON="$(CURDIR)/$(BIN)/python" sh book/_tools/vendor.sh
 
-campaign: .venv/.course ## the compared controllers on every task: build/campaign.json
+campaign: .venv/.course ## run the compared controllers on every task: build/campaign.json
 	@$(BIN)/python -m solutions.study
 
-campaign-engines: .venv/.course ## the campaign on every engine, and where they differ
+campaign-engines: .venv/.course ## run the campaign on every engine, and say where the engines differ
 	@$(BIN)/python -m solutions.study.both_engines
 
 record: .venv/.course ## make all recorded data again, and say which verdicts changed
 	@$(BIN)/python -m solutions.study.record
 
-build/campaign.json: # the book to hand out has the films
+build/campaign.json: # the book to hand out contains the films of the campaign
 	@$(BIN)/python -m solutions.study
 
-count: ## how large labkit is: lines of code and statements of each layer
+count: ## count labkit's lines of code and statements, layer by layer
 	@python3 tests/count.py
 
 bench: for-tests .venv/.dev browser ## measure speeds as ratios: build/bench.json
 	@$(BIN)/python -m tests.bench
 
-tag-bench: .venv/.course ## precision of the tag sensor; SEED=n
+tag-bench: .venv/.course ## measure the precision of the tag sensor; SEED=n
 	@$(BIN)/python -m tests.bench.tags --seed $(SEED)
 
-report-card: .venv/.course ## do the checks reject what is wrong and accept what is right?
+report-card: .venv/.course ## test that the checks reject wrong answers and accept right ones
 	@$(BIN)/labkit report-card
 
-doctor: .venv/.course ## what isolation this machine can give to submissions
+doctor: .venv/.course ## say how well this machine can isolate submissions
 	@$(BIN)/labkit doctor
 
 lint: .venv/.dev
@@ -107,13 +107,13 @@ lint: .venv/.dev
 types: .venv/.dev
 	@$(BIN)/mypy --no-error-summary
 
-format: .venv/.dev ## put the code in order
+format: .venv/.dev ## correct the style of the code
 	@$(BIN)/ruff check --fix . && $(BIN)/ruff format .
 
-clean: ## forget what was made, but nothing of students: not their work, marks or hidden cases
+clean: ## delete generated files; students' work, marks and hidden cases are kept
 	rm -rf .venv .venv-313 dist book/_build book/generated build/[!c]* build/campaign*
 
-# Environments: a student's, an instructor's, a developer's, each one more than the one before.
+# Environments for a student, an instructor and a developer; each adds packages to the one before.
 
 .PHONY: for-all for-grading for-tests browser
 for-all:

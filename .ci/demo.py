@@ -1,7 +1,7 @@
-"""The whole course in miniature: release, a small class graded, the book, and where to look.
+"""The whole course in miniature: make a release, grade a small class and build the book.
 
-It works in ``build/demo``, a course of its own, so nothing of yours is touched.  It fails if the
-class could not be graded, or if a mark is not what the class deserves.
+It works in ``build/demo``, which is a separate course, so it does not touch your files.  It fails
+if the class could not be graded, or if a submission does not get the mark that it deserves.
 """
 
 from __future__ import annotations
@@ -26,20 +26,20 @@ SYNTHETIC = [sys.executable, "-m", "tests.synthetic"]
 COURSE = ["--course", str(DEMO)]
 GRADING = (
     (
-        "A class hands in",
+        "Let a class hand in its notebooks",
         [*SYNTHETIC, ASSIGNMENT, "--seed", "1", "--count", "14", *COURSE],
     ),
-    ("Grade it, each submission in isolation", [LABKIT, "grade", ASSIGNMENT, *COURSE]),
-    ("Are the marks those that it deserves?", [sys.executable, __file__, "--compare"]),
+    ("Grade the class, each submission in isolation", [LABKIT, "grade", ASSIGNMENT, *COURSE]),
+    ("Compare the marks with those that are deserved", [sys.executable, __file__, "--compare"]),
     ("Write feedback", [LABKIT, "feedback", ASSIGNMENT, *COURSE]),
-    ("What the class misunderstood", [LABKIT, "class-report", ASSIGNMENT, *COURSE]),
+    ("Report what the class misunderstood", [LABKIT, "class-report", ASSIGNMENT, *COURSE]),
 )
 
 
 def main(arguments: list[str] | None = None) -> int:
-    """Run the steps one after another; stop at the first that fails."""
+    """Run the steps one after another; stop at the first one that fails."""
     parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("--compare", action="store_true", help="only compare marks with deserts")
+    parser.add_argument("--compare", action="store_true", help="only compare the marks")
     if parser.parse_args(arguments).compare:
         return compare()
     began = time.monotonic()
@@ -58,13 +58,13 @@ def main(arguments: list[str] | None = None) -> int:
             return 1
     say_where_to_look(time.monotonic() - began)
     if doctor.returncode:
-        print(f"\nNo class was graded, as `make doctor` fails:\n{doctor.stdout}", file=sys.stderr)
+        print(f"\nNo class was graded: `make doctor` fails.\n{doctor.stdout}", file=sys.stderr)
         return 1
     return 0
 
 
 def set_up() -> None:
-    """Make the course anew, from this one's sources."""
+    """Make the course of the demo again, from the sources of this course."""
     shutil.rmtree(DEMO, ignore_errors=True)
     DEMO.mkdir(parents=True)
     no_bytecode = shutil.ignore_patterns("__pycache__")
@@ -73,21 +73,21 @@ def set_up() -> None:
 
 
 def compare() -> int:
-    """Say whose mark is not what their submission deserves."""
+    """Print the students whose mark is not what their submission deserves."""
     wrong = list(differences(Course(DEMO), ASSIGNMENT))
     print("\n".join(wrong) or "Every mark is what its submission deserves.")
     return 1 if wrong else 0
 
 
 def say_where_to_look(seconds: float) -> None:
-    """Name what was made."""
+    """Print where the files are that were made."""
     print(f"\nDone in {seconds:.0f} s. Where to look:")
     for what, where in (
         ("the book", ROOT / "book/_build/html/index.html"),
         ("the students' notebooks", DEMO / "assignments"),
-        ("solved ones, for after the deadline", DEMO / "build/course/solution"),
-        ("marks with reasons", DEMO / "results" / ASSIGNMENT),
-        ("feedback for each student", DEMO / "feedback"),
+        ("the solved notebooks, for after the deadline", DEMO / "build/course/solution"),
+        ("the marks with their reasons", DEMO / "results" / ASSIGNMENT),
+        ("the feedback for each student", DEMO / "feedback"),
     ):
         if where.exists():
             print(f"  {what}: {where.relative_to(ROOT)}")

@@ -1,6 +1,6 @@
 #!/bin/sh
-# Print a Python, or say how to get one: sh .ci/find_python.sh [VERSION], 3.11 by default.
-# Where uv is, it fetches one.
+# Print the path of a Python, or say how to get one: sh .ci/find_python.sh [VERSION], 3.11 by default.
+# If there is none and uv is installed, uv fetches one.
 version=${1:-3.11}
 pyenv=${PYENV_ROOT:-$HOME/.pyenv}/versions
 

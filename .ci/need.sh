@@ -1,8 +1,8 @@
 #!/bin/sh
-# Make sure that what a verb needs is there: sh .ci/need.sh THING[,OTHER]:PACKAGE ...
-# A thing is a program, a library (libNAME.so.N) or one of Python's modules (NAME.py).
-# As root it installs the Debian packages that are missing; else it prints the one line to run.
-python=.venv/bin/python # what was made before needs nothing found again
+# Check that a make target has what it needs: sh .ci/need.sh THING[,OTHER]:PACKAGE ...
+# A thing is a program, a library (libNAME.so.N) or a Python module (NAME.py).
+# As root, install the Debian packages that are missing; otherwise print the one line to run.
+python=.venv/bin/python # if the environment exists, no other Python has to be found
 [ -x "$python" ] || python=$(sh "$(dirname "$0")/find_python.sh") || exit 1
 
 there() {

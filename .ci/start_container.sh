@@ -1,7 +1,8 @@
 #!/bin/sh
-# Start of a student's container: lay the notebooks into the home, never over work that is there, then
-# run the command given; "lab" is Jupyter, a hub's where a hub started us, else one with a token.
-# WITHOUT_NOTEBOOKS=1 is for a hub that hands them out by itself.
+# Start a student's container: copy the notebooks into the home folder, without overwriting work that is
+# there, then run the given command.  "lab" starts JupyterHub's server for one user if a hub started the
+# container, and otherwise JupyterLab with a token.
+# WITHOUT_NOTEBOOKS=1 copies no notebooks, for a hub that hands them out itself.
 set -eu
 [ -n "${WITHOUT_NOTEBOOKS:-}" ] || for each in "$(dirname "$0")"/assignments/*; do
   here="$HOME/assignments/$(basename "$each")"

@@ -1,8 +1,8 @@
-"""Where can pip install what a student needs, without a compiler?
+"""On which systems can pip install what a student needs, without a compiler?
 
-`make wheels` asks for each system and Python, through uv and for the versions in constraints.txt,
-writes the table to ``.ci/wheels.md`` and prints it. README and the guide for students show that
-table, the guide without its last column; a test compares the three, without a network.
+`make wheels` asks uv for each system and Python, with the versions in constraints.txt, writes the
+table to ``.ci/wheels.md`` and prints it. README and the guide for students show that table, the
+guide without its last column; a test compares the three without a network.
 """
 
 from __future__ import annotations
@@ -25,9 +25,9 @@ SYSTEMS = {
     "macOS on Intel": "x86_64-apple-darwin",
     "Windows on x86-64": "windows",
 }
-"""Their names, and uv's names for them."""
+"""The names of the systems, and uv's names for them."""
 RUN_HERE = {("Linux on x86-64", python) for python in PYTHONS}
-"""Where notebooks were run from the students' zip alone; all else was resolved, not run."""
+"""The systems on which notebooks were run from the zip; on others pip's choice was only found."""
 HEAD = f"""\
 | system | {" | ".join(f"Python {x}" for x in PYTHONS)} | engine | install with | grading |
 |---|{"---|" * len(PYTHONS)}---|---|---|
@@ -35,7 +35,7 @@ HEAD = f"""\
 
 
 def resolved(platform: str, python: str) -> set[str] | None:
-    """The packages that pip would take, all of them wheels; None if one of them has none."""
+    """The packages that pip would install, all from wheels; None if one of them has no wheel."""
     words = ["--quiet", "--no-config", "--no-header", "--no-annotate", "--only-binary", ":all:"]
     words += ["--constraint", str(PINS), "--python-platform", platform, "--python-version", python]
     command = ["uv", "pip", "compile", *words, str(ROOT / "pyproject.toml")]
@@ -44,11 +44,11 @@ def resolved(platform: str, python: str) -> set[str] | None:
         return {line.partition("==")[0] for line in done.stdout.split()}
     if "No solution found" in done.stderr:
         return None
-    raise SystemExit(f"uv could not ask for {platform}, Python {python}: {done.stderr.strip()}")
+    raise SystemExit(f"uv failed for {platform}, Python {python}: {done.stderr.strip()}")
 
 
 def row(system: str, platform: str) -> str:
-    """A system's line of the table."""
+    """The line of the table for one system."""
     found = {python: resolved(platform, python) for python in PYTHONS}
     cells = [
         "no wheels" if packages is None else "run" if (system, python) in RUN_HERE else "resolved"
@@ -63,7 +63,7 @@ def row(system: str, platform: str) -> str:
 
 
 def asked() -> str:
-    """A name for what was asked: what students need, and in which versions."""
+    """A hash of the question to uv, which is the students' packages and their versions."""
     needed = tomllib.loads((ROOT / "pyproject.toml").read_text())["project"]["dependencies"]
     names = {re.split(r"[^\w-]", line)[0] for line in needed}
     pins = [pin for pin in PINS.read_text().split() if pin.partition("==")[0] in names]
@@ -71,7 +71,7 @@ def asked() -> str:
 
 
 def main() -> None:
-    """Ask, write, print."""
+    """Ask uv, then write the table and print it."""
     table = HEAD + "".join(row(*system) for system in SYSTEMS.items())
     TABLE.write_text(f"<!-- make wheels; asked: {asked()} -->\n{table}")
     print(table, end="")

@@ -1,23 +1,23 @@
-"""What axe-core finds on a page, no rule disabled and nothing excluded."""
+"""The faults that axe-core finds on a page, with every rule and without exclusions."""
 
 from pathlib import Path
 
 AXE = (Path(__file__).parent / "vendor/axe.min.js").read_text()
 TAGS = ("wcag2a", "wcag2aa", "wcag21a", "wcag21aa", "wcag22aa", "best-practice")
 COLOURS = ("color-contrast", "link-in-text-block")
-"""The rules that look at colours: all that a page in the other theme can break anew."""
+"""The rules about colours, which are the only ones that the other theme can break."""
 
 
 def violations(page, where="html", only=TAGS):
-    """What is wrong on a page, as rule and element; empty where nothing is.
+    """The faults on a page, each as its rule and element; an empty list if there are none.
 
-    Only this list leaves the page: axe's whole answer is ten thousand elements long, and to
-    carry them over takes longer than to find them.
+    Only this list leaves the page: axe's whole answer has ten thousand elements, and passing
+    them on takes longer than finding them.
 
     Args:
-        page: Playwright's.
-        where: A selector of the part to look at.
-        only: Tags of rules, or the names of some.
+        page: A page of Playwright.
+        where: A selector of the part to check.
+        only: Tags of rules, or names of rules.
     """
     page.evaluate(AXE)
     asked = {"runOnly": list(only), "resultTypes": ["violations"], "preload": False}

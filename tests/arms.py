@@ -18,5 +18,5 @@ TIPS = {"ur5": "tool0", "panda": "panda_hand_tcp"}
 
 
 def arm(name):
-    """One of the two."""
+    """The robot of one of the two arms."""
     return lk.Robot.from_urdf(FILES[name], tip=TIPS[name], ready=READY[name])

@@ -1,4 +1,4 @@
-"""What the tests share: hypothesis that repeats itself, states drawn from a seed, a browser."""
+"""Tools of all tests: repeatable runs of hypothesis, states drawn from a seed, a browser."""
 
 from contextlib import contextmanager
 
@@ -34,7 +34,7 @@ def pytest_addoption(parser):
 
 
 def _without_chromium(config):
-    """Whether tests that need Chromium are to be left out."""
+    """Whether to leave out the tests that need Chromium."""
     try:
         return config.getoption("quick") and not program()
     except SystemExit:
@@ -46,12 +46,12 @@ def pytest_report_header(config):
 
 
 def _turn(item):
-    """One worker builds the book first, and what else needs the book comes last."""
+    """The order of a test: one worker builds the book first; other tests of the book come last."""
     return ("book" in item.fixturenames) * (1 if item.name != FIRST else -1)
 
 
 def pytest_collection_modifyitems(config, items):
-    """`make quick` runs with Python alone; everywhere else a missing program is a failure."""
+    """Order the tests; only `make quick` leaves out tests whose program is missing."""
     items.sort(key=_turn)
     if _without_chromium(config):
         left_out = [item for item in items if "playwright" in item.fixturenames]
@@ -61,25 +61,25 @@ def pytest_collection_modifyitems(config, items):
 
 @pytest.fixture(params=["left", "right"])
 def side(request):
-    """Each of Baxter's arms."""
+    """The side of each of Baxter's arms."""
     return request.param
 
 
 @pytest.fixture
 def model(side):
-    """Each arm's model."""
+    """The model of each arm."""
     return lk.Model(side)
 
 
 @pytest.fixture
 def random():
-    """Random numbers, the same in every run."""
+    """Random numbers that are the same in every run."""
     return np.random.default_rng(2019)
 
 
 @pytest.fixture
 def states(random):
-    """Call with a side and a count: joint angles inside their limits, and speeds."""
+    """A function of a side and a count that draws joint angles within their limits, and speeds."""
 
     def draw(side="left", count=20):
         r = lk.robot(side)
@@ -115,21 +115,21 @@ def browser(playwright, *flags):
 
 @pytest.fixture(scope="session")
 def chromium(playwright):
-    """With WebGL in software."""
+    """A Chromium with WebGL in software."""
     with browser(playwright, "--enable-unsafe-swiftshader") as chromium:
         yield chromium
 
 
 @pytest.fixture(scope="session")
 def blind_chromium(playwright):
-    """Without WebGL."""
+    """A Chromium without WebGL."""
     with browser(playwright, "--disable-3d-apis") as chromium:
         yield chromium
 
 
 @pytest.fixture(scope="session")
 def open_chromium(playwright):
-    """One in which axe-core may read the style sheets of a page from the disk."""
+    """A Chromium in which axe-core may read the style sheets of a page from the disk."""
     flags = ("--enable-unsafe-swiftshader", "--allow-file-access-from-files")
     with browser(playwright, *flags) as chromium:
         yield chromium

@@ -1,6 +1,6 @@
-"""How large labkit is, in lines of code and statements per layer: `make count`.
+"""The size of labkit, in lines of code and statements of each layer: `make count`.
 
-A line of code has a token on it that is neither a comment nor a part of a docstring.
+A line of code has a token that is neither a comment nor a part of a docstring.
 """
 
 import ast
@@ -11,14 +11,14 @@ from pathlib import Path
 
 LABKIT = Path(__file__).parents[1] / "labkit"
 LAYERS = {"course": "course", "grader": "grader", "__main__.py": "course"}
-"""Of each folder and of the command line; all else is the lab."""
+"""The layers of the folders and of the command line; all other files belong to the lab."""
 LARGE = 200
 BLANK = {tokenize.COMMENT, tokenize.NL, tokenize.NEWLINE, tokenize.INDENT, tokenize.DEDENT,
          tokenize.ENDMARKER}  # fmt: skip
 
 
 def lines(text):
-    """Lines of code in a module's text."""
+    """The lines of code in a module's text."""
     found = set()
     for token in tokenize.generate_tokens(io.StringIO(text).readline):
         if token.type not in BLANK:
@@ -30,12 +30,12 @@ def lines(text):
 
 
 def statements(text):
-    """Statements in a module's text, docstrings apart."""
+    """The number of statements in a module's text, without docstrings."""
     return sum(isinstance(n, ast.stmt) and not is_text(n) for n in ast.walk(ast.parse(text)))
 
 
 def is_text(node):
-    """Whether a statement is a docstring, or words under a constant."""
+    """Whether a statement is a docstring or the description below a constant."""
     match node:
         case ast.Expr(ast.Constant(str())):
             return True

@@ -1,4 +1,4 @@
-"""Courses to try things on, away from this one."""
+"""Copies of this course for tests."""
 
 import shutil
 from pathlib import Path
@@ -9,7 +9,7 @@ ROOT = Path(__file__).parents[1]
 
 
 def copied(root):
-    """This course's sources in another folder, with nothing released yet."""
+    """Copy this course's sources, without a release, into another folder."""
     shutil.copytree(ROOT / "solutions", root / "solutions")
     shutil.copy(ROOT / "nbgrader_config.py", root)
     return Course(root)

@@ -1,4 +1,4 @@
-"""Is the second number the slope of the first?  For curves, by central differences."""
+"""Tests by central differences that the derivatives of curves are right."""
 
 import numpy as np
 from numpy.testing import assert_allclose
@@ -7,12 +7,12 @@ from labkit import se3
 
 
 def slope_along(f, q, dq, step=1e-6):
-    """How ``f`` changes as ``q`` moves at ``dq``."""
+    """The rate of change of ``f`` while ``q`` moves at ``dq``."""
     return (f(q + step * dq) - f(q - step * dq)) / (2 * step)
 
 
 def assert_slopes(curve, x, step=1e-5, tolerance=1e-6):
-    """``curve(x)`` gives value, derivative, second derivative: the latter are slopes at ``x``."""
+    """Assert that the derivatives in ``curve(x)``, after the value, are the slopes at ``x``."""
     before, here, after = (tuple(map(np.asarray, curve(x + k * step))) for k in (-1, 0, 1))
     for k in (0, 1):
         slope = (after[k] - before[k]) / (2 * step)
@@ -21,7 +21,7 @@ def assert_slopes(curve, x, step=1e-5, tolerance=1e-6):
 
 
 def assert_pose_slopes(curve, x, step=1e-5, tolerance=1e-6):
-    """``curve(x)`` gives pose, twist, dtwist in world axes: the latter are slopes at ``x``."""
+    """Assert that twist and dtwist in ``curve(x)``, in world axes, are the slopes at ``x``."""
     (T0, V0, _), (T, V, dV), (T1, V1, _) = (curve(x + k * step) for k in (-1, 0, 1))
     turn = se3.orientation_error(T1[:3, :3], T0[:3, :3])
     slope = np.concatenate([T1[:3, 3] - T0[:3, 3], turn]) / (2 * step)
@@ -31,7 +31,7 @@ def assert_pose_slopes(curve, x, step=1e-5, tolerance=1e-6):
 
 
 def assert_at_rest(sample, value):
-    """The sample stands at ``value``, neither moving nor about to."""
+    """Assert that the sample is at ``value``, without velocity and acceleration."""
     x, dx, ddx = map(np.asarray, sample)
     assert_allclose(x, value, rtol=0, atol=1e-12)
     assert not dx.any()

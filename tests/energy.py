@@ -1,7 +1,7 @@
-"""Where the energy of a run goes, for the tests that hold the arm and its controllers to laws.
+"""The balance of energy in a run, for tests of physical laws of the arm and its controllers.
 
-Work is torque times the mean of the speeds before and after: with the torque constant from tick to
-tick, as in torque control, that is exact up to the physics engine's own error.
+Work is torque times the mean of the speeds before and after.  If the torque is constant from tick
+to tick, as in torque control, this is exact up to the error of the physics engine.
 """
 
 from typing import NamedTuple
@@ -17,13 +17,13 @@ class Balance(NamedTuple):
     kinetic: np.ndarray
     friction: np.ndarray
     residual: np.ndarray
-    """What neither the motors' work nor viscous friction accounts for."""
+    """The energy that neither the motors' work nor viscous friction explains."""
     throughput: float
-    """All that passed through the motors, in and out."""
+    """The sum of all energy that passed through the motors, in both directions."""
 
 
 def energy_balance(log):
-    """Follow the energy through a run."""
+    """The energies during a run."""
     model = model_of(log)
     dt, mean = np.diff(log.t)[:, None], 0.5 * (log.dq[1:] + log.dq[:-1])
     flow = log.tau[:-1] * mean * dt
@@ -44,5 +44,5 @@ def lyapunov(log, Kp, inertia=None):
 
 
 def summed(flow):
-    """What has flowed up to each tick, from zero."""
+    """The integral of a power up to each tick, starting from zero."""
     return np.concatenate([[0.0], np.cumsum(flow.sum(axis=1))])

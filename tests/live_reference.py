@@ -1,4 +1,4 @@
-"""The live arm of the book beside the lab's: the same questions to JavaScript and to Python."""
+"""Comparison of the book's live arm in JavaScript with the lab's arm in Python."""
 
 import json
 import subprocess
@@ -24,7 +24,7 @@ PLANTS = {"ideal": lk.IDEAL, "baxter": lk.BAXTER}
 
 
 def javascript(*requests):
-    """What the live arm answers to each of some requests; see live_node.mjs."""
+    """The live arm's answer to each request; see live_node.mjs."""
     done = subprocess.run(["node", str(NODE)], input=json.dumps(requests), capture_output=True,
                           text=True, timeout=600, check=False)  # fmt: skip
     assert done.returncode == 0, done.stderr[-3000:]
@@ -39,10 +39,10 @@ def candidate(plant, controller):
 
 
 def python_run(plant, controller, task, duration, things=(), start=None, change=None):
-    """Joint angles of the lab's own run on MuJoCo, without chance, shape (k, 7) in [rad]."""
+    """Joint angles of the lab's run on MuJoCo without random effects, shape (k, 7) in [rad]."""
     quiet = {"velocity_noise": 0.0, "torque_noise": 0.0, "lost_ticks": 0.0, **(change or {})}
     own = candidate(PLANTS[plant], controller)
-    if hasattr(own.controller, "model"):  # the law knows what the arm carries
+    if hasattr(own.controller, "model"):  # the law knows the payload
         own = replace(own, controller=replace(
             own.controller, model=lk.Model("left", replace(PLANTS[plant], **quiet))))  # fmt: skip
     made = getattr(tasks, task)()

@@ -1,6 +1,6 @@
 """nbgrader's own engine, which runs a student's code in one process with the hidden cases.
 
-labkit never does so.  Here it is the control: what isolation keeps out pays or harms in it.
+labkit never does so.  In these tests it is the control: attacks that isolation stops succeed in it.
 """
 
 from __future__ import annotations
@@ -41,7 +41,7 @@ def pack_hidden(course, assignment):
 
 
 def grade_with_nbgrader(course, assignment, student):
-    """The score that nbgrader's own engine comes to."""
+    """The score by nbgrader's own engine."""
     api = nbgrader_api(course)
     for steps in ("sanitize_preprocessors", "autograde_preprocessors"):
         api.config.Autograde.pop(steps, None)

@@ -40,7 +40,7 @@ def test_no_wheel_is_told_from_no_answer(monkeypatch):
         "s", "n"
     )
     answers(1, err="error: failed to look up the address")
-    with pytest.raises(SystemExit, match="could not ask for"):
+    with pytest.raises(SystemExit, match="uv failed for"):
         wheels.row("s", "n")
 
 

@@ -1,10 +1,11 @@
-"""Start the lab: `python3 start.py` makes what the notebooks need, the first time, and opens them.
+"""Start the lab: `python3 start.py` installs what the notebooks need, once, and opens them.
 
-It needs Python 3.11, 3.12 or 3.13 and nothing else.  All that it makes lies in the folder ``.venv``
-beside it; whoever deletes that folder starts anew.  `python3 start.py install` opens nothing.
+It needs Python 3.11, 3.12 or 3.13 and nothing else.  It installs everything into the folder
+``.venv`` beside it; delete that folder to start from the beginning.  `python3 start.py install`
+installs and does not open the notebooks.
 """
 
-# Any Python 3 must be able to read this file, or it could not say that it is too old.
+# Any Python 3 must be able to read this file, so that an old one can be told that it is too old.
 import hashlib
 import json
 import os
@@ -39,11 +40,11 @@ NEEDED = ("numpy", "scipy", "mujoco", "pinocchio", "cv2", "matplotlib", "jupyter
 
 
 class Stop(Exception):
-    """Why it cannot go on, in a sentence."""
+    """The reason why this program cannot continue, as a sentence."""
 
 
 def main(words):
-    """Make the environment where there is none, and open the notebooks."""
+    """Make the environment if there is none, and open the notebooks."""
     if words not in ([], ["install"]):
         raise Stop("type start.py alone to open the notebooks, or start.py install to prepare them")
     if in_conda():
@@ -63,9 +64,9 @@ def main(words):
     os.environ["PATH"] = str(python.parent) + os.pathsep + os.environ.get("PATH", "")
     keep_to_this_folder()
     words = ["--log-level=ERROR", "--notebook-dir=" + str(HERE / "assignments")]
-    words += ["--KernelManager.transport_encryption=auto"]  # or each kernel warns of eavesdroppers
+    words += ["--KernelManager.transport_encryption=auto"]  # else each kernel prints a warning
     words += ["--LabApp.default_url=/lab/tree/START_HERE.ipynb"]
-    words += ["--ServerApp.answer_yes=True"]  # Ctrl-C ends it, and asks nothing
+    words += ["--ServerApp.answer_yes=True"]  # Ctrl-C ends it without a question
     words += ["--allow-root"] if is_root() else []
     print("opening JupyterLab at START_HERE, which takes about ten seconds;", end=" ")
     print("to end it, press Ctrl-C here", flush=True)
@@ -73,7 +74,7 @@ def main(words):
 
 
 def keep_to_this_folder():
-    """Open no notebooks of other lessons again; where the home cannot be written, need none."""
+    """Do not reopen notebooks of other courses; replace a home folder that cannot be written."""
     room = Path(sys.prefix) if in_conda() else ENV
     os.environ["JUPYTERLAB_WORKSPACES_DIR"] = str(room / "workspaces")
     if not os.access(os.path.expanduser("~"), os.W_OK):
@@ -82,15 +83,15 @@ def keep_to_this_folder():
 
 
 def in_conda():
-    """Whether this is an environment of conda's that has what pip has no wheels for."""
+    """Whether this is a conda environment that has the packages for which pip has no wheels."""
     return (Path(sys.prefix) / "conda-meta").is_dir() and all(map(find_spec, NEEDED))
 
 
 def right_python():
-    """None where this Python will do, else another one that will."""
+    """None if this Python is suitable, otherwise the path of one that is."""
     if (sys.platform, platform.machine()) not in SYSTEMS:
         raise Stop(
-            "on {} ({}) pip does not have all that the lab needs, but conda does: {}".format(
+            "on {} ({}) pip does not have everything that the lab needs, but conda does: {}".format(
                 platform.system(), platform.machine(), BY_CONDA
             )
         )
@@ -103,18 +104,18 @@ def right_python():
                 return str(python)
     raise Stop(
         "this is Python {}, and the lab needs 3.11, 3.12 or 3.13. {}, then type the same again. "
-        "Where you cannot, {}".format(platform.python_version(), how_to_get_python(), BY_CONDA)
+        "If you cannot, {}".format(platform.python_version(), how_to_get_python(), BY_CONDA)
     )
 
 
 def works(python):
-    """Whether it runs; pyenv lays programs into the path that only say that they do not."""
+    """Whether a Python runs; pyenv puts programs on the path that only print an error."""
     words = [str(python), "-c", "import ssl, venv"]
     return subprocess.call(words, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL) == 0
 
 
 def how_to_get_python():
-    """A sentence for this system."""
+    """How to get a Python on this system, as a sentence."""
     if sys.platform == "darwin":
         return "Get 3.13 from python.org (the macOS installer), or type: brew install python@3.13"
     if shutil.which("apt-get"):
@@ -123,7 +124,7 @@ def how_to_get_python():
 
 
 def make(python):
-    """Make the environment anew: a half-made one is thrown away, what was fetched for it is not."""
+    """Make the environment from the beginning; only downloads are kept of an unfinished one."""
     free = shutil.disk_usage(str(HERE)).free
     if free < FREE:
         raise Stop(
@@ -131,7 +132,7 @@ def make(python):
             "make room, then type the same again".format(free / 1e9, FREE / 1e9)
         )
     if ENV.exists():
-        print("an environment that is incomplete or of another version is made again")
+        print("the environment is incomplete or of another version, so it is made again")
         shutil.rmtree(str(ENV))
     print("1 of 3: making an environment in {}".format(ENV), flush=True)
     try:
@@ -146,7 +147,7 @@ def make(python):
         )
     print("2 of 3: fetching about 300 MB", flush=True)
     install(python)
-    print("3 of 3: moving the arm, for the first time, which takes a while", flush=True)
+    print("3 of 3: moving the arm for the first time, which takes a while", flush=True)
     tidy(python)
     run(python, "-c", "import labkit as lk; lk.ready()")
     shutil.rmtree(str(CACHE), ignore_errors=True)
@@ -155,7 +156,7 @@ def make(python):
 
 
 def install(python):
-    """Let pip install the lab, and say what it fetches and how far it is."""
+    """Let pip install the lab, and print what it fetches and how far it is."""
     words = ["install", "--no-compile", "--progress-bar", "off", "--disable-pip-version-check"]
     words += ["--cache-dir", str(CACHE), "--retries", "2", "--timeout", "20"]
     words += ["--constraint", str(HERE / "constraints.txt"), wheel()]
@@ -187,7 +188,7 @@ def install(python):
 
 @contextmanager
 def ended_too(pip):
-    """Whoever stops this program stops pip too."""
+    """Stop pip too if this program is stopped."""
     try:
         yield
     except BaseException:
@@ -196,10 +197,10 @@ def ended_too(pip):
 
 
 def count_installed(total, end):
-    """Say how many packages lie in the environment, until the end."""
+    """Print how many packages are in the environment, until `end` is set."""
     before, quiet = -1, 0
     while not end.wait(2.0):
-        found = sum(1 for _ in ENV.glob("lib/python*/site-packages/*.dist-info")) - 1  # but pip
+        found = sum(1 for _ in ENV.glob("lib/python*/site-packages/*.dist-info")) - 1  # pip itself
         quiet = 0 if found != before else quiet + 1
         if quiet == 0:
             print("   {} of {} in place".format(min(found, total), total), flush=True)
@@ -209,20 +210,20 @@ def count_installed(total, end):
 
 
 def why(said):
-    """What stopped pip, in a sentence."""
+    """The reason why pip stopped, as a sentence."""
     if any(word in said for word in NO_NETWORK):
         return (
-            "the network could not be reached. Look whether a browser opens pypi.org (a network "
-            "may ask you to sign in first), then type the same again: what was fetched is kept"
+            "the network could not be reached. Check that a browser opens pypi.org (a network "
+            "may ask you to sign in first), then type the same again; the downloads are kept"
         )
     if "No space left" in said or "Errno 28" in said:
         return "the disk is full; make room, then type the same again"
     errors = [x for x in said.splitlines() if x.startswith("ERROR:")] or ["it gave no reason"]
-    return "pip stopped: {}. All that it said is in {}".format(errors[0][6:].strip(" ."), LOG)
+    return "pip stopped: {}. Its whole output is in {}".format(errors[0][6:].strip(" ."), LOG)
 
 
 def tidy(python):
-    """Drop what only compilers read, and other robots; keep one of equal libraries."""
+    """Delete files that only compilers need, other robots, and second copies of libraries."""
     for prefix in ENV.glob("lib/python*/site-packages/cmeel.prefix"):
         for folder in ("include", "lib/cmake", "share/doc"):
             shutil.rmtree(str(prefix / folder), ignore_errors=True)
@@ -244,7 +245,7 @@ def tidy(python):
 
 
 def become(words):
-    """Go on as another program; where that cannot be, wait for it."""
+    """Continue as another program; on systems where that is impossible, run it and wait."""
     words = [str(word) for word in words]
     if os.name == "posix":
         os.execv(words[0], words)
@@ -252,7 +253,7 @@ def become(words):
 
 
 def run(*words):
-    """Run a command that has something to say only when it fails."""
+    """Run a command; raise `Stop` with its output if it fails."""
     done = subprocess.run(
         [str(word) for word in words],
         stdout=subprocess.PIPE, stderr=subprocess.STDOUT, universal_newlines=True,
@@ -262,11 +263,11 @@ def run(*words):
     elif "libgomp" in done.stdout:
         raise Stop("a library is missing. Type: sudo apt-get install libgomp1, then the same again")
     else:
-        raise Stop("the lab is installed and does not run:\n" + done.stdout.strip())
+        raise Stop("the lab is installed but does not run:\n" + done.stdout.strip())
 
 
 def wheel():
-    """The lab's wheel, which lies beside this file."""
+    """The path of the lab's wheel, which is beside this file."""
     found = sorted(HERE.glob("labkit-*.whl"))
     if not found:
         raise Stop("{} holds no labkit-*.whl; unpack the whole zip again".format(HERE))
@@ -274,7 +275,7 @@ def wheel():
 
 
 def version():
-    """A name for what is to be installed and where; it changes when the instructor's zip does."""
+    """A hash of what is to be installed and where, which changes with the instructor's zip."""
     known = hashlib.sha256(str(HERE).encode())
     for path in (wheel(), str(HERE / "constraints.txt")):
         known.update(Path(path).read_bytes())
@@ -282,27 +283,27 @@ def version():
 
 
 def made():
-    """Whether all that is to be installed is."""
+    """Whether everything has been installed already."""
     return place().is_file() and place().read_text() == version()
 
 
 def place():
-    """Where it is noted."""
+    """The file that notes which version has been installed."""
     return Path(sys.prefix) / DONE.name if in_conda() else DONE
 
 
 def note_that_it_is_made():
-    """The last step: what stops before leaves an environment that is made anew."""
+    """Note that everything is installed; without the note, the next start installs it again."""
     place().write_text(version())
 
 
 def is_root():
-    """Whether Jupyter must be told that root may start it."""
+    """Whether the user is root, which Jupyter allows only with an option."""
     return hasattr(os, "geteuid") and os.geteuid() == 0
 
 
 def build_wheel(to, config_settings=None, metadata_directory=None):
-    """What pip asks for when it installs this folder or its zip: the wheel is made already."""
+    """Supply the finished wheel when pip installs this folder or its zip."""
     return shutil.copy(wheel(), to) and os.path.basename(wheel())
 
 

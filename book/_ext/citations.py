@@ -1,4 +1,4 @@
-"""Labels of the bibliography, the same as in the text: Hogan, 1985; Pham and Pham, 2018."""
+"""Labels of the bibliography, with the format of citations: Hogan, 1985; Pham and Pham, 2018."""
 
 from __future__ import annotations
 
@@ -13,10 +13,10 @@ NAME = "author-year"
 
 
 class AuthorYear(BaseLabelStyle):
-    """Last names and year."""
+    """Labels made of the last names and the year."""
 
     def format_labels(self, entries: Iterable[Any]) -> Iterator[str]:
-        """One label for each entry."""
+        """Return a label for each entry."""
         for entry in entries:
             names = [" ".join(x.render_as("text") for x in person.rich_last_names)
                      for person in entry.persons["author"]]  # fmt: skip
@@ -25,12 +25,12 @@ class AuthorYear(BaseLabelStyle):
 
 
 class Labelled(Style):
-    """The plain style with these labels."""
+    """The plain bibliography style with these labels."""
 
     default_label_style = NAME
 
 
 def register() -> None:
-    """Make the style known under its name."""
+    """Register the style under its name."""
     register_plugin("pybtex.style.labels", NAME, AuthorYear)
     register_plugin("pybtex.style.formatting", NAME, Labelled)

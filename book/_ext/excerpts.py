@@ -1,6 +1,6 @@
-"""The plain text of every page in one script, from which the search shows what stands around a hit.
+"""The plain text of every page in one script, from which the search shows the text around a hit.
 
-The theme would fetch each page that it found, which a browser forbids to a page from the disk.
+The theme would fetch each page that it found, but browsers forbid that to pages opened from disk.
 """
 
 from __future__ import annotations
@@ -16,7 +16,7 @@ from bs4 import BeautifulSoup, NavigableString, Tag
 NAME = "searchtexts.js"
 OPENING = "window.labTexts = "
 Part = tuple[str, str, str]
-"""An id of the page, the heading or name that has it, and the text up to the next one."""
+"""An id in the page, the heading or name that has this id, and the text up to the next id."""
 HEADINGS = ["h1", "h2", "h3", "h4"]
 UNREAD = ", ".join([
     "script, style, svg, button, details, video, .headerlink, .lab-quiz, .lk-embed, div.math",
@@ -32,11 +32,11 @@ SIGNS = {"lVert": "‖", "rVert": "‖", "times": "×", "cdot": "·", "le": "≤
 
 
 def update(folder: Path, written: Mapping[str, list[Part]]) -> None:
-    """Write the texts of the built book.
+    """Write the texts of all pages of the built book.
 
     Args:
-        folder: Of the built book.
-        written: Of the pages written in this build, by name; the others keep what they had.
+        folder: The folder of the built book.
+        written: The parts of each page written in this build; other pages keep their old ones.
     """
     texts = {n: parts for n, parts in kept(folder).items() if (folder / f"{n}.html").exists()}
     texts |= written
@@ -45,7 +45,7 @@ def update(folder: Path, written: Mapping[str, list[Part]]) -> None:
 
 
 def kept(folder: Path) -> dict[str, list[Part]]:
-    """What the last build wrote, if there was one."""
+    """The texts that the last build wrote; empty if there was no build."""
     path = folder / NAME
     if not path.exists():
         return {}
@@ -54,7 +54,7 @@ def kept(folder: Path) -> dict[str, list[Part]]:
 
 
 def parts_of(page: BeautifulSoup) -> list[Part]:
-    """A page cut at its headings and at the names that it defines."""
+    """The parts of a page, which begin at its headings and at the names that it defines."""
     article = page.select_one("article.bd-article")
     if article is None:
         return []
@@ -70,7 +70,7 @@ def parts_of(page: BeautifulSoup) -> list[Part]:
 
 
 def _pieces(element: Tag, unread: set[int]) -> Iterator[Tag | str]:
-    """Text in its order, and each element at which a part begins."""
+    """The pieces of text in their order, and each element at which a part begins."""
     if id(element) in unread:
         return
     if element.get("id") and (element.name == "dt" or _heading(element)):
@@ -88,7 +88,7 @@ def _pieces(element: Tag, unread: set[int]) -> Iterator[Tag | str]:
 
 
 def _heading(element: Tag) -> Tag | None:
-    """The heading that a section begins with; exercises are sections without one."""
+    """The heading at the beginning of a section; an exercise is a section without a heading."""
     found = element.find(HEADINGS, recursive=False) if element.name == "section" else None
     return found if isinstance(found, Tag) else None
 
@@ -99,7 +99,7 @@ def _title(element: Tag) -> str:
 
 
 def spoken(formula: str) -> str:
-    """A formula of a sentence in plain letters, as far as they go: `\\dot q_d` becomes q̇_d."""
+    """A formula in plain letters, as far as possible: `\\dot q_d` becomes q̇_d."""
     text = re.sub(r"^\\\(|\\\)$|\\(left|right|mathrm|text|operatorname)\b", "", formula)
     text = re.sub(r"\\[dt]?frac\s*(\{[^{}]*\}|\w)\s*(\{[^{}]*\}|\w)", r"\1/\2", text)
     text = re.sub(r"\\(d?dot|hat|bar)(?![A-Za-z])\s*(\{\\?\w+\}|\\[A-Za-z]+|\w)", _accented, text)
@@ -113,7 +113,7 @@ def _accented(letter: re.Match[str]) -> str:
 
 
 def _sign(command: re.Match[str]) -> str:
-    """A TeX command as a letter or a sign; an unknown one as its name."""
+    """A TeX command as a letter or a sign; an unknown command becomes its name."""
     name = command[1]
     kind = "CAPITAL" if name[0].isupper() else "SMALL"
     try:

@@ -1,6 +1,6 @@
-"""The book's own Sphinx extension: settings of the build tool, and pages that everyone can use.
+"""The book's own Sphinx extension, which sets up the build and makes the pages accessible.
 
-What the theme and the extensions leave out (axe-core names each) is put right in the finished HTML.
+The theme and the extensions leave some faults, which axe-core finds; `repair` corrects the HTML.
 """
 
 from __future__ import annotations
@@ -20,7 +20,7 @@ from sphinx.util.nodes import make_refnode
 
 
 def settings(app: Sphinx, config: Any) -> None:
-    """Where `book/_tools/build_book.py` keeps the pages that it ran."""
+    """Set the folder in which `book/_tools/build_book.py` keeps the pages that were run."""
     if cache := os.environ.get("LAB_BOOK_CACHE"):
         config.nb_execution_cache_path = cache
 
@@ -28,7 +28,7 @@ def settings(app: Sphinx, config: Any) -> None:
 def told_already(
     app: Sphinx, what: str, name: str, member: Any, skip: bool, options: Any
 ) -> bool | None:
-    """Fields of a named tuple: the class describes them, Python's own words say nothing."""
+    """Skip fields of a named tuple: the class describes them, and Python's text says nothing."""
     return True if str(member.__doc__).startswith("Alias for field number") else None
 
 
@@ -36,20 +36,20 @@ COLON = "\N{RATIO}"
 
 
 def hide_colon(app: Sphinx, what: str, name: str, it: Any, options: Any, lines: list[str]) -> None:
-    """A sentence with a colon is a sentence: napoleon would take what stands before for a type."""
+    """Hide a colon in a first sentence, because napoleon takes the words before it for a type."""
     if what in ("attribute", "data", "property") and lines:
         lines[0] = lines[0].replace(": ", f"{COLON} ")
 
 
 def show_colon(app: Sphinx, what: str, name: str, it: Any, options: Any, lines: list[str]) -> None:
-    """The colon again, after napoleon."""
+    """Restore the hidden colon when napoleon has finished."""
     lines[:] = [line.replace(f"{COLON} ", ": ") for line in lines]
 
 
 def without_filler(
     app: Sphinx, what: str, name: str, it: Any, options: Any, signature: str, returned: str
 ) -> tuple[str, str] | None:
-    """What a protocol takes stands in its `__call__`; Python's own signature says nothing."""
+    """Leave out a protocol's general signature; its `__call__` shows the arguments."""
     return ("", returned) if signature == "(*args, **kwargs)" else None
 
 
@@ -57,9 +57,9 @@ CLASS = re.compile(r"([a-z]\w*\.)*[A-Z][A-Za-z]+(\.\w+)?$")
 
 
 def entry_elsewhere(app: Sphinx, env: Any, node: Element, shown: Element) -> Element | None:
-    """The one class of another module that has a name, or that describes it as its attribute.
+    """Return a link to the only class or attribute of another module that has the name.
 
-    The name of a function may also be that of an argument, so it leads nowhere.
+    The name of a function gets no link, because it may also be the name of an argument.
     """
     if node.get("reftype") != "obj" or not CLASS.match(node["reftarget"]):
         return None
@@ -77,9 +77,10 @@ def entry_elsewhere(app: Sphinx, env: Any, node: Element, shown: Element) -> Ele
 def without_unused(
     app: Sphinx, page: str, template: str, context: dict[str, Any], tree: Any
 ) -> None:
-    """Jupyter Book loads Thebe's starter even where no kernel is offered; it fails without one.
+    """Remove scripts and styles that the book cannot use.
 
-    The theme's marks of what was searched for break formulas; `search.js` has its own.
+    Jupyter Book loads Thebe even if the book has no kernel for it, and then Thebe fails.  The
+    theme marks the words of a search, which breaks formulas; `search.js` marks them itself.
     """
     context["script_files"] = [
         s
@@ -100,7 +101,7 @@ def without_unused(
 
 
 def repair(app: Sphinx, problem: Exception | None) -> None:
-    """Mend every finished page that was written in this build."""
+    """Correct every finished page that was written in this build."""
     if problem or app.builder.format != "html":
         return
     texts = {}
@@ -109,19 +110,19 @@ def repair(app: Sphinx, problem: Exception | None) -> None:
         if "_static" in path.parts:
             continue
         text = path.read_text(encoding="utf-8")
-        if "<!-- mended -->" in text:
+        if "<!-- corrected -->" in text:
             continue
         page = BeautifulSoup(text, "html.parser")
         name = path.relative_to(app.outdir).with_suffix("").as_posix()
         if name in app.env.found_docs:
             texts[name] = excerpts.parts_of(page)
-        mend(page, notebooks)
-        path.write_text(f"{page}\n<!-- mended -->\n", encoding="utf-8")
+        correct_page(page, notebooks)
+        path.write_text(f"{page}\n<!-- corrected -->\n", encoding="utf-8")
     excerpts.update(Path(app.outdir), texts)
 
 
-def mend(page: BeautifulSoup, notebooks: Sequence[str] = ()) -> None:
-    """Give one page the names, roles and landmarks that assistive technology needs."""
+def correct_page(page: BeautifulSoup, notebooks: Sequence[str] = ()) -> None:
+    """Give a page the names, roles and landmarks that assistive technology needs."""
     _exercises(page, notebooks)
     for rule in (
         _punctuation,
@@ -141,7 +142,7 @@ def mend(page: BeautifulSoup, notebooks: Sequence[str] = ()) -> None:
 
 
 def _exercises(page: BeautifulSoup, notebooks: Sequence[str]) -> None:
-    """A link "05, impedance" to the list of notebooks goes on to that notebook, if it is there."""
+    """Let a link such as "05, impedance" lead to that notebook, if the book contains it."""
     for link in page.select('a[href$="generated/notebooks.html"]'):
         number = link.get_text(strip=True)[:2]
         for name in notebooks:
@@ -153,7 +154,7 @@ CLOSING = re.compile(r"[.,;:!?)\]\N{RIGHT DOUBLE QUOTATION MARK}]+")
 
 
 def _punctuation(page: BeautifulSoup) -> None:
-    """A line never begins with the comma that follows a formula: the two stay together."""
+    """Keep a formula and the punctuation after it on one line."""
     for formula in page.select("span.math"):
         after = formula.next_sibling
         if type(after) is NavigableString and (found := CLOSING.match(after)):
@@ -162,14 +163,14 @@ def _punctuation(page: BeautifulSoup) -> None:
 
 
 def _options(page: BeautifulSoup) -> None:
-    """A line never breaks between the two dashes of an option."""
+    """Prevent a line break between the two dashes of an option."""
     for word in page.select("code .pre"):
         if re.fullmatch(r"--[\w-]{1,30}", word.get_text()):
             word["class"] = ["pre", "lab-keep"]
 
 
 def _values(page: BeautifulSoup) -> None:
-    """An object's address, or a path of the machine that built the book, tells a reader nothing."""
+    """Remove values that mean nothing to a reader, such as an object's address or a local path."""
     for value in page.select("dt.sig > em.property"):
         if re.search(r"<class |Path\(|0x[0-9a-f]{6}|np\.float64", value.get_text()):
             value.decompose()
@@ -180,7 +181,7 @@ def _values(page: BeautifulSoup) -> None:
 
 
 def _names(page: BeautifulSoup) -> None:
-    """Buttons and fields that show only an icon get a name; one with words, the same words."""
+    """Name buttons and fields that show only an icon; name a button with words by its words."""
     for icon in page.select(".theme-switch-button i[title]"):
         del icon["title"]
     for button in page.select("button.search-button-field"):
@@ -203,7 +204,7 @@ def _names(page: BeautifulSoup) -> None:
 
 
 def _citations(page: BeautifulSoup) -> None:
-    """docutils uses roles that ARIA has withdrawn, and a list without items."""
+    """Remove docutils' roles that ARIA has withdrawn, and the role of lists without items."""
     for element in page.select('[role="doc-biblioentry"], [role="doc-noteref"]'):
         del element["role"]
     for element in page.select('div[role="list"]'):
@@ -211,6 +212,7 @@ def _citations(page: BeautifulSoup) -> None:
 
 
 def _landmarks(page: BeautifulSoup) -> None:
+    """Name the two sidebars."""
     for query, name in {
         "#pst-primary-sidebar, .bd-sidebar-primary": "Chapters",
         "#pst-secondary-sidebar, .bd-sidebar-secondary": "Contents of this page",
@@ -224,7 +226,7 @@ def _landmarks(page: BeautifulSoup) -> None:
 
 
 def _tables(page: BeautifulSoup) -> None:
-    """A wide table scrolls in a box of its own, which the keyboard must reach."""
+    """Let the keyboard reach the boxes in which wide tables scroll."""
     for box in page.select("div.pst-scrollable-table-container"):
         box["tabindex"] = "0"
         box["role"] = "group"
@@ -235,27 +237,27 @@ def _tables(page: BeautifulSoup) -> None:
 
 
 def _scrollers(page: BeautifulSoup) -> None:
-    """Code and formulas that are wider than a phone scroll too."""
+    """Let the keyboard reach code and formulas, which scroll if they are wider than the screen."""
     for box in page.select("div.highlight pre, div.math"):
         if not box.get("tabindex"):
             box["tabindex"] = "0"
 
 
 def _hidden_inputs(page: BeautifulSoup) -> None:
-    """The theme's sidebar switches are check boxes that are never shown."""
+    """Hide the theme's sidebar switches, which are invisible check boxes, from screen readers."""
     for box in page.select("input.sidebar-toggle"):
         box["aria-hidden"] = "true"
         box["tabindex"] = "-1"
 
 
 def _repeated_ids(page: BeautifulSoup) -> None:
-    """Every exercise's box is given the same id, which nothing uses."""
+    """Remove the id that all boxes of exercises share and that nothing uses."""
     for box in page.select("#exercise-content, #solution-content, #proof-content"):
         del box["id"]
 
 
 def _preview(page: BeautifulSoup) -> None:
-    """What a chat or a forum shows of a link: the title, the first paragraph and the arm."""
+    """Add what a chat or a forum shows for a link: title, first paragraph and picture."""
     first = page.select_one("article.bd-article section > p")
     icon = page.select_one('link[rel*="icon"]')
     if not page.head or not first or not icon:
@@ -271,7 +273,7 @@ def _preview(page: BeautifulSoup) -> None:
 
 
 def _search_tools(page: BeautifulSoup) -> None:
-    """The theme loads the search's index on every page; only the one that searches needs it."""
+    """Remove the search index from each page but the search page, which alone needs it."""
     if not page.select_one("#search-results"):
         for script in page.select('script[src*="search"], script[src*="language_data"]'):
             if "search.js" not in script["src"]:
@@ -279,7 +281,7 @@ def _search_tools(page: BeautifulSoup) -> None:
 
 
 def setup(app: Sphinx) -> dict[str, Any]:
-    """Register with Sphinx."""
+    """Register the extension with Sphinx."""
     citations.register()
     app.connect("config-inited", settings, priority=100)
     app.connect("autodoc-skip-member", told_already)

@@ -1,6 +1,6 @@
-"""The directive ``live-arm``: a live panel in a page, loaded on a click.
+"""The directive ``live-arm``, which puts a live panel into a page; a click loads it.
 
-Its argument is the kind of panel, its options are settings, its text is the caption::
+Its argument is the kind of panel, its options are the settings, and its text is the caption::
 
     :::{live-arm} open
     :plant: ideal
@@ -9,8 +9,8 @@ Its argument is the kind of panel, its options are settings, its text is the cap
     Drag the arm.
     :::
 
-Before the click the figure shows a still of the panel, which `make film` photographs: one for each
-page, named after it.
+Before the click the figure shows a still picture of the panel.  `make film` takes one for each page
+and names it after the page.
 """
 
 from __future__ import annotations
@@ -32,12 +32,12 @@ WITHOUT = "In print, or without JavaScript, the recorded runs and the text show 
 
 
 def names(text: str) -> list[str]:
-    """Names with commas between them."""
+    """Return the names in a text that separates them by commas."""
     return [name.strip() for name in text.split(",")]
 
 
 class LiveArm(SphinxDirective):
-    """A live panel."""
+    """The directive that puts a live panel into a page."""
 
     required_arguments = 1
     has_content = True
@@ -52,7 +52,7 @@ class LiveArm(SphinxDirective):
     }
 
     def run(self) -> list[nodes.Node]:
-        """The figure, and the script that makes its button work."""
+        """Return the figure and the script that makes its button work."""
         piece = directives.choice(self.arguments[0], PIECES)
         own = {k: v for k, v in self.options.items() if k not in SETTINGS}
         settings = {k: v for k, v in self.options.items() if k in SETTINGS}
@@ -61,7 +61,7 @@ class LiveArm(SphinxDirective):
         static = "../" * self.env.docname.count("/") + "_static/"
         still = self.env.docname.replace("/", "_") + ".webp"
         if not (STILLS / still).exists():
-            raise self.error(f"static/stills has no {still}: build the book once, then: make film")
+            raise self.error(f"static/stills has no {still}; build the book, then run `make film`")
         html = (
             f'<figure class="lk-live" role="group" aria-label="{escape(title)}">'
             f'<img class="lk-still dark-light" src="{static}stills/{still}" width="1360" '
@@ -76,6 +76,6 @@ class LiveArm(SphinxDirective):
 
 
 def setup(app: Sphinx) -> dict[str, Any]:
-    """Register with Sphinx."""
+    """Register the directive with Sphinx."""
     app.add_directive("live-arm", LiveArm)
     return {"parallel_read_safe": True, "parallel_write_safe": True}

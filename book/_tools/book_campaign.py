@@ -1,4 +1,4 @@
-"""What the chapter "Comparison" is computed from: a campaign of this code, run now or kept."""
+"""The data of the chapter "Comparison": a campaign of this code, either kept or run now."""
 
 from __future__ import annotations
 
@@ -13,18 +13,18 @@ from book_pages import CACHE, CAMPAIGN, ROOT, key_of
 from labkit import recordings
 from solutions.study.grid import pick, work_through
 
-JOBS = 2  # the rows are the same with any number
+JOBS = 2  # the rows do not depend on the number of jobs
 
 
 def compare(progress: Callable[[str], None]) -> None:
     """Put the campaign where the pages read it.
 
-    Taken is what `make campaign` left in build/, if this code reproduces it; else, task by task,
-    the rows that come with labkit where a sample of them comes out the same now, and two seeds run
-    here where it does not.
+    If this code reproduces the result of `make campaign` in build/, that result is copied.
+    Otherwise each task is looked at separately: if this code reproduces a sample of the task's rows
+    in labkit's data, those rows are used; if not, the task is run here with two seeds.
 
     Args:
-        progress: Told in a few words what is done.
+        progress: Called with a few words about what is being done.
     """
     key, stamp = key_of("solutions.study.campaign"), CACHE / "campaign.key"
     if CAMPAIGN.exists() and stamp.exists() and stamp.read_text() == key:
@@ -43,7 +43,7 @@ def _kept_or_made(progress: Callable[[str], None]) -> dict[str, Any]:
     from solutions.study import campaign
 
     kept = [row | {"failed": None} for row in recordings.campaign()]
-    progress("comparing the runs that are kept with runs of now")
+    progress("comparing the kept runs with new ones")
     changed = {row["task"] for row in _differ(list(_sample(kept)))}
     changed |= set(campaign.TASKS) - {row["task"] for row in kept}
     rows = [row for row in kept if row["task"] not in changed]
@@ -55,7 +55,7 @@ def _kept_or_made(progress: Callable[[str], None]) -> dict[str, Any]:
 
 
 def _sample(rows: list[dict[str, Any]]) -> Iterator[dict[str, Any]]:
-    """Of each controller one run on a path, and one run on the tag, on Baxter's arm."""
+    """One run of each controller on a path, and one run on the tag, on Baxter's arm."""
     from solutions.study.campaign import CONTROLLERS, TASKS
 
     paths = [task for task in TASKS if task != "tag"]
@@ -68,11 +68,11 @@ def _sample(rows: list[dict[str, Any]]) -> Iterator[dict[str, Any]]:
 
 
 def _differ(rows: list[dict[str, Any]]) -> list[dict[str, Any]]:
-    """The rows that this code does not give again."""
+    """The rows that this code does not reproduce."""
     from solutions.study.campaign import numbers
 
     names = ("controller", "task", "plant", "seed")
-    if not all(row.keys() >= set(names) for row in rows):  # an older campaign named them otherwise
+    if not all(row.keys() >= set(names) for row in rows):  # an older campaign has other names
         return rows
     again = work_through(numbers, [{x: row[x] for x in names} for row in rows], jobs=JOBS)
     return [row for row, new in zip(rows, again, strict=True) if not _same(row, new)]
@@ -86,7 +86,7 @@ def _same(row: dict[str, Any], new: dict[str, Any]) -> bool:
 
 
 def _judged(rows: list[dict[str, Any]]) -> dict[str, Any]:
-    """Rows and what they say of the report's claims; the few runs about gains are made here."""
+    """The rows, and verdicts on the report's claims from them and a few new runs about gains."""
     from solutions.study import campaign, claims
 
     seeds = len({row["seed"] for row in rows})

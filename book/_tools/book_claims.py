@@ -1,9 +1,10 @@
-"""Which sentences of the book rest on what: ``python book/_tools/book_claims.py [--read] [PAGE]``.
+"""Find the sentences of the book that its data support, and list the others.
 
-A sentence counts if it shows a number with a unit or compares.  It is *bound* if it shows a number
-that `figures.claims.told` was given, or holds the words of a `claim`, and if these words hold every
-number that was typed into it; it is *caught* if wrong data of every kind stop the build.  What is
-left is listed: those sentences nobody checks.
+Usage: ``python book/_tools/book_claims.py [--read] [PAGE]``.  A sentence counts if it compares or
+shows a number with a unit.  It is *bound* if it shows a number that was passed to
+`figures.claims.told`, or contains the words of a `claim`, and if these words contain every number
+that was typed into the sentence.  It is *caught* if wrong data of every kind stop the build.  The
+list of the remaining sentences shows what nobody checks.
 """
 
 from __future__ import annotations
@@ -47,7 +48,7 @@ _CELL = re.compile(r"^```\{code-cell\}\n(?::[^\n]*\n)*(.*?)^```", re.M | re.S)
 
 
 def sentences(text: str) -> Iterator[str]:
-    """The sentences of a page that show a number with a unit, or compare."""
+    """The sentences of a page that compare or show a number with a unit."""
     text = re.sub(r"\A---\n.*?\n---\n", "", text, flags=re.S)
     text = re.sub(r"^\$\$[^\n]+\$\$[^\n]*$", "\n\n", text, flags=re.M)  # a formula of one line
     text = re.sub(r"^(```+|:::+|\$\$).*?^\1[^\n]*$", "\n\n", text, flags=re.M | re.S)
@@ -60,7 +61,7 @@ def sentences(text: str) -> Iterator[str]:
 
 
 def run(page: str, *, reading: bool) -> None:
-    """Run a page's cells, in a process of its own."""
+    """Run the cells of a page in a separate process."""
     code = "\n".join(_CELL.findall((BOOK / f"{page}.md").read_text()))
     environment = os.environ | {
         "PYTHONPATH": os.pathsep.join(map(str, (ROOT, BOOK, os.environ.get("PYTHONPATH", "")))),
@@ -70,20 +71,20 @@ def run(page: str, *, reading: bool) -> None:
 
 
 def noted() -> Mapping[str, Any]:
-    """What the pages told, by name; the last time counts."""
+    """What the pages reported, by name; only the last report of a name counts."""
     files = sorted(FOUND.glob("*.jsonl"), key=lambda p: p.stat().st_mtime)
     lines = (json.loads(line) for path in files for line in path.read_text().splitlines())
     return {line["name"]: line for line in lines}
 
 
 def bound(sentence: str, notes: Mapping[str, Any]) -> list[str]:
-    """The names of what a sentence rests on."""
+    """The names of the numbers and claims on which a sentence rests."""
     claims = [name for name in notes if " " in name and name in plain(sentence)]
     return [*_GLUE.findall(sentence), *claims]
 
 
 def loose(sentence: str, names: Iterable[str]) -> list[str]:
-    """The numbers typed into a sentence that stand outside the words of its claims."""
+    """The numbers typed into a sentence that are not within the words of its claims."""
     text = plain(sentence)
     claims = [re.finditer(re.escape(name), text) for name in names if " " in name]
     held = {k for found in claims for one in found for k in range(*one.span())}
@@ -92,12 +93,12 @@ def loose(sentence: str, names: Iterable[str]) -> list[str]:
 
 
 def plain(sentence: str) -> str:
-    """A sentence without its marks of emphasis."""
+    """A sentence without the marks for emphasis."""
     return re.sub(r"[*`]", "", sentence)
 
 
 def count(notes: Mapping[str, Any]) -> dict[str, Any]:
-    """Sentences, those caught, and the rest by page."""
+    """Count all sentences and the caught ones, and list the rest by page."""
     total, caught, left = 0, 0, {}
     for page in PAGES:
         for sentence in sentences((BOOK / f"{page}.md").read_text()):
@@ -113,14 +114,14 @@ def count(notes: Mapping[str, Any]) -> dict[str, Any]:
 
 
 def main() -> None:
-    """Run pages, count sentences, keep what was told."""
+    """Run pages, count sentences and keep what the pages report."""
     parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("--read", action="store_true", help="keep what the pages tell now")
-    parser.add_argument("--count", action="store_true", help="run nothing, count alone")
-    parser.add_argument("pages", nargs="*", metavar="PAGE", help="as chapters/velocity; all")
+    parser.add_argument("--read", action="store_true", help="keep what the pages report now")
+    parser.add_argument("--count", action="store_true", help="only count; do not run the pages")
+    parser.add_argument("pages", nargs="*", metavar="PAGE", help="chapters/velocity, for example")
     chosen = parser.parse_args()
     if not chosen.count and not chosen.pages:
-        shutil.rmtree(FOUND, ignore_errors=True)  # what an earlier version of the pages told
+        shutil.rmtree(FOUND, ignore_errors=True)  # reports of older versions of the pages
     for page in () if chosen.count else chosen.pages or PAGES:
         run(page, reading=chosen.read)
     notes, before = noted(), kept()

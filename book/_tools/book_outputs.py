@@ -1,4 +1,4 @@
-"""The built book as one file to hand out."""
+"""Packing the built book into one file to hand out."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from book_pages import CACHE, HTML, ROOT
 
 
 def pack() -> Path:
-    """The folder to hand out, as one zip that opens by double click on index.html."""
+    """Pack the built book into one zip; its readers double-click on index.html."""
     target = ROOT / "dist/book"
     target.parent.mkdir(exist_ok=True)
     stage = CACHE / "stage"

@@ -1,4 +1,4 @@
-"""The book's pages: their order, and what each one is computed from."""
+"""The book's pages: their order, and the code and data from which each page is computed."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ import yaml
 
 ROOT = Path(__file__).resolve().parents[2]
 BOOK = ROOT / "book"
-sys.path[:0] = [str(ROOT), str(BOOK)]  # this checkout, wherever another one is installed
+sys.path[:0] = [str(ROOT), str(BOOK)]  # this checkout, even if another is installed
 HTML = BOOK / "_build/html"
 CACHE = ROOT / "build/book"
 CAMPAIGN = CACHE / "campaign.json"
@@ -37,7 +37,7 @@ FIGURES = re.compile(r"^from (figures(?:\.\w+)?) import ([\w, ]+)", re.M)
 
 
 def in_order() -> list[str]:
-    """The names of the pages as the table of contents has them."""
+    """The names of the pages, in the order of the table of contents."""
     toc = yaml.safe_load((BOOK / "_toc.yml").read_text())
 
     def below(entries: list[dict]) -> Iterator[str]:
@@ -53,7 +53,7 @@ def in_order() -> list[str]:
 
 
 def page_keys() -> dict[str, str]:
-    """For each page that computes something, one hash of all the code that it uses."""
+    """A hash of all the code that a page uses, for each page that computes something."""
     keys = {}
     for name in in_order():
         page = BOOK / f"{name}.md"
@@ -74,7 +74,7 @@ def page_keys() -> dict[str, str]:
 
 
 def forget_stale(folder: Path, keys: dict[str, str]) -> None:
-    """Drop the kept outputs of pages whose code has changed since."""
+    """Delete the kept outputs of pages whose code has changed since they were run."""
     from jupyter_cache import get_cache
 
     known = folder / "keys.json"
@@ -89,7 +89,7 @@ def forget_stale(folder: Path, keys: dict[str, str]) -> None:
 
 
 def key_of(module: str) -> str:
-    """One hash of a module and of all modules of ours that it imports, near and far."""
+    """A hash of a module and of all our modules that it imports, directly or indirectly."""
     digest = hashlib.sha256()
     for path in [*(ROOT / name for name in DATA), *sorted(imports(module))]:
         digest.update(path.read_bytes())
@@ -99,7 +99,7 @@ def key_of(module: str) -> str:
 
 
 def imports(module: str) -> set[Path]:
-    """The files behind a module, found without importing anything."""
+    """The files of a module and of its imports, found without importing anything."""
     seen: set[Path] = set()
     todo = [module]
     while todo:
@@ -116,7 +116,7 @@ def imports(module: str) -> set[Path]:
 
 
 def _named(path: Path, package: str) -> Iterator[str]:
-    """What a file imports, by full name; imports for the type checker alone are left out."""
+    """The full names of a file's imports, without those for the type checker only."""
     nodes: list[ast.AST] = [ast.parse(path.read_text())]
     for node in nodes:
         if isinstance(node, ast.If) and getattr(node.test, "id", "") == "TYPE_CHECKING":

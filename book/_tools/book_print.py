@@ -1,7 +1,7 @@
-"""The built book as one document on paper: cover, contents with page numbers, every chapter.
+"""Printing the built book as one document: cover, contents with page numbers, every chapter.
 
-The pages are put one after another, what lives only on screen is replaced by its picture, links
-lead to the chapter in the same document, and Chromium prints it.
+The pages follow one another, a picture replaces what works only on screen, links lead to the
+chapter in the same document, and Chromium prints the document.
 """
 
 from __future__ import annotations
@@ -26,7 +26,7 @@ PRINTING = (
     "--allow-file-access-from-files", "--no-pdf-header-footer", "--virtual-time-budget=60000",
 )  # fmt: skip
 INNER = ("generated/notebooks/", "gallery/", "reference/")
-"""Pages that the contents set in, below the one before them."""
+"""Pages that are indented in the contents, because they belong to the page before them."""
 
 
 def print_pdf(
@@ -37,7 +37,7 @@ def print_pdf(
     """Print the built book.
 
     Args:
-        progress: Told in a few words what is done.
+        progress: Called with a few words about what is being done.
         pages: Names of the pages to print; None means all of them in order.
         target: The file to write.
 
@@ -45,7 +45,7 @@ def print_pdf(
         The file.
 
     Raises:
-        SystemExit: If there is no Chromium.
+        SystemExit: There is no Chromium.
     """
     from pypdf import PdfReader, PdfWriter
 
@@ -81,7 +81,7 @@ def print_pdf(
 
 
 def document(pages: Sequence[str]) -> BeautifulSoup:
-    """The pages of the built book, by name, as one page."""
+    """One page made of the named pages of the built book."""
     index = BeautifulSoup((HTML / "index.html").read_text(encoding="utf-8"), "html.parser")
     whole = BeautifulSoup(
         '<!doctype html><html lang="en" data-theme="light" data-mode="light"><head>'
@@ -109,7 +109,7 @@ def document(pages: Sequence[str]) -> BeautifulSoup:
 
 
 def _chapter(page: str, pages: set[str]) -> Tag:
-    """The text of one page, made fit for paper and for standing among the others."""
+    """The text of one page, prepared for paper and for a document with the other pages."""
     path = HTML / f"{page}.html"
     text = BeautifulSoup(path.read_text(encoding="utf-8"), "html.parser")
     article = text.select_one("article.bd-article")
@@ -154,7 +154,7 @@ def _chapter(page: str, pages: set[str]) -> Tag:
 
 
 def _join(article: Tag, page: str, path: Path, pages: set[str]) -> None:
-    """Ids that differ from page to page, and links that lead to them."""
+    """Make the ids of each page unique in the document, and let the links lead to them."""
     for element in article.select("[id]"):
         element["id"] = f"{_place(page)}--{element['id']}"
     for element in article.select("[aria-labelledby]"):
@@ -185,13 +185,13 @@ def _cover(title: str) -> Tag:
         "<p>Trajectory tracking with one arm of a simulated Baxter</p>"
         f'<img src="{picture}" alt="Baxter, a robot with two red arms">'
         f"<p>labkit {version('labkit')}, printed on {date.today():%-d %B %Y}</p>"
-        "<p>What moves on screen stands here as a picture: replays, demos, the explorer of gains, "
+        "<p>Pictures here replace what moves on screen: replays, demos, the explorer of gains, "
         "films and quizzes are in the folder of the book, index.html.</p></div>"
     )
 
 
 def _contents(chapters: list[tuple[str, Tag]]) -> Tag:
-    """A line for each page; `_number` fills the numbers in."""
+    """The contents, with a line for each page; `_number` adds the page numbers."""
     lines = []
     for page, chapter in chapters[1:]:
         title = chapter.select_one("h1")

@@ -1,8 +1,8 @@
 """Build the book: `python book/_tools/build_book.py`, or `make book`.
 
-Makes what the pages need (viewer, notation, the students' notebooks, recorded runs, the campaign),
-then runs Jupyter Book with warnings as errors.  What is computed is kept until the code that
-computes it changes.
+This makes what the pages need (viewer, notation, the students' notebooks, recorded runs, the
+campaign), then runs Jupyter Book with warnings as errors.  Computed results are kept until the
+code that computes them changes.
 """
 
 from __future__ import annotations
@@ -32,11 +32,11 @@ MADE = BOOK / "generated"
 
 
 def main(arguments: list[str] | None = None) -> int:
-    """Run the command line; returns the exit code."""
+    """Run the command line and return the exit code."""
     parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("--fresh", action="store_true", help="forget what was built before")
+    parser.add_argument("--fresh", action="store_true", help="delete what was built before")
     parser.add_argument("--zip", action="store_true", help="also make dist/book.zip to hand out")
-    parser.add_argument("--pdf", action="store_true", help="also print it to dist/book.pdf")
+    parser.add_argument("--pdf", action="store_true", help="also print the book to dist/book.pdf")
     chosen = parser.parse_args(arguments)
     began = time.monotonic()
     if chosen.fresh:
@@ -49,7 +49,7 @@ def main(arguments: list[str] | None = None) -> int:
         return code
     size = sum(p.stat().st_size for p in HTML.rglob("*") if p.is_file()) / 1e6
     took = time.monotonic() - began
-    print(f"book/_build/html/index.html ({size:.1f} MB, {took:.0f} s): open it by double click")
+    print(f"book/_build/html/index.html ({size:.1f} MB, {took:.0f} s): double-click to open it")
     if chosen.zip:
         made = pack()
         print(f"{made.relative_to(ROOT)} ({made.stat().st_size / 1e6:.1f} MB): to hand out")
@@ -59,7 +59,7 @@ def main(arguments: list[str] | None = None) -> int:
 
 
 def prepare() -> None:
-    """Make the files that stand in no repository: viewer, notation, notebooks."""
+    """Make the files that are not in the repository: viewer, notation, notebooks."""
     from figures.embed import shared_files
 
     for name, path in shared_files().items():
@@ -73,7 +73,7 @@ def prepare() -> None:
 
 
 def _live(bundle: Path, folder: Path) -> None:
-    """The live arm's scripts; MuJoCo's WebAssembly becomes one, since file:// cannot fetch."""
+    """Write the live arm's scripts; MuJoCo's WebAssembly becomes one, for pages on file://."""
     for path in bundle.iterdir():
         if path.suffix != ".gz":
             _copy(path, folder / path.name)
@@ -82,7 +82,7 @@ def _live(bundle: Path, folder: Path) -> None:
 
 
 def _symbols() -> str:
-    """The table of symbols in Markdown."""
+    """Return the table of symbols in Markdown."""
     from figures.notation import ERRORS, SYMBOLS
 
     rows = ["| In code | In formulas | Meaning | Shape | Unit |", "|---|---|---|---|---|"]
@@ -94,7 +94,7 @@ def _symbols() -> str:
 
 
 def _notebooks(folder: Path) -> None:
-    """The students' notebooks as pages and as downloads, whatever stands in assignments/."""
+    """Write all students' notebooks in assignments/ as pages and as downloads."""
     import nbformat
 
     found = sorted((ROOT / "assignments").glob("*/*.ipynb"))
@@ -123,9 +123,9 @@ def _notebooks(folder: Path) -> None:
 
 
 def _download(path: Path, text: str) -> str:
-    """A link that saves a file, also where the page comes from the disk.
+    """A link that saves a file, even if the page was opened from disk.
 
-    There a browser shows a neighbouring file instead of saving it, so the link brings the file.
+    From disk, a browser would show the file instead of saving it, so the link contains its data.
     """
     data = base64.b64encode(path.read_bytes()).decode()
     return (
@@ -134,7 +134,7 @@ def _download(path: Path, text: str) -> str:
 
 
 def _readable(notebook: dict, note: str) -> dict:
-    """A copy for reading: its code is shown, it has not been run, a note follows its title."""
+    """A copy for readers, which shows the code, is not run, and has a note below its title."""
     from nbformat.v4 import new_markdown_cell
 
     notebook["cells"].insert(1, new_markdown_cell(note, id="note"))
@@ -152,7 +152,7 @@ def _title(notebook: dict, stem: str) -> str:
 
 
 def record() -> None:
-    """The runs of the gain explorer, one small file each."""
+    """Record the runs of the gain explorer, each in a small file."""
     from figures import gains
 
     folder, key = BOOK / "static/runs", key_of("figures.gains")
@@ -203,10 +203,10 @@ def build() -> int:
             if re.search(r"WARNING:|ERROR|Error|Exception|ConclusionFails", line):
                 print(f"  {line}", file=sys.stderr)
         return process.returncode
-    for path in (BOOK / "static").rglob("*"):  # Sphinx leaves these where no page has changed
+    for path in (BOOK / "static").rglob("*"):  # Sphinx does not copy these if no page has changed
         if path.is_file():
             _copy(path, HTML / "_static" / path.relative_to(BOOK / "static"))
-    for path in HTML.rglob("*.map"):  # 3 MB that only the themes' own developers need
+    for path in HTML.rglob("*.map"):  # 3 MB that only developers of the themes need
         path.unlink()
     stamp.write_text(json.dumps(state))
     return 0
@@ -219,7 +219,7 @@ def _builder() -> str:
 
 
 def _shown(lines: Iterator[str]) -> Iterator[str]:
-    """Pass a log on, showing how far it is."""
+    """Pass on the lines of a log, and show the progress."""
     for raw in lines:
         line = re.sub(r"\x1b\[[0-9;]*m", "", raw.rstrip()).rsplit("\r", 1)[-1]
         yield line
@@ -230,7 +230,7 @@ def _shown(lines: Iterator[str]) -> Iterator[str]:
 
 
 def _progress(text: str, *, every: bool = True) -> None:
-    """One line that renews itself; where there is no terminal, a line now and then."""
+    """Show progress in one line that is rewritten; without a terminal, print a line at times."""
     if sys.stdout.isatty():
         print(f"\r\x1b[K{text}", end="", flush=True)
     elif every:
@@ -238,7 +238,7 @@ def _progress(text: str, *, every: bool = True) -> None:
 
 
 def _copy(source: Path, target: Path) -> None:
-    """Copy only what differs, so that unchanged pages stay built."""
+    """Copy only the files that differ, so that unchanged pages are not built again."""
     if not target.exists() or target.read_bytes() != source.read_bytes():
         target.parent.mkdir(parents=True, exist_ok=True)
         shutil.copyfile(source, target)

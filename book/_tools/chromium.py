@@ -1,4 +1,4 @@
-"""Which Chromium prints the book, tests and measures its pages: python book/_tools/chromium.py."""
+"""Find the Chromium that prints, tests and measures the book: python book/_tools/chromium.py."""
 
 from __future__ import annotations
 
@@ -10,12 +10,12 @@ NAMES = ("chromium", "google-chrome")
 
 
 def program() -> str:
-    """Path of the system's Chromium, else of the one that Playwright brought.
+    """The path of the system's Chromium, or else of the one that Playwright installed.
 
-    Ubuntu's is a snap, which neither sees our files nor can be driven, so it does not count.
+    Ubuntu's Chromium is ignored: it is a snap, which cannot see our files or be controlled.
 
     Raises:
-        SystemExit: There is none; the lines that bring one.
+        SystemExit: There is no Chromium; the message has the commands that install it.
     """
     brought = Path(os.environ.get("PLAYWRIGHT_BROWSERS_PATH", "~/.cache/ms-playwright"))
     found = [path for name in NAMES if (path := shutil.which(name)) and "/snap/" not in path]

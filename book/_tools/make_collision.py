@@ -1,9 +1,10 @@
-"""Make the simple shapes with which a planner sees Baxter: baxter_collision.json of the baseline.
+"""Make baxter_collision.json of the baseline, the simple shapes of Baxter for a planner.
 
-Rethink's own collision shapes (cylinders, spheres, boxes) as packaged in example-robot-data 6, and
-the pairs that MoveIt's Setup Assistant found worth a check (the SRDF of the same package; BSD-3,
-see labkit/data/LICENSE-baxter).  Torso and pedestal are meshes there; here each is a stack of
-boxes, one around each slice of its mesh.  The other arm stands still at Rethink's neutral pose.
+The file has Rethink's collision shapes (cylinders, spheres, boxes) as packaged in
+example-robot-data 6, and the pairs for which MoveIt's Setup Assistant found a check useful (the
+SRDF of the same package; BSD-3, see labkit/data/LICENSE-baxter).  There, torso and pedestal are
+meshes; here each is a stack of boxes, one around each slice of its mesh.  The other arm stays at
+Rethink's neutral pose.
 
 Run: python book/_tools/make_collision.py
 """
@@ -27,7 +28,7 @@ DATA = ROOT / "labkit/data"
 SRDF = URDF.parents[1] / "srdf/baxter_manipulation.srdf"
 STACKED = {"torso": "base_link_charcoal", "pedestal": "PEDESTAL_black"}
 SLICES = 8
-# The SRDF knows another gripper: all of ours stands for its one.
+# The SRDF has another gripper, so all parts of our gripper are checked like that one.
 GRIPPER = ("gripper_base_link", "finger")
 
 
@@ -37,7 +38,7 @@ def numbers(text: str | None) -> list[float]:
 
 
 def shapes_of(link: ElementTree.Element) -> list[tuple[str, list[float], np.ndarray]]:
-    """Kind, size and pose in the link, of every simple collision shape."""
+    """The kind, size and pose in the link of each simple collision shape."""
     found = []
     for collision in link.findall("collision"):
         origin, geometry = collision.find("origin"), collision.find("geometry")[0]
@@ -56,7 +57,7 @@ def shapes_of(link: ElementTree.Element) -> list[tuple[str, list[float], np.ndar
 
 
 def stack(mesh: str) -> list[tuple[str, list[float], np.ndarray]]:
-    """Boxes around the slices of a mesh that stands in the base's axes."""
+    """Boxes around the slices of a mesh, in the axes of the base."""
     body = trimesh.load(DATA / "meshes" / f"{mesh}.obj", force="mesh")
     points, _ = trimesh.sample.sample_surface(body, 100_000, seed=0)
     edges = np.linspace(*body.bounds[:, 2], SLICES + 1)
@@ -72,7 +73,7 @@ def stack(mesh: str) -> list[tuple[str, list[float], np.ndarray]]:
 
 
 def known_as(link: str) -> str:
-    """The name by which the SRDF speaks of a link."""
+    """The SRDF's name for a link."""
     if any(part in link for part in GRIPPER) and "hand" not in link:
         side = {"l": "left", "r": "right"}[link[0]]
         return f"{side}_gripper"
@@ -80,7 +81,7 @@ def known_as(link: str) -> str:
 
 
 def plain(link: str) -> str:
-    """The name by which a sentence speaks of a link."""
+    """The name for a link in a sentence."""
     if "head" in link:
         return "head"
     words = link.removesuffix("_visual").removesuffix("_link").split("_")
@@ -89,7 +90,7 @@ def plain(link: str) -> str:
 
 
 def arm(side: str, links: dict[str, Any], apart: set[frozenset[str]]) -> dict[str, Any]:
-    """The shapes around one arm, the joint that carries each, and the pairs to check."""
+    """The shapes around one arm, the joint that carries each shape, and the pairs to check."""
     full = full_model()
     other = "right" if side == "left" else "left"
     q = pin.neutral(full)

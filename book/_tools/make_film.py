@@ -1,7 +1,7 @@
 """Make the landing page's film from pages of the built book: `make film`.
 
-Chromium opens the pages, loads the live arm, uses it, and is photographed.  Writes
-book/static/film.mp4 and its poster; the scenes, how long each lasts and their captions are in
+Chromium opens the pages, loads the live arm and uses it, and screenshots are taken.  The program
+writes book/static/film.mp4 and its poster; the scenes, their durations and their captions are in
 `figures/film.py`.
 """
 
@@ -27,14 +27,14 @@ sys.path[:0] = [str(ROOT), str(ROOT / "book")]
 from figures.film import FILM, POSTER, SCENES  # noqa: E402
 
 RATE = 10
-"""Frames for each second."""
+"""Frames per second."""
 STEP = 4
-"""For how many frames a picture of what moves stays; fewer are smoother and take longer."""
+"""Number of frames that show the same picture in moving scenes; fewer are smoother but slower."""
 SIZE = {"width": 800, "height": 608}
 COARSE = 30
-"""How much H.264 may leave out: 18 is invisible, 51 the worst."""
+"""How much detail H.264 may lose: at 18 the loss is invisible, 51 is the worst quality."""
 POSTED = 55
-"""Which picture of the first scene is the poster."""
+"""The number of the frame that becomes the poster."""
 LIVE = "document.querySelector('.lk-live').live"
 TIP = (
     "() => { const { picture } = " + LIVE + ", { stage } = picture;"
@@ -43,7 +43,7 @@ TIP = (
     " const p = stage.camera.position.clone().fromArray(picture.tip.p).project(stage.camera);"
     " return [box.left + (p.x + 1) * box.width / 2, box.top + (1 - p.y) * box.height / 2]; }"
 )
-"""Where the tip is in the window, in [px]."""
+"""JavaScript that returns the tip's position in the window, in [px]."""
 DRESS = """() => {
     const sheet = new CSSStyleSheet();
     sheet.replaceSync(`.bd-header, .bd-header-article, .header-article { display: none !important }
@@ -56,21 +56,21 @@ DRESS = """() => {
     addEventListener("pointermove", (e) => Object.assign(pointer.style,
         { left: `${e.clientX}px`, top: `${e.clientY}px` }), true);
 }"""
-"""Hide the bars of the page and draw the mouse, which no photograph shows."""
+"""JavaScript that hides the bars of the page and draws the mouse, which screenshots leave out."""
 STILLS = {
     "stub": '[aria-label="A student\'s answer"]',
     "feedback": "img[src*=feedback]",
     "table": "#what-is-compared",
     "notebooks": "#the-notebooks",
 }
-"""What the scenes without motion show of the first page: an answer, a page of feedback, tables."""
+"""The parts of the first page in the scenes without motion: an answer, feedback, tables."""
 
 Scene = Callable[[Page, str], Iterator[int]]
-"""Arranges the page for one picture after the other; yields for how many frames each stays."""
+"""Prepares the page for each picture in turn, and yields the number of frames that show it."""
 
 
 def pull(page: Page, book: str) -> Iterator[int]:
-    """The hand is pulled from its circle and let go; each picture is a tenth of a second later."""
+    """Pull the hand from its circle and let go of it; the arm's time goes on between pictures."""
     load_live(page, book)
     for k in range(0, RATE * SCENES["pull"][0], STEP):
         if k == 28:
@@ -81,12 +81,12 @@ def pull(page: Page, book: str) -> Iterator[int]:
             page.mouse.move(at[0] + 5 * (k - 28), at[1] + 1.5 * (k - 28))
         if k == 76:
             page.mouse.up()
-        page.evaluate(f"{LIVE}.pause(true), {LIVE}.live({STEP} / {RATE})")  # a touch lets it go on
+        page.evaluate(f"{LIVE}.pause(true), {LIVE}.live({STEP} / {RATE})")  # after the mouse
         yield STEP
 
 
 def gain(page: Page, book: str) -> Iterator[int]:
-    """Four gains, one after the other."""
+    """Set four gains, one after the other."""
     load_live(page, book)
     page.get_by_label("Arm", exact=True).select_option("realistic arm")
     page.get_by_label("Controller", exact=True).select_option("joint velocity")
@@ -101,7 +101,7 @@ def gain(page: Page, book: str) -> Iterator[int]:
 
 
 def still(page: Page, book: str, name: str) -> Iterator[int]:
-    """A part of the first page, for the whole scene."""
+    """Show a part of the first page during the whole scene."""
     visit(page, f"{book}/index.html", STILLS[name])
     yield RATE * SCENES[name][0]
 
@@ -114,7 +114,7 @@ DRAWN: dict[str, Scene] = {
 
 
 def load_live(page: Page, book: str) -> None:
-    """The live arm, loaded and paused: the film decides when time passes."""
+    """Load the live arm and pause it, because the film decides when its time passes."""
     visit(page, f"{book}/live.html", ".lk-live")
     page.locator(".lk-live .lk-load").first.click()
     page.wait_for_selector(".lk-live [data-ready]")
@@ -138,26 +138,26 @@ def show(page: Page, selector: str) -> None:
 
 
 def photograph(page: Page) -> Any:
-    """The window, as numbers."""
+    """A screenshot of the window as an array."""
     return np.asarray(Image.open(io.BytesIO(page.screenshot(timeout=0))).convert("RGB"))
 
 
 def main() -> None:
-    """Take every scene, write film and poster."""
+    """Take every scene, then write the film and its poster."""
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--book", type=Path, default=ROOT / "book/_build/html")
-    parser.add_argument("--only", choices=DRAWN, help="one scene, to look at")
+    parser.add_argument("--only", choices=DRAWN, help="make only this scene, to look at it")
     parser.add_argument("--to", type=Path, default=FILM)
     chosen = parser.parse_args()
     if not (chosen.book / "index.html").exists():
-        raise SystemExit(f"{chosen.book} has no index.html: build the book first (make book)")
+        raise SystemExit(f"{chosen.book} has no index.html; build the book first with `make book`")
     with sync_playwright() as playwright:
         browser = playwright.chromium.launch(
             executable_path=program(),
             args=["--no-sandbox", "--enable-unsafe-swiftshader"],
         )
         page = browser.new_page(viewport=SIZE, color_scheme="light")
-        page.set_default_timeout(600_000)  # a guard against hanging only
+        page.set_default_timeout(600_000)  # only so that nothing waits for ever
         with imageio.get_writer(
             chosen.to, fps=RATE, codec="libx264", quality=None,
             ffmpeg_params=["-crf", str(COARSE), "-preset", "slow", "-movflags", "+faststart"],

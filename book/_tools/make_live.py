@@ -1,7 +1,7 @@
-"""Write the numbers of the live arm in the book: `python book/_tools/make_live.py`.
+"""Write the numbers for the book's live arm: `python book/_tools/make_live.py`.
 
-Robot, plants, gains and tasks are Python's; `book/live/numbers.js` is made from them, so that the
-page's JavaScript holds none of its own.  A test says when it has to be made again.
+Robot, plants, gains and tasks are defined in Python.  `book/live/numbers.js` is made from them, so
+that no number has to be typed into the page's JavaScript.  A test fails if the file is out of date.
 """
 
 from __future__ import annotations
@@ -17,7 +17,7 @@ import numpy as np
 ROOT = Path(__file__).resolve().parents[2]
 sys.path[:0] = [str(ROOT)]
 OUT = ROOT / "book/live/numbers.js"
-HEAD = "// Made by book/_tools/make_live.py from labkit and solutions; never edited.\n"
+HEAD = "// Made by book/_tools/make_live.py from labkit and solutions; do not edit it.\n"
 
 import labkit as lk  # noqa: E402
 from labkit import joints, motors, scene  # noqa: E402
@@ -34,11 +34,11 @@ NAMES = {
     "workspace impedance": "workspaceImpedance",
     "joint impedance": "jointImpedance",
 }
-"""What the page's JavaScript calls the five controllers."""
+"""The names of the five controllers in the page's JavaScript."""
 
 
 def numbers() -> dict[str, Any]:
-    """Everything that the page needs to know, as plain data."""
+    """All numbers that the page needs, as plain data."""
     robot = lk.robot("left")
     return {
         "robot": robot_data(robot),
@@ -69,7 +69,7 @@ def numbers() -> dict[str, Any]:
 
 
 def robot_data(robot: lk.Robot) -> dict[str, Any]:
-    """The arm: the model file that MuJoCo reads, and the same bodies as numbers."""
+    """The arm, as the model file that MuJoCo reads and as numbers of the same bodies."""
     T = robot.T_hand_tip
     return {
         "name": robot.name,
@@ -81,13 +81,13 @@ def robot_data(robot: lk.Robot) -> dict[str, Any]:
 
 
 def plant_data(plant: lk.Plant, n: int) -> dict[str, Any]:
-    """A plant, what belongs to each joint as n numbers."""
+    """A plant, with n numbers for each property of the joints."""
     made = asdict(plant)
     return {k: plant.each(k, n).tolist() if isinstance(v, tuple) else v for k, v in made.items()}
 
 
 def controllers(plant: lk.Plant) -> dict[str, Any]:
-    """The five controllers as they are compared on a plant, and Baxter's own way."""
+    """The five controllers with their gains in the comparison on a plant, and Baxter's own."""
     found = {}
     for name, candidate in gains.course_controllers(lk.Model("left", plant), plant).items():
         law = candidate.controller
@@ -103,17 +103,17 @@ def controllers(plant: lk.Plant) -> dict[str, Any]:
 
 
 def material(wall: lk.Wall) -> dict[str, Any]:
-    """What a wall is made of, if nothing else is said."""
+    """The default size and material of a wall."""
     return {k: plain(getattr(wall, k)) for k in ("size", "stiffness", "damping", "friction")}
 
 
 def geometry(name: str) -> Any:
-    """A task's defining points, seen from the tip's ready place."""
+    """The points that define a task, relative to the tip's ready position."""
     return getattr(tasks, name).__defaults__[0]
 
 
 def tag_data() -> dict[str, Any]:
-    """The circle of the tag, the tip's place above it, the camera's focal length in [px]."""
+    """The tag's circle, the tip's position above it, and the camera's focal length in [px]."""
     return {
         "duration": tag_task.DURATION,
         "rate": tag_task.RATE,
@@ -126,14 +126,14 @@ def tag_data() -> dict[str, Any]:
 
 
 def plain(value: Any) -> Any:
-    """Arrays as lists, one number for all as a number."""
+    """An array as a list, or as one number if all its elements are equal."""
     if isinstance(value, np.ndarray):
         return value.tolist() if value.size > 1 else value.item()
     return value
 
 
 def text() -> str:
-    """The JavaScript that holds them."""
+    """The JavaScript file with the numbers."""
     return HEAD + "".join(
         f"export const {name.upper()} = {json.dumps(value)};\n" for name, value in numbers().items()
     )

@@ -1,4 +1,4 @@
-"""Make the README's picture: Baxter drawing a line, seen by labkit's own camera.
+"""Make the README's picture of Baxter drawing a line, with labkit's own camera.
 
 Run: python book/_tools/make_picture.py   (writes book/static/baxter.png)
 """
@@ -23,7 +23,7 @@ PAPER, RED, GREY = (248, 247, 244), (178, 24, 43), (90, 90, 90)
 
 
 def main() -> None:
-    """Run the line, photograph the arm near its end, and draw what the tip has drawn."""
+    """Run along the line, take a picture of the arm near its end, and draw the tip's path."""
     argparse.ArgumentParser(description=__doc__).parse_args()
     world = lk.World(things=[lk.Table(height=0.015, centre=(0.85, 0.25), size=(0.7, 1.1))])
     with lk.Arm("left", world=world) as arm:

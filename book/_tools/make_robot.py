@@ -1,8 +1,9 @@
-"""Make Baxter's looks: light coloured meshes for the camera, one small robot file for the viewer.
+"""Make Baxter's appearance: small coloured meshes for the camera, one robot file for the viewer.
 
-Each visual mesh of the packaged URDF loses the faces that nobody can see, is split per colour (the
-camera's renderer gives a mesh one colour), and is decimated twice: coarse for the camera, finer
-for the viewer.  Left and right share one file.  Fingers are closed and ride on the wrist.
+Each visual mesh of the packaged URDF loses its invisible faces and is split by colour, because the
+camera's renderer gives each mesh one colour.  Then it is decimated twice: to a coarse mesh for the
+camera and to a finer one for the viewer.  The two arms share their files.  The fingers are closed
+and belong to the last link.
 
 Run: python book/_tools/make_robot.py   (about a minute; needs the dev extra)
 """
@@ -26,20 +27,20 @@ import trimesh
 SHARE = Path(site.getsitepackages()[0]) / "cmeel.prefix" / "share"
 BAXTER = SHARE / "example-robot-data/robots/baxter_description"
 DATA = Path(__file__).parents[2] / "labkit/data"
-PALETTE = {  # sRGB; the source's blacks are lifted so that shape stays readable
+PALETTE = {  # sRGB; black is lighter than in the source so that shapes can be seen
     "red": (0.66, 0.05, 0.07),
     "black": (0.09, 0.09, 0.10),
     "charcoal": (0.20, 0.20, 0.22),
     "grey": (0.62, 0.62, 0.64),
 }
-# Faces kept per mesh for the camera; the viewer keeps FINER times as many.
+# Faces of each mesh for the camera; the viewer's mesh has FINER times this number.
 FACES = {
     "PEDESTAL": 2400, "base_link": 2700, "H0": 520, "H1": 520, "S0": 1350, "S1": 980, "E0": 1280,
     "E1": 1200, "W0": 1420, "W1": 1280, "W2": 1050, "electric_gripper_base": 680,
     "extended_narrow": 220, "paddle_tip": 90, "half_round_tip": 120,
 }  # fmt: skip
 FINER = 1.5
-SPECK = 5e-4  # m^2, connected bodies smaller than this (screws, clips) are left out
+SPECK = 5e-4  # m^2; smaller connected bodies, such as screws and clips, are left out
 MARKERS = ("collision_", "hand_accelerometer", "hand_camera", "hand_range")  # no visible body
 ARM = ("s0", "s1", "e0", "e1", "w0", "w1", "w2")
 JOINTS = ("head_pan", *(f"{side}_{j}" for side in ("left", "right") for j in ARM))
@@ -47,7 +48,7 @@ JOINTS = ("head_pan", *(f"{side}_{j}" for side in ("left", "right") for j in ARM
 
 @dataclass(frozen=True)
 class Visual:
-    """One visual of the robot: a named mesh, its colour by the URDF, where it is fixed."""
+    """A visual of the robot: its mesh, its colour in the URDF, and where it is attached."""
 
     mesh: str
     rgba: tuple[float, ...]
@@ -113,19 +114,19 @@ make_urdf.py in book/_tools.
 
 
 def rounded(x: Any, digits: int = 9) -> list[float]:
-    """A flat list of floats that reads well, without negative zero."""
+    """A flat list of rounded floats without negative zeros."""
     return (np.round(np.ravel(x), digits) + 0.0).tolist()
 
 
 def each(meshes: dict[str, dict[str, trimesh.Trimesh]]) -> Iterator[tuple[str, str, Any]]:
-    """Every (mesh name, colour, mesh)."""
+    """Yield each mesh with its name and colour."""
     for name, by_colour in meshes.items():
         for colour, mesh in by_colour.items():
             yield name, colour, mesh
 
 
 def visual(model: pin.Model, shape: Any) -> Visual:
-    """One shape of the URDF; a finger's prismatic joint is frozen at closed."""
+    """A visual for a shape of the URDF; the prismatic joint of a finger is fixed closed."""
     parent, pose = shape.parentJoint, shape.placement
     while parent and model.names[parent] not in JOINTS:
         pose = model.jointPlacements[parent] * pose
@@ -136,7 +137,7 @@ def visual(model: pin.Model, shape: Any) -> Visual:
 
 
 def parts(shape: Any, look: Visual) -> dict[str, trimesh.Trimesh]:
-    """The visible faces of a shape, one mesh per colour of the palette."""
+    """The visible faces of a shape, as a mesh for each colour of the palette."""
     if not Path(shape.meshPath).suffix:
         return {nearest(look.rgba[:3]): primitive(shape.geometry)}
     scene = trimesh.load(shape.meshPath, force="scene")
@@ -163,13 +164,13 @@ def parts(shape: Any, look: Visual) -> dict[str, trimesh.Trimesh]:
 
 
 def components(mesh: trimesh.Trimesh) -> np.ndarray:
-    """The number of the connected body that each face belongs to."""
+    """For each face, the number of its connected body."""
     count = len(mesh.faces)
     return trimesh.graph.connected_component_labels(mesh.face_adjacency, node_count=count)
 
 
 def nearest(rgb: Any) -> str:
-    """The palette's name for a source colour."""
+    """The name of the palette's colour that is nearest to a colour of the source."""
     red, green, _ = rgb
     if red > green + 0.1:
         return "red"
@@ -186,15 +187,15 @@ def primitive(geometry: Any) -> trimesh.Trimesh:
 def visible(
     mesh: trimesh.Trimesh, views: int = 64, pixel: float = 0.003
 ) -> tuple[np.ndarray, np.ndarray]:
-    """Which faces can be seen from outside: a depth buffer of sampled points from many sides.
+    """Find the faces visible from outside, by depth buffers of sampled points from many sides.
 
     Args:
         mesh: Any triangles, in metres.
-        views: Directions, spread evenly over the sphere.
-        pixel: Side of a depth pixel in metres.
+        views: Number of directions, which are spread evenly over the sphere.
+        pixel: Side of a pixel of the depth buffers, in metres.
 
     Returns:
-        Per face: is it seen, and how much more of it is seen from its front than from its back.
+        For each face, whether it is visible, and by how much its front is seen more than its back.
     """
     rng = np.random.default_rng(0)
     count = int(np.clip(6 * mesh.area / pixel**2, 2e5, 1.5e6))
@@ -222,15 +223,15 @@ def visible(
 
 
 def share(name: str, by_colour: dict[str, trimesh.Trimesh]) -> float:
-    """The fraction of faces to keep of a mesh."""
+    """The fraction of the faces of a mesh to keep."""
     return FACES.get(name, np.inf) / sum(len(m.faces) for m in by_colour.values())
 
 
 def thin(mesh: trimesh.Trimesh, fraction: float) -> trimesh.Trimesh:
-    """Decimate to a fraction of the faces; sharp edges keep their own normals.
+    """Decimate to a fraction of the faces; normals are not smoothed across sharp edges.
 
-    Every connected body has its own budget by its area, so that a large plain tube is not spent
-    on a small wheel's threads.
+    The number of faces of each connected body depends on its area, so that the thread of a small
+    wheel does not use up the faces of a large plain tube.
     """
     if np.isfinite(fraction):
         body = components(mesh)
@@ -248,7 +249,7 @@ def thin(mesh: trimesh.Trimesh, fraction: float) -> trimesh.Trimesh:
 
 
 def collapsed(solid: trimesh.Trimesh, budget: float) -> trimesh.Trimesh:
-    """One connected body with at most about `budget` faces, and its size kept."""
+    """A connected body reduced to about `budget` faces, with its original size."""
     for keep in (max(12, int(budget)), 2 * max(12, int(budget))):
         if keep >= len(solid.faces):
             return solid
@@ -259,7 +260,7 @@ def collapsed(solid: trimesh.Trimesh, budget: float) -> trimesh.Trimesh:
 
 
 def obj(mesh: trimesh.Trimesh) -> str:
-    """Wavefront text with normals, a tenth of a millimetre fine."""
+    """The mesh as Wavefront text with normals, rounded to a tenth of a millimetre."""
     lines = [f"v {x:.4f} {y:.4f} {z:.4f}" for x, y, z in mesh.vertices + 0.0]
     lines += [f"vn {x:.2f} {y:.2f} {z:.2f}" for x, y, z in mesh.vertex_normals + 0.0]
     lines += [f"f {a}//{a} {b}//{b} {c}//{c}" for a, b, c in mesh.faces + 1]
@@ -267,10 +268,10 @@ def obj(mesh: trimesh.Trimesh) -> str:
 
 
 def tree(model: pin.Model) -> tuple[list[dict[str, Any]], dict[str, Any]]:
-    """The joints that move, each after its parent, and the two tool frames.
+    """The moving joints, each after its parent, and the two tool frames.
 
     Returns:
-        Joints (all turn about their own z) with parent, placement and limits; tips by side.
+        Joints with parent, placement and limits, which all turn about their z axis; tips by side.
     """
     joints: list[dict[str, Any]] = []
     for name in JOINTS:
@@ -299,9 +300,9 @@ def tree(model: pin.Model) -> tuple[list[dict[str, Any]], dict[str, Any]]:
 
 
 def robot_js(joints: Any, tips: Any, visuals: list[Visual], meshes: Any) -> str:
-    """The viewer's robot as a classic script, so that it loads from a file too.
+    """The viewer's robot as a classic script, which pages can also load from disk.
 
-    Per mesh: 16-bit positions inside its box, 8-bit normals, 16-bit indices, in base64.
+    Each mesh has 16-bit positions inside its box, 8-bit normals and 16-bit indices, in base64.
     """
     names = {f"{n}_{c}": k for k, (n, c, _) in enumerate(each(meshes))}
     robot = {
@@ -324,7 +325,7 @@ def robot_js(joints: Any, tips: Any, visuals: list[Visual], meshes: Any) -> str:
 
 
 def packed(mesh: trimesh.Trimesh) -> dict[str, Any]:
-    """One mesh as base64 arrays."""
+    """A mesh as base64 arrays."""
     low, size = mesh.bounds[0], np.maximum(np.ptp(mesh.bounds, axis=0), 1e-6)
     position = np.round((mesh.vertices - low) / size * 65535).astype("<u2")
     normal = np.round(mesh.vertex_normals * 127).astype("i1")

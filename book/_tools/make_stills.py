@@ -1,8 +1,8 @@
-"""Photograph each live panel of the built book as it is before anybody touches it: `make film`.
+"""Take a still picture of each live panel of the built book before any input: `make film`.
 
-Chromium loads the panel of a page and takes its picture without the ground behind the arm, which
-the page draws light or dark.  Writes book/static/stills/PAGE.webp, which the directive `live-arm`
-shows until the panel is loaded.
+Chromium loads the panel of a page and takes a screenshot.  The background of the arm becomes
+transparent, because pages may be light or dark.  The program writes book/static/stills/PAGE.webp,
+which the directive `live-arm` shows until the panel is loaded.
 """
 
 from __future__ import annotations
@@ -19,14 +19,14 @@ from playwright.sync_api import Page, sync_playwright
 
 STILLS = ROOT / "book/static/stills"
 WIDE, HIGH = 680, 360
-"""Of a still in [px] of the page; the picture has twice as many."""
+"""Size of a still on the page, in [px]; the picture has twice this number of pixels."""
 FRAME = f""".lk-live .lk-player {{ border: 0 !important; border-radius: 0 !important }}
     .lk-live .lk-canvas {{ width: {WIDE}px !important; height: {HIGH}px !important;
         max-height: none !important; aspect-ratio: auto !important }}
     .bd-header, .bd-header-article, .header-article {{ display: none !important }}"""
-"""How the page is dressed for the picture: the canvas of one size, and nothing before it."""
+"""Style sheet for the picture: the canvas has a fixed size, and nothing covers it."""
 AFTER = 0.9
-"""Time of the arm at which it is photographed, in [s]."""
+"""Time of the arm in the picture, in [s]."""
 
 
 def photograph(page: Page, address: str, to: Path) -> None:
@@ -38,12 +38,12 @@ def photograph(page: Page, address: str, to: Path) -> None:
     page.evaluate(f"{LIVE}.pause(true)")
     page.evaluate(f"{LIVE}.sessions.forEach((session) => session.restart())")
     page.evaluate(f"{LIVE}.live({AFTER})")
-    page.wait_for_timeout(1000)  # the stage draws again after its size has changed
+    page.wait_for_timeout(1000)  # the stage is drawn again after its size has changed
     stage = page.locator(".lk-live .lk-canvas")
     seen = np.asarray(Image.open(io.BytesIO(stage.screenshot(timeout=0))).convert("RGB"))
     seen = seen[: 2 * HIGH, : 2 * WIDE]
     ground = np.where((seen == seen[9, 9]).all(axis=-1), 0, 255).astype(np.uint8)
-    ground[:2] = ground[-2:] = 0  # a canvas between two pixels has the page's colour at its edges
+    ground[:2] = ground[-2:] = 0  # edges between two pixels have the page's colour
     Image.fromarray(np.dstack([seen, ground])).save(to, quality=70, method=6)
     print(f"{to.relative_to(ROOT)}: {to.stat().st_size / 1000:.0f} kB", flush=True)
 
@@ -59,7 +59,7 @@ def main() -> None:
             executable_path=program(), args=["--no-sandbox", "--enable-unsafe-swiftshader"]
         )
         page = browser.new_page(viewport=SIZE, color_scheme="light", device_scale_factor=2)
-        page.set_default_timeout(600_000)  # a guard against hanging only
+        page.set_default_timeout(600_000)  # only so that nothing waits for ever
         for file in sorted(book.rglob("*.html")):
             if 'class="lk-live"' in file.read_text(encoding="utf-8"):
                 name = "_".join(file.relative_to(book).with_suffix("").parts)

@@ -1,7 +1,7 @@
-"""Make labkit/data/baxter.json: Baxter's two arms as seven bodies each.
+"""Make labkit/data/baxter.json, in which each of Baxter's two arms has seven bodies.
 
-Every link that a moving joint carries (the fixed electronics, the hand, the gripper with its
-fingers closed) is lumped into that joint's body by Pinocchio.  Source: the URDF of Rethink
+Pinocchio combines all links that a moving joint carries (the fixed electronics, the hand, the
+gripper with closed fingers) into the body of that joint.  The source is the URDF of Rethink
 Robotics as packaged in example-robot-data 6 (BSD-3, see labkit/data/LICENSE-baxter).
 
 Run: python book/_tools/make_urdf.py
@@ -24,18 +24,19 @@ URDF = SHARE / "example-robot-data/robots/baxter_description/urdf/baxter.urdf"
 OUT = Path(__file__).parents[2] / "labkit/data/baxter.json"
 JOINTS = ("s0", "s1", "e0", "e1", "w0", "w1", "w2")
 
-# The packaged file gives s1 50 N m, less than gravity asks at the neutral pose.  Rethink raised it
-# to 100 N m because the simulated shoulder has no counter-spring (baxter_common, pull request 45).
+# In the packaged file s1 has 50 N m, less than gravity requires at the neutral pose.  Rethink
+# raised it to 100 N m, as the simulated shoulder has no counter-spring (baxter_common, pull request
+# 45).
 EFFORT = {"s1": 100.0}
-# The packaged gripper holds placeholders: 0.01 kg m^2 for a finger of 20 g (a metre of gyration
-# radius), 2e-8 kg m^2 for a base of 300 g.  A box of the part's size and mass takes their place.
+# The packaged gripper has placeholders: 0.01 kg m^2 for a finger of 20 g (a radius of gyration near
+# a metre), 2e-8 kg m^2 for a base of 300 g.  A box with each part's size and mass replaces them.
 BOXES = {
     "gripper_base": (0.08, 0.07, 0.10),
     "finger": (0.01, 0.02, 0.06),
     "tip": (0.01, 0.02, 0.03),
 }
 NEUTRAL = [0.0, -0.55, 0.0, 0.75, 0.0, 1.26, 0.0]  # Limb.move_to_neutral of Rethink's SDK
-# Our own start for the exercises: gripper straight down, 25 cm of room around it.
+# Our own start for the exercises: the gripper points straight down, with 25 cm of room around it.
 READY = {
     "left": [-0.5, -1.0, 0.0, 1.7, 0.0, 0.8707963267948966, 0.0],
     "right": [0.5, -1.0, 0.0, 1.7, 0.0, 0.8707963267948966, 0.0],
@@ -43,19 +44,19 @@ READY = {
 
 
 def rounded(x: Any) -> Any:
-    """Lists of floats that read well: 15 significant digits, no negative zero."""
+    """Lists of floats with 15 significant digits and without negative zeros."""
     return (np.array([float(f"{v:.15g}") for v in np.ravel(x)]) + 0.0).reshape(np.shape(x)).tolist()
 
 
 def box(mass: float, size: tuple[float, float, float]) -> dict[str, float]:
-    """The inertia of a solid box, as the attributes of a URDF <inertia> element."""
+    """The inertia of a solid box, as attributes of a URDF <inertia> element."""
     x, y, z = (s * s for s in size)
     ixx, iyy, izz = (mass / 12.0 * d for d in (y + z, x + z, x + y))
     return {"ixx": ixx, "iyy": iyy, "izz": izz, "ixy": 0, "ixz": 0, "iyz": 0}
 
 
 def full_model() -> pin.Model:
-    """All of Baxter, every fixed link kept, with the gripper's placeholders replaced."""
+    """All of Baxter with every fixed link; the gripper's placeholders are replaced."""
     root = ElementTree.parse(URDF).getroot()
     for link in root.iter("link"):
         name, inertial = link.get("name", ""), link.find("inertial")

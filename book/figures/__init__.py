@@ -1,4 +1,4 @@
-"""Figures, replays and numbers of the book, made at build; one module for each chapter.
+"""Figures, replays and numbers of the book, made when it is built; one module for each chapter.
 
-Pages call these functions; readers see what they return and never the code.
+The pages call these functions.  Readers see the results and not the code.
 """

@@ -1,4 +1,4 @@
-"""Page "How it is made": labkit's modules and what they import, read from the source itself."""
+"""Page "How it is made": labkit's modules and their imports, read from the source code."""
 
 from __future__ import annotations
 
@@ -48,7 +48,7 @@ def _named(path: Path) -> Iterator[str]:
 
 
 def picture() -> HTML:
-    """The rows, each above the rows that it imports from."""
+    """Draw the rows of modules, each above the rows from which it imports."""
     row_of = {name: k for k, (_, names) in enumerate(LAYERS) for name in names}
     drawn = set(row_of)
     arrows = {(a, b) for a in drawn for b in imported(a) & drawn}

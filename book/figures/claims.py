@@ -1,12 +1,12 @@
-"""Sentences and what they rest on: the numbers they state, the conclusions they draw.
+"""The evidence for sentences of the book: the numbers they state and the conclusions they draw.
 
-A sentence with a number shows one that `told` was given; a sentence with a comparison holds the
-words of a `claim` with its check.  Both are kept in `told.json` beside this file as they were when
-somebody last read the sentences, and the build stops when they move: `book/_tools/book_claims.py
---read` keeps them anew, and shows which moved.
+A sentence with a number shows one that was passed to `told`; a sentence with a comparison contains
+the words of a `claim`, which has a check.  `told.json`, beside this file, has the values from when
+somebody last read the sentences.  The build stops if they change.  `book/_tools/book_claims.py
+--read` then stores the new values and prints those that changed.
 
-What a claim says is worth something only if it could fail.  So each is tried on data that are
-wrong: with the sign turned, at half the size, with the rows swapped, with all rows pooled.
+A claim is worth something only if it can fail.  Therefore each check is also tried on wrong data:
+with the opposite sign, at half the size, with the rows swapped, with all rows pooled.
 """
 
 from __future__ import annotations
@@ -20,26 +20,26 @@ from typing import Any
 
 KEPT = Path(__file__).with_name("told.json")
 FOUND = Path(__file__).parents[2] / "build/book/claims"
-"""What the pages told when they were last run, a file for each process that ran one."""
+"""The reports of the pages from their last run, in a file for each process."""
 NEAR = 0.05
-"""How far a number may move, relative to itself, before its sentence must be read again."""
+"""The relative change of a number that is allowed before its sentence must be read again."""
 
 Numbers = tuple[float, ...]
 
 
 class ConclusionFails(AssertionError):
-    """The runs no longer show what the prose says; the build stops here."""
+    """Raised to stop the build if the runs no longer show what the prose says."""
 
 
 def told(name: str, value: float) -> None:
     """Note a number of the prose.
 
     Args:
-        name: By which the prose asks for it, one in the whole book.
+        name: The name that the prose uses for the number, unique in the whole book.
         value: The number.
 
     Raises:
-        ConclusionFails: It is no longer what it was when its sentence was read.
+        ConclusionFails: The number has changed since its sentence was read.
     """
     _note(name, (float(value),), lambda x: True)
 
@@ -49,12 +49,12 @@ def claim(conclusion: str, check: Callable[..., Any], **data: Any) -> None:
 
     Args:
         conclusion: Words that the page contains exactly as they are given here.
-        check: Called with ``data``; whether the conclusion holds.
-        data: What it is drawn from, each a number or a sequence of numbers.
+        check: Called with ``data``; says whether the conclusion holds.
+        data: The evidence for the conclusion, each item a number or a sequence of numbers.
 
     Raises:
-        ConclusionFails: It does not hold, or its data are no longer what they were when the
-            sentence was read.
+        ConclusionFails: The conclusion does not hold, or its data have changed since the sentence
+            was read.
     """
     kinds = {name: not isinstance(x, Sequence) for name, x in data.items()}
     sizes = {name: 1 if one else len(data[name]) for name, one in kinds.items()}
@@ -79,12 +79,12 @@ def shows(sentence: str, values: float | Sequence[float], actual: Any, near: flo
 
     Args:
         sentence: Words of the page, as for `claim`.
-        values: The number or numbers, as the sentence has them.
-        actual: What the code says they are.
-        near: How far they may differ, relative to themselves: by rounding.
+        values: The number or numbers in the sentence.
+        actual: The same numbers, computed by the code.
+        near: The relative difference that rounding may cause.
 
     Raises:
-        ConclusionFails: They differ.
+        ConclusionFails: The numbers differ.
     """
     shown = [values] if isinstance(values, float | int) else list(values)
     x = [float(v) for v in (actual if isinstance(actual, Iterable) else [actual])]
@@ -97,7 +97,7 @@ def shows(sentence: str, values: float | Sequence[float], actual: Any, near: flo
 
 
 def mutations(x: Numbers) -> Iterator[tuple[str, Numbers]]:
-    """Wrong data made of right ones."""
+    """Wrong data, made by changing the right ones."""
     yield "sign", tuple(-v for v in x)
     yield "half", tuple(0.5 * v for v in x)
     if len(x) > 1:
@@ -107,7 +107,7 @@ def mutations(x: Numbers) -> Iterator[tuple[str, Numbers]]:
 
 
 def near(x: Numbers, y: Numbers) -> bool:
-    """Whether numbers are what they were."""
+    """Whether numbers have stayed the same."""
     return len(x) == len(y) and all(
         math.isclose(a, b, rel_tol=NEAR, abs_tol=1e-9) for a, b in zip(x, y, strict=True)
     )

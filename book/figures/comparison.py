@@ -26,14 +26,14 @@ from .page import figure, holds, number, numbers, replay, shown, table
 
 FOUND = Path(__file__).parents[2] / "build/book/campaign.json"
 ARMS = {"ideal": "ideal", "baxter": "realistic"}
-"""The arms as the text calls them."""
+"""The names of the arms in the text."""
 SHOWN = ("late_rms_mm", "late_max_mm")
 SIGNS = {"held": "✓", "did not hold": "✗", "undecided": "?"}
 
 
 @cache
 def found() -> dict[str, Any]:
-    """What the build tool measured, or `make campaign` before it."""
+    """The results of the campaign, from the build tool or from an earlier `make campaign`."""
     told: dict[str, Any] = json.loads(FOUND.read_text())
     return told
 
@@ -50,13 +50,13 @@ def _of_seeds(controller: str, task: str) -> Array:
 
 
 def _on_paths(controller: str, plant: str) -> float:
-    """The error over all tasks but the tag, where not all methods receive the same target."""
+    """The mean error over all tasks except the tag, in which the methods have different targets."""
     paths = (task for task in campaign.TASKS if task != "tag")
     return float(np.mean([_mean(controller, task, plant, "late_rms_mm") for task in paths]))
 
 
 def _tip(task: tasks.Task) -> Array:
-    """Where the tip should be during a task, shape (N, 3) in [m]."""
+    """The wanted positions of the tip during a task, shape (N, 3) in [m]."""
     times = np.linspace(0.0, task.duration, 400)
     return np.array([task.target(float(t)).pose[:3, 3] for t in times])
 
@@ -151,7 +151,7 @@ def numbers_told() -> None:
 
 
 def _seeds() -> str:
-    """How many, and where they were fewer."""
+    """The number of seeds, and the tasks that have fewer."""
     counts = {x: len({r["seed"] for r in pick(found()["rows"], task=x)}) for x in campaign.TASKS}
     most = max(counts.values())
     fewer = [f"{n} on the {task}" for task, n in counts.items() if n < most]
@@ -159,7 +159,7 @@ def _seeds() -> str:
 
 
 def one_table(name: str, plant: str) -> HTML:
-    """One number of every method on every task: mean over the seeds and its range."""
+    """A table of one number for every method and task: the mean over the seeds, and the range."""
     body = []
     for controller in CONTROLLERS:
         cells = []
@@ -173,13 +173,14 @@ def one_table(name: str, plant: str) -> HTML:
             cells.append(f"{np.mean(x):.3g}{star} {span}")
         body.append((controller, *cells))
     caption = (
-        f"{TABLES[name]}, {ARMS[plant]} arm. * From where the tag was last seen, not from the tag"
+        f"{TABLES[name]}, {ARMS[plant]} arm. * Measured from the place where the tag was last "
+        "seen, not from the tag"
     )
     return table(("Method", *campaign.TASKS), body, caption)
 
 
 def tables(plant: str) -> HTML:
-    """The numbers that matter most, one table each."""
+    """The most important numbers, each in its own table."""
     return HTML("".join(one_table(name, plant).data for name in SHOWN))
 
 
@@ -211,21 +212,21 @@ def bars() -> HTML:
 
 
 def claims() -> HTML:
-    """What the report claimed, judged over the tasks, and task by task."""
+    """The claims of the report, judged over all tasks and for each task."""
     rows = []
     for v in found()["verdicts"]:
         x, unit = v["overall"], v["unit"]
         tasks = sorted(v["tasks"], key=lambda t: campaign.TASKS.index(t["of"]))
         alone = [f"{t['of']} {SIGNS[t['outcome']]} {shown(t['mean'], '+.2g')}" for t in tasks]
-        fine = max(0, 1 - math.floor(math.log10(x["half_width"])))  # both as fine as the half width
-        fine += f"{abs(x['mean']):.{fine}f}" == f"{x['half_width']:.{fine}f}"  # and told apart
+        fine = max(0, 1 - math.floor(math.log10(x["half_width"])))  # with equal decimals
+        fine += f"{abs(x['mean']):.{fine}f}" == f"{x['half_width']:.{fine}f}"  # and not alike
         mean = shown(x["mean"], f"+.{fine}f")
         said = f"{mean} ± {x['half_width']:.{fine}f} {unit}, {x['units']} {x['of']}"
         rows.append((v["claim"], x["outcome"], said, "<br>".join(alone) or "–"))
     return table(
         ("Claim", "Outcome", "Difference", "Task by task"), rows,
-        "Paired differences; positive speaks for the claim. Intervals hold together, at 95 %, for "
-        "all claims of a kind. Task by task: ✓ held, ✗ did not hold, ? undecided",
+        "Paired differences; a positive one supports the claim. Intervals hold jointly, at 95 %, "
+        "for all claims of a kind. Task by task: ✓ held, ✗ did not hold, ? undecided",
     )  # fmt: skip
 
 

@@ -45,7 +45,7 @@ def differences(controller: str) -> dict[str, list[float]]:
 
 
 def one_number() -> None:
-    """The error of a run, worked by hand."""
+    """The error of a run, computed by hand."""
     e = np.array(((3.0, 4.0, 0.0), (0.0, 0.0, 1.0)))
     by_hand("the RMS error is 3.6 mm", 3.6, metrics.rms(e), 0.01)
     by_hand("the number would be 2.1 mm", 2.1, float(np.sqrt(np.mean(e**2))), 0.02)
@@ -55,7 +55,7 @@ def one_number() -> None:
 
 
 def intervals() -> None:
-    """What the derivations say of levels, factors and outcomes."""
+    """Check the derivations' statements about levels, factors and outcomes."""
     factors = [float(student.ppf(0.975, n - 1)) for n in (2, 3, 5, 10)] + [norm.ppf(0.975)]
     claim(
         "The step from two to five is worth far more than the one from ten to infinity",
@@ -122,13 +122,13 @@ def units() -> None:
 
 
 def _decided(controller: str) -> int:
-    """On how many paths the interval over the seeds does not hold zero."""
+    """The number of paths on which the interval over the seeds does not contain zero."""
     alone = [interval(task, d, CLAIMS) for task, d in differences(controller).items()]
     return sum(abs(x.mean) > x.half_width for x in alone)
 
 
 def more_seeds() -> None:
-    """How little further seeds would help: shares of the variance, and what would remain."""
+    """How little more seeds would help: the shares of the variance, and what would remain."""
     d = np.array(list(differences("joint torque").values()))
     within = float(np.mean(d.var(axis=1, ddof=1)))
     tasks = float(d.mean(axis=1).var(ddof=1))
@@ -148,7 +148,7 @@ def more_seeds() -> None:
 
 
 def luck() -> None:
-    """How often pure noise passes for a result."""
+    """How often pure noise looks like a result."""
     by_hand("of them exclude the truth, instead of 5 %", 5.0, 100.0 * (1.0 - LEVEL))
     random = np.random.default_rng(3)
     many = 4000
@@ -199,7 +199,7 @@ def two_units() -> HTML:
 
 
 def pairing() -> HTML:
-    """Two clouds that overlap, and the differences that do not."""
+    """Two groups of errors that overlap, and their paired differences, which have one sign."""
     _, (left, right) = plt.subplots(1, 2, figsize=(6.4, 2.9), width_ratios=(1.6, 1.0))
     for a, b in zip(FIRST, SECOND, strict=True):
         left.plot([0.0, 1.0], [a, b], "-", color="#999999", linewidth=1.0)

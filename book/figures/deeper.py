@@ -18,7 +18,7 @@ SEED = 4
 
 
 def friction() -> HTML:
-    """What the torques do not explain, against speed, and the line through it."""
+    """The torque that the motion does not explain, against speed, and the line fitted to it."""
     model = lk.Model("left", lk.BAXTER)
     log = identification.excite(seed=SEED)
     found, raw = (identification.fit(log, model, smooth) for smooth in (True, False))
@@ -72,7 +72,7 @@ def friction() -> HTML:
 
 
 def compensation() -> HTML:
-    """Joint impedance along the line, without and with the friction fed forward."""
+    """Joint impedance along the line, without and with feed-forward of the friction."""
     model = lk.Model("left", lk.BAXTER)
     found = identification.fit(identification.excite(seed=SEED), model)
     logs = identification.compared(tasks.line(), found, seed=SEED)
@@ -102,7 +102,7 @@ def compensation() -> HTML:
 
 
 def _ahead(log: lk.Log) -> None:
-    """Where the compensated arm is farthest off: ahead of its target, by speed times age."""
+    """Check that the compensated arm's largest error is ahead of its target, by speed times age."""
     e = lk.metrics.tip_error(log)[:, :3]
     tip = np.array([pose[:3, 3] for pose in lk.metrics.tip_poses(log)])
     k = int(np.linalg.norm(e, axis=1).argmax())
@@ -129,7 +129,7 @@ MASS, SAMPLING, DAMPER = 8.0, 0.005, 60.0
 
 
 def passive() -> HTML:
-    """Stiffness against physical damping: where it is passive, where it is stable."""
+    """Stiffness against physical damping, with the limits of passivity and of stability."""
     damping = np.unique([*np.linspace(1.0, 7.0, 13), *np.linspace(1.0, 30.0, 16)])
     limit = 2.0 * damping / SAMPLING
     alone = [passivity.stiffest(MASS, b, 0.0, SAMPLING) for b in damping]
@@ -190,7 +190,7 @@ def passive() -> HTML:
 
 
 def servoing() -> HTML:
-    """Who arrives with a focal length that is off by a fifth."""
+    """Which methods reach the goal if the believed focal length is wrong by a fifth."""
     off, rows = 0.2, []
     _, ax = plt.subplots(figsize=(6.0, 3.2))
     ends = {}
@@ -219,7 +219,7 @@ def servoing() -> HTML:
 
 
 def posture() -> HTML:
-    """The elbow's drift over laps of the tip, with and without a posture."""
+    """The drift of the elbow over laps of the tip, with and without a posture term."""
     model = lk.Model("left")
     q0 = model.robot.ready
     _, ax = plt.subplots(figsize=(6.0, 2.8))
@@ -268,7 +268,7 @@ def _tag() -> tasks.Task:
 
 
 def robust() -> HTML:
-    """What a damped inverse costs and saves near a singularity."""
+    """The costs and benefits of a damped inverse near a singularity."""
     model = lk.Model("left")
     angles = np.linspace(0.02, 0.8, 79)
     _, (above, below) = plt.subplots(2, 1, figsize=(6.0, 4.2), sharex=True)
@@ -284,7 +284,7 @@ def robust() -> HTML:
             peak[0] > 1000.0 and peak[0] > 5.0 * peak[1] > 0.0 and 0.0 <= miss[0] < 1.0 < miss[1]
         ),
         peak=[peak[0.0], peak[1e-2]],
-        miss=[round(miss[0.0], 3), miss[1e-2]],  # the first is rounding, which differs by machine
+        miss=[round(miss[0.0], 3), miss[1e-2]],  # the first is a rounding error
     )
     shows("of the 100 mm/s that are wanted", 100.0, 1e3 * redundancy.OUTWARDS)
     numbers({"peak_2": peak[1e-2], "miss_2": miss[1e-2]}, ".2g")
@@ -301,7 +301,7 @@ def robust() -> HTML:
 
 
 def methods() -> HTML:
-    """What each method of visual servoing needs and what it tolerates."""
+    """A table of what each method of visual servoing needs and tolerates."""
     return table(
         ("Method", "wrong focal length", "needs"),
         [

@@ -1,4 +1,4 @@
-"""Pages "Going deeper": what a student can check by hand, and the drawings for it."""
+"""Pages "Going deeper": calculations that a student can check by hand, and their drawings."""
 
 from __future__ import annotations
 
@@ -16,11 +16,11 @@ from .claims import claim, shows
 from .page import figure, number, numbers, table
 
 STIFFNESS, SLOW, SPEED, DEPTH = 300.0, 0.1, 0.1, 0.05
-"""Of the drawing: a spring [N/m], a very slow sampling [s], a hand [m/s], how deep it goes [m]."""
+"""In the drawing: spring [N/m], very slow sampling [s], speed [m/s] and depth [m] of a hand."""
 
 
 def trip() -> HTML:
-    """A hand presses a sampled spring at constant speed and lets it out again."""
+    """A hand presses a sampled spring at constant speed and releases it at the same speed."""
     count = round(DEPTH / (SPEED * SLOW))
     step = SPEED * SLOW
     inwards = [(step * k, STIFFNESS * step * k) for k in range(count)]
@@ -61,7 +61,7 @@ def trip() -> HTML:
 
 
 def viscous_tip() -> None:
-    """The damping that viscous friction in the joints is at the tip."""
+    """The damping at the tip that viscous friction in the joints causes."""
     model = lk.Model("left")
     J = model.tip_jacobian(model.robot.ready)
     b = lk.BAXTER.viscous[0]
@@ -76,7 +76,7 @@ def viscous_tip() -> None:
 
 
 def projections() -> HTML:
-    """What a torque at e0 does to the tip, projected in two manners."""
+    """The effect on the tip of a torque at e0, after each of two projections."""
     rows, most = [], []
     for name, plant in (("without rotors", lk.IDEAL), ("with rotors", lk.BAXTER)):
         model = lk.Model("left", plant)
@@ -159,7 +159,7 @@ def two_speeds() -> None:
 
 
 def half_turn() -> None:
-    """What the law by the image asks for when the camera must turn by 180° about its axis."""
+    """The command of the image-based law if the camera must turn by 180° about its axis."""
     s = 0.2 * np.array(((1.0, 1.0), (1.0, -1.0), (-1.0, -1.0), (-1.0, 1.0)))
     turned = s @ np.array(((math.cos(math.pi), -math.sin(math.pi)),
                            (math.sin(math.pi), math.cos(math.pi))))  # fmt: skip
@@ -172,7 +172,7 @@ def half_turn() -> None:
 
 
 def lens_by_hand() -> None:
-    """Where the camera stops whose depth is wrong by a fifth, and what a wrong depth costs."""
+    """Where the camera stops if its depth is wrong by a fifth, and what a wrong depth costs."""
     away = math.hypot(0.12, 0.22)
     number("lens_away", 1e3 * away, ".3g")
     number("lens_short", 1e3 * (away - away / 1.2), ".2g")

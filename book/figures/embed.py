@@ -1,6 +1,6 @@
-"""HTML for the static book: a motion, a gain explorer or a live demo as a figure in the page.
+"""HTML for the static book: a motion, a gain explorer or a live demo as a figure in a page.
 
-The figure carries its data; `boot.js` loads the shared viewer and robot when it comes into sight.
+The figure contains its data; `boot.js` loads the shared viewer and robot when it comes into sight.
 Put `shared_files()` into one folder of the book and let every page load boot.js from there.
 """
 
@@ -14,11 +14,11 @@ from labkit.errors import OutOfRange, UnknownName
 from labkit.replay import Motion
 from labkit.replay.figure import VIEWER, compact, figure_html
 
-LIMIT = 40_000  # bytes that a page spends on one motion
+LIMIT = 40_000  # bytes of a page for one motion
 
 
 def shared_files() -> dict[str, Path]:
-    """The files that one folder of the book needs once, by name."""
+    """The files to put into one folder of the book, by name."""
     names = ("boot.js", "viewer.js", "robot.js", "LICENSE-three")
     return {name: VIEWER / name for name in names} | {
         "LICENSE-baxter": VIEWER.parent / "LICENSE-baxter"
@@ -36,7 +36,7 @@ def motion_html(
     """A replay as a figure.
 
     Args:
-        motion: What to show.
+        motion: The motion to show.
         caption: Text under it; the motion's title if empty.
         poster: Address of a picture for print, for phones before the tap and for browsers without
             WebGL.
@@ -62,13 +62,13 @@ def motion_html(
 
 @dataclass(frozen=True)
 class Dial:
-    """One choice of the explorer: numbers become a slider that stops on them, words a list.
+    """A choice in the explorer: numbers become a slider that stops at each, words a list.
 
     Attributes:
-        label: Shown beside it, such as "Kp".
-        values: The grid.
-        unit: Shown behind the number.
-        value: Where it starts; the first if None.
+        label: The text beside the dial, such as "Kp".
+        values: The values on the grid.
+        unit: The unit after the number.
+        value: The first value to show; None means the first of the grid.
     """
 
     label: str
@@ -83,10 +83,10 @@ class Explorer:
 
     Attributes:
         name: Stem of the runs' file names; letters, digits and hyphens.
-        title: What is explored.
+        title: The title of the explorer.
         dials: The axes of the grid.
         runs: Recorded motions by their indices on the axes; points may be missing.
-        facts: A sentence of results by the same indices.
+        facts: A sentence about the results of each run, by the same indices.
     """
 
     name: str
@@ -97,7 +97,7 @@ class Explorer:
 
 
 def run_files(explorer: Explorer, rate: float = 20.0) -> dict[str, str]:
-    """A small script for each recorded run, by file name: loads from a file, where fetch cannot."""
+    """A small script for each recorded run, by file name; a page from disk can load a script."""
     return {
         f"{_stem(explorer, key)}.js": "(globalThis.labkitRuns??={})"
         f'["{_stem(explorer, key)}"]={motion.to_json(rate)};\n'
@@ -143,7 +143,7 @@ def explorer_html(
 
 
 def _described(explorer: Explorer) -> str:
-    """The facts of the point where it opens, and of one dial's other end after another."""
+    """The facts of the first point, and of the points at the other end of each dial."""
     opening = [0 if d.value is None else list(d.values).index(d.value) for d in explorer.dials]
     points = {f"It opens with {_said(explorer.dials, opening)}": tuple(opening)}
     for k, d in enumerate(explorer.dials):
@@ -154,7 +154,7 @@ def _described(explorer: Explorer) -> str:
 
 
 def _said(dials: Sequence[Dial], at: Sequence[int]) -> str:
-    """Where dials stand, in words."""
+    """A description of the values of dials."""
     pairs = ((d, d.values[k]) for d, k in zip(dials, at, strict=False))
     return ", ".join(
         x if isinstance(x, str) else f"{d.label} {x:g}{' ' * bool(d.unit)}{d.unit}"

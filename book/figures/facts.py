@@ -1,4 +1,4 @@
-"""Numbers of the prose that no run gives: constants of the arm, and arithmetic with them."""
+"""Numbers of the prose that are not results of runs: constants of the arm, and arithmetic."""
 
 from __future__ import annotations
 
@@ -18,11 +18,11 @@ from .claims import claim
 from .claims import shows as _is
 
 CLAIMS, LEVEL, RATE = 8, 0.95, 200.0
-"""About tracking; of an interval; of the report's control [Hz]."""
+"""Number of claims about tracking; level of an interval; rate of the report's control [Hz]."""
 
 
 def velocity() -> None:
-    """Of the chapter on velocity control."""
+    """Numbers of the chapter on velocity control."""
     _is("= 30 ms", 0.03, lk.BAXTER.velocity_lag)
     _is("Its state arrives 4 ms late", 0.004, lk.BAXTER.state_delay)
     _is("is about 11.5 ms", 0.0115, 0.004 + 0.5 / 100.0 + 0.5 / 200.0)
@@ -38,7 +38,7 @@ def velocity() -> None:
 
 
 def comparison() -> None:
-    """Of the comparison."""
+    """Numbers of the comparison."""
     claim("3 1/s and a $K_d$ of 0.6", lambda p, d: (p, d) == (3.0, 0.6), p=KP, d=KD)
     server = lk.BAXTER.position_gain
     _is("this arm is given 20 1/s, which makes 50 ms", (20.0, 50.0), (server, 1e3 / server))
@@ -48,7 +48,7 @@ def comparison() -> None:
 
 
 def model() -> None:
-    """Of the chapter on the model."""
+    """Numbers of the chapter on the model."""
     robot = lk.robot("left")
     _is("has none either and allows s1 100 N m", 100.0, robot.effort[1])
     _is("50 N m is right for that machine", 50.0, robot.effort[0])
@@ -62,7 +62,7 @@ def model() -> None:
 
 
 def impedance() -> None:
-    """Of the chapter on impedance."""
+    """Numbers of the chapter on impedance."""
     dry, lever, push = lk.BAXTER.stiction[0], 0.5, 10.0
     _is("dry friction of 1 N m and a lever of half a metre holds against 2 N at the hand, so of "
         "10 N only about 8", (1.0, 0.5, 2.0, 10.0, 8.0),
@@ -81,7 +81,7 @@ def impedance() -> None:
 
 
 def report() -> None:
-    """Of the page on the report."""
+    """Numbers of the page on the report."""
     _is(
         "24.5 rad/s for the report's gain $k_p = 3$ at 200 Hz",
         (24.5, 3.0, 200.0),
@@ -96,7 +96,7 @@ def report() -> None:
         "a drive that obeys within a tick allows 1, one with a lag of 30 ms allows more",
         lambda lag, most: math.isclose(lag, 0.03) and 3.0 < most < 12.0,
         lag=lag,
-        most=math.hypot(1.0, w * lag),  # of K_d alone: where its loop has lost half a turn
+        most=math.hypot(1.0, w * lag),  # the limit of K_d alone, at half a turn of phase
     )
     law = report_gains.TABLE_1["workspace impedance"](lk.Model("left", lk.BAXTER)).controller
     _is("With a stiffness of 0.5 N/m a push of 1 N would move the hand 2 m", (0.5, 1.0, 2.0),
@@ -111,7 +111,7 @@ def report() -> None:
 
 
 def plant() -> None:
-    """Of the page on what is known of the arm."""
+    """Numbers of the page on what is known about the arm."""
     model = lk.Model("left", lk.BAXTER)
     q = np.array(model.robot.ready)
     inertia = float(model.mass_matrix(q)[0, 0])

@@ -1,6 +1,6 @@
-"""The landing page's film: what each scene shows, and the film in the page.
+"""The landing page's film: the scenes with their captions, and the film in the page.
 
-`book/_tools/make_film.py` takes the pictures; the sentences here are the film's captions.
+`book/_tools/make_film.py` takes the pictures.
 """
 
 from __future__ import annotations
@@ -38,11 +38,11 @@ SCENES: dict[str, tuple[int, str]] = {
     ),
     "notebooks": (7, "Eight notebooks, with their hours and points."),
 }
-"""How long each scene lasts, in [s], and what is to be seen in it."""
+"""The duration of each scene, in [s], and its caption."""
 
 
 def captions() -> list[tuple[int, int, str]]:
-    """Start, end and sentence of each scene, in [s]."""
+    """The start and the end of each scene, in [s], and its caption."""
     found, t = [], 0
     for seconds, words in SCENES.values():
         found.append((t, t + seconds, words))
@@ -51,7 +51,7 @@ def captions() -> list[tuple[int, int, str]]:
 
 
 def film() -> HTML:
-    """The film, which loads when it is played, its captions, and the same words as a list."""
+    """The film, which loads when it is played, its captions, and the captions as a list."""
     lines = "".join(
         f'<li data-from="{start}" data-until="{end}">{escape(words)}</li>'
         for start, end, words in captions()

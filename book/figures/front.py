@@ -32,7 +32,7 @@ NOTEBOOKS = {
     "06_tags": "from a picture to a pose; following a tag that moves",
     "07_comparison": "margins, tuning, and a comparison that means something",
 }
-"""What a student writes in each notebook."""
+"""The content of each notebook."""
 _TIME = re.compile(r"\*\*Time\*\* \| (?:core )?about ([\d.]+)(?: hours, all about ([\d.]+))?")
 
 
@@ -61,7 +61,7 @@ def _error(controller: str, task: str) -> str:
 
 
 def a_mistake() -> HTML:
-    """A wrong answer of a student, without its types, and what the check says to it."""
+    """A wrong answer of a student, without type hints, and the message of the check."""
     wrong = mistakes.no_feedforward
     folder = COURSE.root / "assignments" / "03_velocity_control"
     question = Desk.beside(folder).question("joint_velocity_pd")
@@ -83,14 +83,14 @@ def _typed(text: str, label: str) -> str:
 
 
 def hours(name: str) -> tuple[float, float]:
-    """Hours of a notebook's core and of all of it, as its first cell tells the students."""
+    """The hours for a notebook's core and for all of it, as stated in its first cell."""
     (source,) = COURSE.root.glob(f"solutions/*/{name}.py")
     core, whole = _TIME.search(source.read_text()).groups()
     return float(core), float(whole or core)
 
 
 def notebooks() -> HTML:
-    """What each notebook is about, how long it takes and what its functions earn."""
+    """The topic of each notebook, its hours, and the points for its functions."""
     rows = []
     for name, about in NOTEBOOKS.items():
         problems = COURSE.problems(name)

@@ -1,4 +1,4 @@
-"""The gain explorer: runs recorded on a grid, one small file each, made once by the build tool."""
+"""The gain explorer, whose runs on a grid the build tool records once, each in a small file."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ LATENCY = (4.0, 30.0, 60.0)  # ms
 PAYLOAD = (0.0, 1.0)  # kg
 SECONDS = 2.5
 RATE = 15.0
-"""Samples per second that are kept."""
+"""Number of samples per second that are kept."""
 NAME = "gains"
 
 Point = tuple[int, int, int, int, int, int]
@@ -89,7 +89,7 @@ def record(point: Point) -> lk.Log:
 
 
 def seen(log: lk.Log) -> tuple[Motion, str]:
-    """A run as the explorer shows it, and its sentence."""
+    """The motion that the explorer shows for a run, and a sentence about the run."""
     model = lk.Model("left")
     e = np.linalg.norm(metrics.tip_error(log, model)[:, :3], axis=1)
     T_wd = metrics.target_poses(log, model)
@@ -106,7 +106,7 @@ def seen(log: lk.Log) -> tuple[Motion, str]:
 
 
 def make(point: Point) -> tuple[str, str, str]:
-    """One point's file: its name, its text, its sentence."""
+    """The file of one point: its name, its text and its sentence."""
     motion, fact = seen(record(point))
     explorer = Explorer(NAME, motion.title, DIALS, {point: motion})
     ((name, text),) = run_files(explorer, RATE).items()

@@ -1,4 +1,4 @@
-"""The galleries: one run of every method through one task, on scales that can be compared."""
+"""The galleries, each with a run of every method on one task, drawn to the same scales."""
 
 from __future__ import annotations
 
@@ -25,11 +25,11 @@ FILMS = Path(__file__).parents[2] / "build/campaign.json"
 SHOWN = (*FIVE, BASELINE)
 JOINTS = tuple(name.removeprefix("left_") for name in lk.robot("left").joint_names)
 LATE = 1.0
-"""When the counting of errors begins, in [s]; until then every method still approaches the path."""
+"""Time from which errors count, in [s]; before it every method still approaches the path."""
 
 
 def all_methods(task: str) -> HTML:
-    """The errors of every method in one drawing."""
+    """A drawing with the errors of every method."""
     _, ax = plt.subplots(figsize=(6.2, 3.8))
     for k, controller in enumerate(SHOWN):
         log = run_of(controller, task)
@@ -46,7 +46,7 @@ def all_methods(task: str) -> HTML:
 
 
 def all_numbers(task: str) -> HTML:
-    """The same runs in numbers; each name leads to its run."""
+    """A table of the numbers of these runs; each name is a link to its run."""
     rows = [
         (
             f'<a href="#{_place(controller)}">{controller}</a>',
@@ -54,7 +54,7 @@ def all_numbers(task: str) -> HTML:
         )
         for controller in SHOWN
     ]
-    if task == "tag":  # the decisive number first
+    if task == "tag":  # the most important number comes first
         rows = [(name, x[-1], *x[:-1]) for name, *x in rows]
     if task == "tag":
         found = {controller: _numbers(controller, task) for controller in SHOWN}
@@ -80,7 +80,7 @@ def _told(x: float) -> str:
 
 
 def beside(task: str) -> HTML:
-    """Three methods on one task, in 3-D."""
+    """A 3-D replay of three methods on one task."""
     first, *others = ("joint velocity", "joint torque", "workspace impedance")
     return replay(
         run_of(first, task),
@@ -92,7 +92,7 @@ def beside(task: str) -> HTML:
 
 
 def film(task: str) -> HTML:
-    """The film of a task, where `make campaign` has left one."""
+    """The film of a task, if `make campaign` has made one."""
     told = json.loads(FILMS.read_text())["films"] if FILMS.exists() else []
     row = next((row for row in told if row["task"] == task), None)
     if row is None:
@@ -108,7 +108,7 @@ def film(task: str) -> HTML:
 
 
 def everything(controller: str, task: str) -> HTML:
-    """One run in six panels, thinned for the page; scales are the same for all methods."""
+    """One run in six panels with reduced samples; the scales are the same for all methods."""
     log = run_of(controller, task)
     thin = slice(None, None, max(1, len(log) // 300))
     _, axes = plt.subplots(6, 1, figsize=(6.2, 10.6), sharex=True)
@@ -154,7 +154,7 @@ def everything(controller: str, task: str) -> HTML:
 
 
 def _elsewhere(controller: str, task: str) -> Iterator[str]:
-    """The same method on every task."""
+    """Links to the same method on every task."""
     for other in campaign.TASKS:
         link = f'<a href="{other}.html#{_place(controller)}">the {other}</a>'
         yield f"<strong>the {other}</strong>" if other == task else link
@@ -170,12 +170,12 @@ def _model() -> lk.Model:
 
 
 def _off(log: lk.Log) -> np.ndarray:
-    """How far the tip is from its target, shape (N,), in [mm]."""
+    """The distance of the tip from its target, shape (N,), in [mm]."""
     return 1e3 * np.linalg.norm(metrics.tip_error(log, _model())[:, :3], axis=1)
 
 
 def _beyond_gravity(log: lk.Log) -> np.ndarray:
-    """The motors' torques without what holds the arm's weight, shape (N, 7), in [N m]."""
+    """The motors' torques without the part that holds the arm's weight, shape (N, 7), in [N m]."""
     return log.tau - np.array([_model().gravity(q) for q in log.q])
 
 
@@ -194,7 +194,7 @@ def _numbers(controller: str, task: str) -> tuple[float, ...]:
 
 @cache
 def _panels(controller: str, task: str) -> list[tuple[str, np.ndarray, np.ndarray | None]]:
-    """The six panels: a label, values of shape (N, k), and their target if it is drawn."""
+    """The label, the values of shape (N, k) and the target, if it is drawn, of each panel."""
     log, model = run_of(controller, task), _model()
     e = metrics.tip_error(log, model)
     p, d = metrics.tip_poses(log, model)[:, :3, 3], metrics.target_poses(log, model)[:, :3, 3]

@@ -1,4 +1,4 @@
-"""Instructor's guide: what a class costs to grade, from the measured overhead of one submission."""
+"""Instructor's guide: the cost of grading a class, from the measured time of a submission."""
 
 from __future__ import annotations
 
@@ -29,12 +29,12 @@ MEASURED = {
     "cost_answer_s": 8.97,
     "cost_endless_s": 45.3,
 }
-"""What ``make bench`` gave on two quiet cores; the names are those that it prints."""
+"""Results of ``make bench`` on two quiet cores, with the names that it prints."""
 CLASSES, CORES = (40, 400, 10_000), (2, 8, 64)
 
 
 def _measured(key: str) -> tuple[float, str]:
-    """A figure of the bench, and where it is from."""
+    """A number of the bench, and its origin."""
     here = json.loads(BENCH.read_text()).get(key) if BENCH.exists() else None
     if here is not None:
         return float(here), "as make bench measured on this machine"
@@ -42,7 +42,7 @@ def _measured(key: str) -> tuple[float, str]:
 
 
 def table_of_effort() -> HTML:
-    """How long classes take on how many cores."""
+    """The time to grade classes of several sizes on several numbers of cores."""
     seconds, origin = _measured("grading_overhead_s")
     told = f"A solved notebook 00 takes a worker {seconds:.2g} s, {origin}."
     glue("origin", told, display=False)
@@ -60,13 +60,13 @@ COSTS = (
     ("a 01 with one answer that never ends", "answer"),
     ("a 01 in which no answer ends", "endless"),
 )
-"""Submissions, and what ``python -m tests.bench costs`` calls them."""
+"""Kinds of submissions, and their names in ``python -m tests.bench costs``."""
 ENDLESS = ("answer", "endless")
-"""Of these only the time is measured, which limits decide."""
+"""Kinds for which only the time is measured, because the limits determine it."""
 
 
 def table_of_costs() -> HTML:
-    """What submissions of different kinds cost, and how much of it is the students' own code."""
+    """The cost of different kinds of submissions, and the share of the students' own code."""
     parts = (("s", "{:.2g} s"), ("own_share", "{:.0%}"), ("per_minute", "{:.0f}"))
     parts += (("dask_per_minute", "{:.0f}"),)
     rows = [(words, *(_cost(key, *part) for part in parts)) for words, key in COSTS]
@@ -83,7 +83,7 @@ def table_of_costs() -> HTML:
 
 
 def _cost(key: str, part: str, form: str) -> str:
-    """A figure of ``python -m tests.bench costs``, or nothing where there is none."""
+    """A number of ``python -m tests.bench costs``, or an empty cell if there is none."""
     name = f"cost_{key}_{part}"
     if key in ENDLESS and part != "s":
         return ""
@@ -91,7 +91,7 @@ def _cost(key: str, part: str, form: str) -> str:
 
 
 def kernel() -> None:
-    """What the hungriest of the solved notebooks takes of its kernel."""
+    """The most time and memory that the kernel of a solved notebook needs."""
     megabytes, origin = _measured("notebook_mb")
     seconds, _ = _measured("notebook_s")
     glue("kernel_mb", f"{megabytes:.0f}", display=False)
@@ -100,7 +100,7 @@ def kernel() -> None:
 
 
 def isolation() -> None:
-    """What a sandbox takes, in the places where people grade, as `labkit doctor` says it."""
+    """What a sandbox needs in the places where people grade, in the words of `labkit doctor`."""
     print(elsewhere())
 
 

@@ -30,7 +30,7 @@ TURN = 20.0
 
 
 def one_mass() -> HTML:
-    """A mass on a spring, pushed for a second: three dampings."""
+    """A mass on a spring that is pushed for a while, with three dampings."""
     m, k, push = 2.0, 200.0, 10.0
     t = np.linspace(0.0, 3.0, 1201)
     _, ax = plt.subplots(figsize=(6.0, 3.0))
@@ -73,7 +73,7 @@ def _sideways(log: lk.Log) -> np.ndarray:
 
 
 def _linear(stiffness: float, seconds: float) -> float:
-    """What the law's linear equation shows as stiffness [N/m] this long after a push began."""
+    """The apparent stiffness [N/m] by the law's linear equation, some time after a push began."""
     model = lk.Model("left", ROTORS)
     L = np.array(model.operational_inertia(model.robot.ready))
     K = np.diag((stiffness,) * 3 + (TURN,) * 3)
@@ -86,7 +86,7 @@ def _linear(stiffness: float, seconds: float) -> float:
 
 
 def push() -> HTML:
-    """The arm answers a push like the spring that was commanded."""
+    """The arm gives way to a push like the commanded spring."""
     _, ax = plt.subplots(figsize=(6.0, 3.2))
     told, found = [], []
     told_to_be, read_at = (150.0, 300.0, 600.0), 1.95
@@ -98,7 +98,7 @@ def push() -> HTML:
         felt = 1e3 * PUSH / float(np.interp(read_at, log.t, y))
         found.append(felt)
         ax.plot(log.t, y, f"C{k}{STYLES[k]}", label=f"{stiffness:g} N/m")
-        told.append(f"told {stiffness:g} N/m, felt {felt:.4g} N/m")
+        told.append(f"commanded {stiffness:g} N/m, felt {felt:.4g} N/m")
         number(f"felt_{stiffness:.0f}", felt, ".4g")
         number(f"linear_{stiffness:.0f}", _linear(stiffness, read_at - BEGINS), ".4g")
     shows("Look at the curve for 600 N/m", 600.0, told_to_be[-1])
@@ -131,14 +131,14 @@ def push() -> HTML:
     ax.set(xlabel="time [s]", ylabel="displacement [mm]")
     ax.legend(fontsize="small")
     return figure(
-        "10 N sideways on the tip from 0.5 s to 2 s, no force measured by anyone.",
+        "10 N sideways on the tip from 0.5 s to 2 s; no force is measured.",
         f"Displacement over time: {'; '.join(told)}. The realistic arm, told 300 N/m, moves less, "
         f"as if {felt:.3g} N/m, and stays {left:.2g} mm off when released.",
     )
 
 
 def two_pushes() -> None:
-    """The realistic arm, pushed with 10 N and with 20 N: what each says, and what both say."""
+    """The realistic arm, pushed with 10 N and with 20 N: results of each push and of both."""
     forces, asked, read_at = (PUSH, 2.0 * PUSH), 300.0, 1.95
     logs = [push_run(asked, lk.BAXTER, force) for force in forces]
     far = [float(np.interp(read_at, log.t, _sideways(log))) for log in logs]
@@ -164,11 +164,11 @@ def two_pushes() -> None:
 
 
 def push_replay() -> HTML:
-    """The soft and the stiff arm, in 3-D."""
+    """A 3-D replay of the soft and of the stiff arm."""
     return replay(
         push_run(150.0),
         "A push of 10 N on a soft and a stiff arm",
-        "The arm told to be a spring of 150 N/m; see-through: 600 N/m.",
+        "The arm as a spring of 150 N/m; see-through: 600 N/m.",
         label="150 N/m",
         ghosts={"600 N/m": push_run(600.0)},
         force=True,
@@ -176,12 +176,12 @@ def push_replay() -> HTML:
 
 
 def wall_replay() -> HTML:
-    """Into a wall, in 3-D: the impedance and, see-through, the position mode."""
+    """A 3-D replay of a run into a wall: the impedance and, see-through, the position mode."""
     soft, stiff = experiments.wall(names=("workspace impedance", "position"))
     return replay(
         soft.log,
         "Into a wall",
-        "The target lies 3 cm behind the face; the arrow is the force on the tip.",
+        "The target is 3 cm behind the face; the arrow is the force on the tip.",
         label=soft.name,
         ghosts={stiff.name: stiff.log},
         force=True,
@@ -190,7 +190,7 @@ def wall_replay() -> HTML:
 
 
 def wall() -> HTML:
-    """Into a wall: what each controller presses with."""
+    """The force of each controller on a wall."""
     met = experiments.wall()
     wrist = float(abs(met[0].log.tau[-1, 5]))  # of the position mode
     slid = 1e3 * float(np.linalg.norm(met[0].at_rest[1:]))
@@ -252,12 +252,12 @@ def check_yourself() -> HTML:
             0,
         ),
         Question(
-            "Which impedance can be had without measuring any force?",
+            "Which impedance is possible without measuring a force?",
             [
-                ("Any", "Another inertia than the arm's own needs the force."),
+                ("Any", "An inertia other than the arm's own requires the force."),
                 (
                     "Any stiffness and damping, with the arm's own inertia",
-                    "The law needs angles and speeds alone.",
+                    "The law needs only angles and speeds.",
                 ),
                 ("None", "The push moves the arm, and the spring answers the motion."),
             ],
@@ -267,7 +267,7 @@ def check_yourself() -> HTML:
             "The spring has the wrong sign: F = −K e, with e = target − actual. What happens?",
             [
                 ("The arm is softer", "It is not a spring at all: it pushes away."),
-                ("The arm leaves", "The further, the harder it pushes."),
+                ("The arm leaves", "The further it goes, the harder it pushes."),
             ],
             1,
         ),

@@ -1,4 +1,4 @@
-"""Chapter "Impedance": the elbow's own freedom, and what passivity takes."""
+"""Chapter "Impedance": the freedom of the elbow, and the conditions of passivity."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ from .page import figure, number, numbers
 
 @dataclass(frozen=True, eq=False)
 class Undamped:
-    """The impedance law without the damper of its posture."""
+    """The impedance law without the damper of its posture term."""
 
     law: WorkspaceImpedance
 
@@ -40,11 +40,11 @@ class Undamped:
 
 
 def elbow() -> HTML:
-    """The elbow begins beside its posture: with a damper it returns, without one it swings on."""
+    """The elbow starts away from its posture: with a damper it returns, without one it swings."""
     model = lk.Model("left", ROTORS)
     ready = np.array(model.robot.ready)
     start = np.array(ready)
-    for _ in range(40):  # turn the elbow, the hand held
+    for _ in range(40):  # turn the elbow while the hand stays
         J = model.tip_jacobian(start)
         turn = np.eye(7)[2] - np.linalg.pinv(J) @ J[:, 2]
         start += 0.005 * turn / turn[2] + np.linalg.pinv(J) @ model.pose_error(
@@ -77,7 +77,7 @@ def elbow() -> HTML:
     ax.set(xlabel="time [s]", ylabel="e0 from its posture [rad]", ylim=(-0.24, 0.32))
     ax.legend(ncols=2, loc="upper right")
     return figure(
-        "The elbow is let go 0.2 rad beside its posture; the hand is to stay where it is. No "
+        "The elbow is released 0.2 rad from its posture; the hand is to stay where it is. No "
         "friction.",
         f"With a damper in the null space e0 returns within a second; without one it still swings "
         f"by {late[1]:.2g} rad after four. The hand moves by {moved[1]:.1g} mm at most.",
@@ -85,7 +85,7 @@ def elbow() -> HTML:
 
 
 def margins() -> None:
-    """How much of the damper the changing inertia can eat on three paths, and what mu is."""
+    """The part of the damper that the changing inertia can cancel on three paths, and mu."""
     model = lk.Model("left", lk.BAXTER)
     law = WorkspaceImpedance(model, K=TIP_SPRING)
     share, least, fastest = {}, math.inf, 0.0
@@ -125,13 +125,13 @@ def margins() -> None:
         Jbar = np.linalg.solve(M, J.T) @ L
         turning = L @ _rate(model.tip_jacobian, q, dq) @ Jbar
         S = _rate(model.operational_inertia, q, dq) - 2.0 * Jbar.T @ model.coriolis(q, dq) @ Jbar
-        without = max(without, float(np.abs(S + S.T).max()))  # mu as if J stood still
+        without = max(without, float(np.abs(S + S.T).max()))  # mu for a constant J
         S += 2.0 * turning
         worst = max(worst, float(np.abs(S + S.T).max()))
     claim(
         "is skew for this $\\mu$, as a check on ten random states confirms",
         lambda worst, without: worst == 0.0 and 20.0 < without < 60.0,
-        worst=round(worst, 5),  # rounding, which differs by machine
+        worst=round(worst, 5),  # a rounding error, which depends on the machine
         without=without,
     )
 
@@ -142,7 +142,7 @@ def _rate(of: object, q: Array, dq: Array, h: float = 1e-6) -> Array:
 
 
 def loops() -> None:
-    """Work round a closed loop of orientations, with unequal rotational stiffness."""
+    """The work around a closed loop of orientations, with unequal rotational stiffness."""
     unequal, equal = np.diag((10.0, 20.0, 30.0)), 20.0 * np.eye(3)
     shows("say 10, 20 and 30 N m/rad", (10.0, 20.0, 30.0), np.diag(unequal))
 

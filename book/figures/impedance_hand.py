@@ -1,4 +1,4 @@
-"""Chapter "Impedance": its drawings and its sums by hand."""
+"""Chapter "Impedance": its drawings and its calculations by hand."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ from .impedance import ROTORS
 from .page import figure, number, numbers, table
 
 JOINT_SPRINGS = np.array((200.0, 200.0, 100.0, 100.0, 10.0, 10.0, 2.0))
-"""Of the joint impedance controller on the ideal arm, in [N m/rad]."""
+"""Stiffness of the joint impedance controller on the ideal arm, in [N m/rad]."""
 PUSH = 10.0
 
 
@@ -73,7 +73,7 @@ def drawing() -> HTML:
 
 
 def planar() -> None:
-    """The two-joint arm of the sums by hand."""
+    """The two-joint arm of the calculations by hand."""
     link, bend, rotors = 0.5, math.radians(90.0), (1.0, 0.25)
     shows("Two links of 0.5 m are in a plane, the first along $x$, the second bent upwards by 90°",
           (0.5, 90.0), (link, math.degrees(bend)))  # fmt: skip
@@ -114,14 +114,14 @@ def planar() -> None:
 
 
 def _poles(L: np.ndarray, spring: float, D: np.ndarray) -> np.ndarray:
-    """Of a mass matrix on equal springs with a damping matrix."""
+    """The poles of a mass matrix on equal springs with a damping matrix."""
     zero, one = np.zeros_like(L), np.eye(len(L))
     A = np.block([[zero, one], [-spring * np.linalg.inv(L), -np.linalg.solve(L, D)]])
     return np.linalg.eigvals(A)
 
 
 def one_mass_by_hand() -> None:
-    """The peak of the mass that swings, by the formula for the overshoot."""
+    """The peak of the swinging mass, by the formula for the overshoot."""
     z = 0.2
     k, m, push = 200.0, 2.0, 10.0
     claim(
@@ -141,7 +141,7 @@ def one_mass_by_hand() -> None:
 
 
 def admittance() -> None:
-    """On how stiff a wall an admittance behind a lag is stable: by Routh, and by the roots."""
+    """The stiffest wall on which an admittance with a lag is stable, by Routh and by the roots."""
     m, k, lag, contact = 2.0, 200.0, 0.03, contact_stiffness(experiments.the_wall())
 
     def stable(b: float, k_w: float, lag: float = lag) -> bool:
@@ -160,7 +160,7 @@ def admittance() -> None:
 
 
 def felt_inertia() -> HTML:
-    """The inertia at Baxter's tip, in the vertical plane, for a free and for a guided hand."""
+    """The inertia at Baxter's tip in the vertical plane, for a free hand and for a guided one."""
     model = lk.Model("left", lk.IDEAL)
     q = np.array(model.robot.ready)
     L = np.array(model.operational_inertia(q))
@@ -195,13 +195,13 @@ def felt_inertia() -> HTML:
         "The inertia at the ready arm's tip by direction, in the vertical plane of x and z: the "
         "distance of the curve from the middle, in kg.",
         f"Two closed curves. Free, the tip feels like {1 / mobility[0, 0]:.2g} kg "
-        f"along x and {1 / mobility[2, 2]:.2g} kg along z. With everything else held, "
+        f"along x and {1 / mobility[2, 2]:.2g} kg along z. With all others held, "
         f"{L[0, 0]:.2g} and {L[2, 2]:.2g} kg.",
     )
 
 
 def wall_by_hand() -> None:
-    """What presses on the wall, from springs in series."""
+    """The force on the wall, from springs in series."""
     model = lk.Model("left", lk.IDEAL)
     mobility = np.linalg.inv(model.operational_inertia(model.robot.ready))
     stiffness = 400.0 / float(mobility[0, 0])
@@ -226,7 +226,7 @@ def wall_by_hand() -> None:
 
 
 def joint_springs() -> HTML:
-    """Where the tip goes when joints with springs of their own are pushed at it."""
+    """The displacement of the pushed tip if each joint has its own spring."""
     model = lk.Model("left", lk.IDEAL)
     J = model.tip_jacobian(model.robot.ready)
     moved = 1e3 * PUSH * (J / JOINT_SPRINGS) @ J.T  # mm

@@ -29,7 +29,7 @@ def jacobian_demo() -> HTML:
 
 
 def checks() -> HTML:
-    """What the formulas promise, tried on random states."""
+    """Check the properties of the formulas on random states."""
     model, random = lk.Model("left", lk.BAXTER), np.random.default_rng(SEED)
     worst = dict.fromkeys(("J", "symmetry", "skew", "gravity", "power", "turn"), 0.0)
     smallest = np.inf
@@ -74,14 +74,14 @@ def checks() -> HTML:
 
 
 def _small(miss: float) -> str:
-    """A miss as a reader writes it: 2.4·10⁻¹⁰, or 0."""
+    """A small error in the notation of the text: 2.4·10⁻¹⁰, or 0."""
     digits, _, power = f"{miss:.1e}".partition("e")
     raised = str(int(power)).translate(str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹"))
     return f"{digits}·10{raised}" if miss else "0"
 
 
 def singular() -> HTML:
-    """How fast the joints must turn to pull the tip towards the shoulder, through a singularity."""
+    """The joint speeds that pull the tip towards the shoulder through a singularity."""
     model = lk.Model("left")
     angles = np.linspace(0.02, 1.2, 1181)
     sigma, speed = [], []
@@ -138,7 +138,7 @@ def singular() -> HTML:
 
 
 def gravity() -> HTML:
-    """What each joint carries as the shoulder goes through its range."""
+    """The holding torque of each joint while the shoulder moves through its range."""
     model = lk.Model("left")
     angles = np.linspace(model.robot.lower[1], model.robot.upper[1], 200)
     torque = []
@@ -170,7 +170,7 @@ def gravity() -> HTML:
 
 
 def weigh() -> HTML:
-    """What each body beyond the shoulder s1 adds to its holding torque, at the neutral pose."""
+    """The part of each body in the holding torque of the shoulder s1, at the neutral pose."""
     model = lk.Model("left")
     q = np.array(model.robot.neutral)
     _, *bodies = model.links(q)
@@ -192,8 +192,8 @@ def weigh() -> HTML:
             model.robot.joint_names[1:], masses, levers, torques, strict=True
         )
     ]
-    head = ("Body behind joint", "mass [kg]", "distance [m]", "torque [N m]")
-    return table(head, rows, "What s1 holds at the neutral pose, body by body")
+    head = ("Body after joint", "mass [kg]", "distance [m]", "torque [N m]")
+    return table(head, rows, "The holding torque of s1 at the neutral pose, body by body")
 
 
 @cache
@@ -216,11 +216,11 @@ def _swing() -> lk.Log:
 
 
 def wrong_axes() -> None:
-    """Who finds inertias that were left in the bodies' own axes: not the power balance."""
+    """A mistake that the power balance misses: inertias left in the bodies' own axes."""
     model, log = lk.Model("left"), _swing()
 
     def extra(q: Array) -> Array:
-        """What the mistake adds to the mass matrix."""
+        """The error of the mass matrix due to the mistake."""
         turns = [(x.com_jacobian[3:], x.inertia, x.T_wl[:3, :3]) for x in model.links(q)]
         return sum(W.T @ (I - R @ I @ R.T) @ W for W, I, R in turns)
 
@@ -241,7 +241,7 @@ def wrong_axes() -> None:
 
 
 def power() -> HTML:
-    """The energy that the motors give is the energy that the arm has."""
+    """The power of the motors is the rate of the arm's energy."""
     model, log = lk.Model("left"), _swing()
     rows = zip(log.q, log.dq, strict=True)
     energy = [model.kinetic_energy(q, dq) + model.potential_energy(q) for q, dq in rows]

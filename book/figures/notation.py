@@ -1,6 +1,6 @@
-"""Notation: one table of symbols that the book prints and the docstrings keep to.
+"""The notation: a table of symbols that the book prints and the docstrings use.
 
-A test reads every public docstring and holds its shapes and units against this table.
+A test reads every public docstring and compares its shapes and units with this table.
 """
 
 from __future__ import annotations
@@ -12,11 +12,11 @@ class Symbol(NamedTuple):
     """One name of the lab.
 
     Attributes:
-        code: How it is written in code.
-        latex: How it is written in formulas.
-        meaning: What it is.
-        shape: Of the array, as docstrings write it; empty for what is not a single array.
-        unit: As docstrings write it; empty where there is none.
+        code: The name in code.
+        latex: The symbol in formulas.
+        meaning: The meaning of the symbol.
+        shape: The array's shape as in docstrings; empty if the symbol is not a single array.
+        unit: The unit as in docstrings; empty if there is none.
     """
 
     code: str
@@ -58,7 +58,7 @@ SYMBOLS = (
     Symbol("Kp", "K_p", "gain on the error"),
     Symbol("Kd", "K_d", "gain on the error's rate"),
 )
-"""In the order of the conventions page."""
+"""The symbols in the order of the conventions page."""
 
 ERRORS = (
     Symbol("e_q", "e_q = q_d - q", "joint error", "(n,)", "rad"),
@@ -71,4 +71,4 @@ ERRORS = (
         "rad",
     ),
 )
-"""Target minus actual, in each of its three forms."""
+"""The error, target minus actual, in its three forms."""

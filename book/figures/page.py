@@ -1,4 +1,4 @@
-"""What every chapter needs: figures with words, replays, numbers in the prose, quizzes, claims."""
+"""Tools for all chapters: figures with descriptions, replays, numbers, quizzes and claims."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ from .claims import ConclusionFails, told
 from .embed import motion_html
 
 INKS = ("#b3001b", "#0a5aa6", "#a35200", "#1a7f4b", "#7b3fa0", "#57606a", "#00737d")
-"""Line colours in light mode; `book.css` has their sisters for dark mode, contrast above 4.5."""
+"""Line colours in light mode; `book.css` has those for dark mode, with a contrast above 4.5."""
 TEXT, FRAME, FAINT = "#1f2328", "#57606a", "#999999"
 _VARIABLES = {
     **{ink: f"var(--line-{k})" for k, ink in enumerate(INKS)},
@@ -44,7 +44,7 @@ _VARIABLES = {
 mpl.use("agg")
 mpl.rcParams.update(
     {
-        "svg.fonttype": "none",  # letters stay letters: searched, read aloud, scaled
+        "svg.fonttype": "none",  # text stays text, for search, screen readers and scaling
         "font.size": 11.5,
         "figure.figsize": (6.0, 3.4),
         "figure.constrained_layout.use": True,
@@ -69,19 +69,19 @@ mpl.rcParams.update(
 
 
 def holds(fact: Any, conclusion: str) -> None:
-    """Stop the build unless a conclusion of the prose holds in the runs that it speaks of."""
+    """Stop the build if the runs do not support a conclusion of the prose."""
     if not bool(fact):
         raise ConclusionFails(f"the text says: {conclusion}; the runs say otherwise")
 
 
 def number(name: str, value: float, form: str = ".3g") -> None:
-    """Give the prose a number: it writes {glue:text}`name`."""
+    """Define a number that the prose inserts with {glue:text}`name`."""
     told(name, value)
     glue(name, shown(value, form), display=False)
 
 
 def shown(value: float, form: str = ".3g") -> str:
-    """A number as prose writes it: 2,400 and not 2.4e+03, with a minus and not a hyphen."""
+    """A number in the form of the prose: 2,400 and not 2.4e+03, with a minus sign, not a hyphen."""
     text = format(float(value), form)
     if "e+" in text:
         text = f"{float(text):,.0f}"
@@ -89,7 +89,7 @@ def shown(value: float, form: str = ".3g") -> str:
 
 
 def numbers(values: Mapping[str, float], form: str = ".3g") -> None:
-    """Several at once."""
+    """Define several numbers in the same form."""
     for name, value in values.items():
         number(name, value, form)
 
@@ -98,10 +98,10 @@ def figure(caption: str, alt: str, words: str = "", fig: Any = None) -> HTML:
     """The current figure as a drawing that follows the reader's theme.
 
     Args:
-        caption: Under the figure.
+        caption: The text below the figure.
         alt: One or two sentences for readers who cannot see it, with the figure's own numbers.
-        words: A longer description, opened on demand.
-        fig: Which; None is the current one.
+        words: A longer description, which readers can open.
+        fig: The figure; None means the current one.
     """
     fig = fig or plt.gcf()
     with mpl.rc_context({"svg.hashsalt": caption}):
@@ -118,7 +118,7 @@ def _drawing(svg: str, caption: str, alt: str) -> str:
     mark = "f" + hashlib.sha256((caption + alt).encode()).hexdigest()[:8] + "-"
     svg = re.sub(r'id="([^"]+)"', rf'id="{mark}\1"', svg)
     svg = re.sub(r'(href="#|url\(#)', rf"\g<1>{mark}", svg)
-    svg = re.sub(r"font: [^;\"]*?([\d.]+px)[^;\"]*", r"font-size: \1", svg)  # the page's letters
+    svg = re.sub(r"font: [^;\"]*?([\d.]+px)[^;\"]*", r"font-size: \1", svg)  # use the page's font
     for ink, variable in _VARIABLES.items():
         svg = svg.replace(ink, variable)
     box = re.search(r'viewBox="([^"]+)"', svg)[1]  # type: ignore[index]
@@ -140,20 +140,20 @@ def framed(inside: str, caption: str, alt: str, words: str = "") -> str:
 
 
 def replay(log: Log, title: str, caption: str = "", **options: Any) -> HTML:
-    """A run as a 3-D replay in the page; a picture of its middle where there is no WebGL."""
+    """A run as a 3-D replay in the page, or as a picture in browsers without WebGL."""
     motion = motion_of(log, title, reference=False, **options)
     return HTML(motion_html(motion, caption=caption, poster=poster(motion)))
 
 
 def poster(motion: Motion) -> str:
-    """A motion's first view with its paths and what it meets drawn in, as a data address."""
+    """The first view of a motion, with its paths and the things that it meets, as a data URL."""
     return _encoded(Image.open(io.BytesIO(motion_still(motion))))
 
 
 def picture(side: str, plant: Plant, q: np.ndarray) -> str:
-    """The arm at rest at q, shape (7,) in [rad], seen from beside the table, as a data address.
+    """The arm at rest at q, shape (7,) in [rad], seen from beside the table, as a data URL.
 
-    White is left clear: behind the arm is the ground that the page has, light or dark.
+    White becomes transparent, so that the background of the page, light or dark, is visible.
     """
     lens = Intrinsics(width=480, height=360, fx=405.0, fy=405.0)
     with World(things=(Table(),)) as world:
@@ -165,7 +165,7 @@ def picture(side: str, plant: Plant, q: np.ndarray) -> str:
 
 
 def still() -> str:
-    """The current figure as a data address, on white: an image does not follow the theme."""
+    """The current figure as a data URL, on white, because an image does not follow the theme."""
     data = io.BytesIO()
     with mpl.rc_context({"svg.hashsalt": "still"}):
         plt.gcf().savefig(data, format="svg", facecolor="white", transparent=False,
@@ -175,7 +175,7 @@ def still() -> str:
 
 
 def address(picture: Any) -> str:
-    """A picture as a data address, so that it travels in the page."""
+    """A picture as a data URL, so that the page contains it."""
     return _encoded(Image.fromarray(np.asarray(picture)))
 
 
@@ -190,7 +190,7 @@ def _address(kind: str, data: io.BytesIO) -> str:
 
 
 def tracking(log: Log, caption: str) -> HTML:
-    """The tip against its target, with words from the run's own numbers."""
+    """The tip and its target over time, with a description that has the run's own numbers."""
     _, axes = plt.subplots(2, 1, figsize=(6.2, 4.4), sharex=True)
     plotting.tracking(log, axes=axes)
     e = 1e3 * np.linalg.norm(metrics.tip_error(log)[:, :3], axis=1)
@@ -218,7 +218,7 @@ class Question:
 
 
 def quiz(*questions: Question) -> HTML:
-    """Questions that answer at once, in the page, for nobody but the reader."""
+    """Questions in the page that answer at once; the answers are not sent to anyone."""
     parts = []
     for k, question in enumerate(questions):
         name = "quiz-" + hashlib.sha256(question.text.encode()).hexdigest()[:8]
@@ -238,7 +238,7 @@ def quiz(*questions: Question) -> HTML:
 
 
 def _spoken(answer: str) -> str:
-    """A name for an answer that is drawn as a formula."""
+    """A spoken name for an answer that is a formula."""
     if "\\(" not in answer:
         return ""
     words = re.sub(r"\\[()]", "", answer).replace("\\dot", "derivative of").replace("\\", "")
@@ -262,6 +262,6 @@ def table(head: Sequence[str], rows: Sequence[Sequence[Any]], caption: str) -> H
 
 
 def _wordy(cell: Any) -> str:
-    """A cell that holds a sentence is wide enough to be read, where a phone shows the table."""
+    """Mark a cell with a sentence, which must be wide enough to read on a phone."""
     words = re.sub("<[^>]+>", "", str(cell))
     return ' class="lab-words"' if len(words) > 24 else ""

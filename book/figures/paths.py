@@ -38,7 +38,7 @@ KP = 5.0
 def line_task(
     side: str = "left", duration: float = DURATION
 ) -> tuple[lk.Trajectory, lk.Trajectory]:
-    """The line of this chapter: as a trajectory of poses, and of joint angles."""
+    """The line of this chapter as a trajectory of poses and as one of joint angles."""
     model = lk.Model(side)  # type: ignore[arg-type]
     T_wt = model.pose(model.robot.ready)
     way = np.array(WAY) * ((1.0, 1.0, 1.0) if side == "left" else (1.0, -1.0, 1.0))
@@ -49,7 +49,7 @@ def line_task(
 
 @cache
 def line_run(kp: float = KP, plant: lk.Plant = lk.BAXTER, side: str = "left") -> lk.Log:
-    """The joint velocity PD follows the line."""
+    """Run the joint velocity PD along the line."""
     _, joints = line_task(side)
     with lk.Arm(side, plant, SEED, q0=lk.robot(side).ready) as arm:  # type: ignore[arg-type]
         return lk.run(arm, joints, JointVelocityPD(kp))
@@ -66,7 +66,7 @@ def _scalings() -> list[tuple[str, lk.BangBang | lk.Cubic | lk.Quintic | lk.Trap
 
 
 def scalings() -> HTML:
-    """Way, speed and acceleration of four time scalings."""
+    """Distance, speed and acceleration of four time scalings."""
     _, axes = plt.subplots(3, 1, figsize=(6.0, 5.4), sharex=True)
     plotting.scaling(*_scalings(), axes=axes)
     peaks = {
@@ -86,7 +86,7 @@ def scalings() -> HTML:
 
 
 def scaling_demo() -> HTML:
-    """The live demo of the four scalings; on paper, the speeds with which it opens."""
+    """The live demo of the four scalings; on paper, their speeds in the first view."""
     length, t = 0.4, np.linspace(0.0, 2.0, 81)
     _, ax = plt.subplots(figsize=(5.0, 2.6))
     for k, (name, s) in enumerate(_scalings()):
@@ -98,7 +98,7 @@ def scaling_demo() -> HTML:
 
 
 def peak_table() -> HTML:
-    """Peak factors, computed and held against the formulas of the text."""
+    """Peak factors, computed and compared with the formulas of the text."""
     rows = []
     for kind, speed, acceleration in (
         (lk.BangBang, 2.0, 4.0),
@@ -125,7 +125,7 @@ def line_tracking() -> HTML:
 
 
 def line_replay() -> HTML:
-    """The same run in 3-D, with feed-forward alone as a ghost."""
+    """The same run in 3-D, with a see-through arm for feed-forward alone."""
     return replay(
         line_run(),
         "Baxter's left arm follows a line",
@@ -137,7 +137,7 @@ def line_replay() -> HTML:
 
 
 def line_numbers() -> None:
-    """Numbers of the prose, and what it concludes from them."""
+    """Numbers of the prose, and its conclusions from them."""
     target, _ = line_task()
     with_feedback, without = (metrics.summary(line_run(kp)) for kp in (KP, 0.0))
     ideal = metrics.summary(line_run(KP, lk.IDEAL))
@@ -159,14 +159,14 @@ def line_numbers() -> None:
 
 
 def _behind(kp: float, plant: lk.Plant = lk.BAXTER) -> tuple[np.ndarray, np.ndarray]:
-    """Times, and how far the tip is behind its target along the line, in [mm]."""
+    """Times, and the distance of the tip behind its target along the line, in [mm]."""
     log = line_run(kp, plant)
     way = np.array(WAY) / np.linalg.norm(WAY)
     return log.t, 1e3 * metrics.tip_error(log)[:, :3] @ way
 
 
 def _shapes() -> None:
-    """Why the curves of the error look as they do: the lag's part, and that of the age."""
+    """Explain the curves of the error by the parts of the lag and of the age."""
     t, without = _behind(0.0)
     _, late = _behind(KP)
     _, lag = _behind(KP, replace(lk.BAXTER, name="without delay", state_delay=0.0))
@@ -221,11 +221,11 @@ def check_yourself() -> HTML:
             1,
         ),
         Question(
-            "Twice the duration on the same path: what becomes of the largest acceleration?",
+            "The duration on the same path is doubled. What becomes of the largest acceleration?",
             [
                 ("Half", "That is the speed. Acceleration has the time squared below it."),
-                ("A quarter", "It goes with 1 / T²."),
-                ("The same", r"\(\ddot s\) carries 1 / T², so it shrinks."),
+                ("A quarter", "It is proportional to 1 / T²."),
+                ("The same", r"\(\ddot s\) is proportional to 1 / T², so it shrinks."),
             ],
             1,
         ),

@@ -1,4 +1,4 @@
-"""Instructor's guide: what each notebook takes and gives, and what marking costs."""
+"""Instructor's guide: the hours and points of each notebook, and the cost of marking."""
 
 from __future__ import annotations
 
@@ -29,9 +29,9 @@ NEEDS = {
     "07_comparison": "any two of 03, 04, 05",
     REPORT: "07; an arm of one's own from 03",
 }
-"""What a student should have done before."""
+"""What a student should have done before each notebook."""
 HOURS = {name: hours(name) for name in (*NOTEBOOKS, REPORT)}
-"""Of the core, and of everything; for the report, of each member of its team."""
+"""Hours for the core and for everything; for the report, the hours of each team member."""
 _CHAPTER = re.compile(r"\*\*Time\*\* (\d+) minutes, and about \d+ hours for notebook (\d\d)")
 READING = {
     number: float(minutes) / 60.0
@@ -42,29 +42,29 @@ READING = {
 ON_THE_MODEL = ("04", "05")
 """Notebooks whose chapters use the equations of the chapter on the model."""
 CLASS, TEAM = 200, 3
-"""Students, and how many of them write a report together, in the example of what marking costs."""
+"""Number of students, and size of the teams that write a report, in the example for marking."""
 TALK = "a talk about it: ten minutes with the team, one question to each"
 DEFENCE = 5.0
-"""Minutes of a defence, in the place of the talk."""
+"""Minutes for a defence, which can replace the talk."""
 WORDS_A_MINUTE = 238.0
-"""Silent reading of English prose: Brysbaert, Journal of Memory and Language 109 (2019) 104047."""
+"""Words per minute of silent reading: Brysbaert, J. Memory and Language 109 (2019) 104047."""
 WHY = 80.0 / WORDS_A_MINUTE + 0.25
-"""Minutes for a why of the greatest length, 15 s of them for the points and the next page."""
+"""Minutes for the longest allowed why, of which 15 s are for the points and the next page."""
 REPORT_WORDS = 720.0
-"""The most that the six parts of notebook 08 allow."""
+"""The largest number of words that the six parts of notebook 08 allow."""
 REPORT_MINUTES = REPORT_WORDS / WORDS_A_MINUTE + 0.5 + 6 * 0.4 + 1.5
-"""Minutes for a report: its words, its figure, six rows of the rubric at 24 s, a comment."""
+"""Minutes for a report: its words, its figure, six rows of the rubric at 24 s each, a comment."""
 LONG_REPORT = 20.0
-"""Minutes for a report of a person who takes more time."""
+"""Minutes for a report if a person takes more time."""
 MINUTES = {
     "two short 'why' answers of each student, of at most 80 words": 2 * WHY,
     "a report of four pages, at most 720 words, with its rubric": REPORT_MINUTES / TEAM,
     TALK: 10.0 / TEAM,
     "contested marks, with labkit explain": 0.3,
 }
-"""What a person does, in minutes for each student.
+"""The work of a person, in minutes for each student.
 
-Reading is counted from the longest texts that are allowed; all else is an estimate.
+The time for reading follows from the longest texts allowed; the other times are estimates.
 """
 TRACKS = {
     "2 weeks": ("00", "01", "03"),
@@ -86,7 +86,7 @@ WEEKS = {
 
 
 def planning() -> HTML:
-    """Hours and points of each notebook, by whom they are marked, and what comes before."""
+    """A table of each notebook's hours and prerequisites, and of its points by who marks them."""
     rows: list[tuple[str, ...]] = []
     for name, (core, whole) in HOURS.items():
         machine, hand = _points(name)
@@ -114,7 +114,7 @@ def _points(name: str) -> tuple[float, float]:
 
 
 def syllabi() -> HTML:
-    """Which notebooks, and which chapters with them, fit into a term."""
+    """A table of the notebooks and chapters that fit into a term."""
     rows = []
     for weeks, numbers in TRACKS.items():
         taken = [both for name, both in HOURS.items() if name[:2] in numbers]
@@ -134,7 +134,7 @@ def syllabi() -> HTML:
 
 
 def plan() -> HTML:
-    """Week by week: what students read and write, when it is due, and what a person then marks."""
+    """A table for each week: what students read and write, when it is due, and what is marked."""
     for column, track in enumerate(reversed(TRACKS)):
         taken = {name for name, weeks in WEEKS.items() if isinstance(weeks[column], int | str)}
         extra = {"02"} if set(ON_THE_MODEL) <= taken else set()
@@ -168,7 +168,7 @@ def _week(which: int | str | None) -> str:
 
 
 def numbers_told() -> None:
-    """What marking costs, and which points are for what, for the prose."""
+    """Numbers of the prose about the cost of marking and the kinds of points."""
     whole = sum(MINUTES.values())
     number("marking_minutes", whole, ".1f")
     number("marking_hours", whole * CLASS / 60.0, ".0f")
@@ -188,7 +188,7 @@ def numbers_told() -> None:
 
 
 def outcomes() -> HTML:
-    """What a student can do afterwards, and where the evidence is."""
+    """A table of the skills of a student after the course, with the evidence for each."""
     evidence: dict[str, list[str]] = {name: [] for name in OUTCOMES}
     for notebook in NOTEBOOKS:
         for outcome in {name for one in COURSE.problems(notebook) for name in one.outcomes}:
@@ -199,7 +199,7 @@ def outcomes() -> HTML:
 
 
 def marking() -> HTML:
-    """What people do, in minutes for a student and in hours for a class."""
+    """A table of the work of people, in minutes for a student and in hours for a class."""
     rows = [(what, f"{m:.1f}", f"{m * CLASS / 60:.0f}") for what, m in MINUTES.items()]
     whole = sum(MINUTES.values())
     rows.append(("total", f"{whole:.1f}", f"{whole * CLASS / 60:.0f}"))

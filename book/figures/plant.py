@@ -1,4 +1,4 @@
-"""Page "What is known of this arm": evidence, what hangs on it, and the report's own gains."""
+"""Page "What is known of this arm": the evidence, what depends on it, and the report's gains."""
 
 from __future__ import annotations
 
@@ -21,11 +21,11 @@ from .claims import claim, shows
 from .page import figure, holds, number, numbers, shown, table
 
 SMALL = 0.5
-"""Differences on the line below this, in [mm], change their sign from seed to seed."""
+"""Smaller differences on the line, in [mm], change their sign from seed to seed."""
 
 
 def _shown(value: Any) -> str:
-    """A number of the plant as a reader wants it."""
+    """A number of the plant in a form for readers."""
     if isinstance(value, bool):
         return "yes" if value else "no"
     if isinstance(value, float | int):
@@ -35,7 +35,7 @@ def _shown(value: Any) -> str:
 
 
 def evidence() -> HTML:
-    """Each number of the realistic arm, its source, its range."""
+    """A table of the numbers of the realistic arm, with their sources and ranges."""
     rows = [
         (
             f"<code>{name}</code>",
@@ -55,7 +55,7 @@ def evidence() -> HTML:
 
 
 def hangs() -> HTML:
-    """Which verdicts on the line turn over with which assumption."""
+    """A table of the assumptions that change verdicts on the line."""
     rows = assumptions.recorded()["assumptions"]
     names, claims = list(assumptions.plants()), list(assumptions.CLAIMS)
     base = [assumptions.difference(rows, c, assumption="as assumed") for c in claims]
@@ -141,10 +141,10 @@ def hangs() -> HTML:
     words = "; ".join(f"{c}: {', '.join(t) or 'never'}" for c, t in turned.items())
     return figure(
         "Difference of the RMS errors on the line, in mm: positive where the claim above is true. "
-        "One assumption at a time at the end of its range; below 0.5 mm nothing is decided. Red "
-        "where the verdict differs from that of the first row, or an arm is lost.",
-        f"A table of {len(names)} plants and {len(claims)} claims. Verdicts turn over with: "
-        f"{words}.",
+        "One assumption at a time is at the end of its range; below 0.5 mm nothing is decided. "
+        "Red if the verdict differs from that of the first row, or an arm is lost.",
+        f"A table of {len(names)} plants and {len(claims)} claims. The "
+        f"assumptions that change verdicts are: {words}.",
     )
 
 
@@ -154,21 +154,21 @@ def _mean(rows: Sequence[Row], **names: Any) -> float:
 
 
 def _verdict(difference: float | None) -> str:
-    """What a difference of two seeds in [mm] says of a claim; nothing if it is small."""
+    """The verdict on a claim from a difference of two seeds in [mm]; none if it is small."""
     if difference is None:
         return "lost"
     return "" if abs(difference) < SMALL else "true" if difference > 0.0 else "false"
 
 
 def _crosses(error: dict[float, float], level: float) -> float:
-    """The gain at which a falling error passes a level, even in its logarithm."""
+    """The gain at which a falling error passes a level, interpolated in its logarithm."""
     at = np.array(sorted(error))
     x = np.log([error[k] for k in at])
     return float(np.exp(np.interp(-np.log(level), -x, np.log(at))))
 
 
 def table_1() -> HTML:
-    """The report's gains as printed, run."""
+    """A table of runs with the report's gains as printed."""
     rows = report_gains.recorded()["table_1"]
 
     def shown(controller: str, task: str, plant: str) -> str:
@@ -200,7 +200,7 @@ def table_1() -> HTML:
 
 
 def tuning() -> HTML:
-    """The report's procedure on s0, on both arms."""
+    """The report's tuning procedure for s0, on both arms."""
     found = report_gains.recorded()["procedure"]
     _, ax = plt.subplots(figsize=(6.2, 3.0))
     ends = {}
@@ -240,7 +240,7 @@ def tuning() -> HTML:
 
 
 def swings() -> None:
-    """The exercise: an arm with springs in its joints, pushed while its drives hold."""
+    """The exercise on an arm with springs in its joints, pushed while its drives hold."""
     q0 = lk.robot("left").ready
     push = lk.Push(force=(0.0, 20.0, 0.0), start=0.5, duration=0.2)
     left = {}

@@ -1,4 +1,4 @@
-"""Page "A 2019 report re-examined": the evidence for each verdict, computed."""
+"""Page "A 2019 report re-examined": computes the evidence for each verdict."""
 
 from __future__ import annotations
 
@@ -80,7 +80,7 @@ def paths() -> None:
 def recursion() -> None:
     """Equation 17 on the ideal arm: add the correction to the measured speed."""
     q0 = lk.robot("left").ready
-    beside = 0.02  # small enough for the speed limit
+    beside = 0.02  # small enough to stay below the speed limit
     shows("a joint 0.02 rad off rings", 0.02, beside)
     goal = q0 + beside * np.eye(7)[0]
 
@@ -101,7 +101,7 @@ def recursion() -> None:
 
 
 def gravity() -> None:
-    """The formula G = M J^T (0, 0, 0.981, 0, 0, 0) beside the torque that holds the arm."""
+    """Compare the formula G = M J^T (0, 0, 0.981, 0, 0, 0) with the torque that holds the arm."""
     model = lk.Model("left")
     random = np.random.default_rng(SEED)
     ready = np.array(model.robot.ready)
@@ -122,9 +122,9 @@ def impedance() -> None:
     mass, push = 2.0, 5.0
     shows("One dimension, 2 kg, at rest on the target, pushed with 5 N", (2.0, 5.0), (mass, push))
     desired = push / mass
-    law = push + mass * push  # its two terms of F_ext; all others vanish here
+    law = push + mass * push  # the two terms with F_ext; all others vanish here
     printed = (law + push) / mass  # the push is on the arm
-    turned = (law - push) / mass  # F_ext is what the arm does to the world
+    turned = (law - push) / mass  # F_ext is the force of the arm on the world
     shows("Read as the push on the arm, +5 N", 5.0, push)
     shows("the arm is pushed with −5 N", -5.0, -push)
     shows("where −2.5 m/s² is wanted", -2.5, -desired)

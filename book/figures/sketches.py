@@ -1,4 +1,4 @@
-"""Drawings that explain: nothing in them is measured, everything is computed by the formulas."""
+"""Explanatory drawings, in which everything is computed by formulas and nothing is measured."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ ROD = 0.4
 
 
 def where_and_when() -> HTML:
-    """One curve on two schedules, and the two parts of the acceleration at one point."""
+    """A curve on two schedules, and the two parts of the acceleration at one point."""
     s = np.linspace(0.0, 1.0, 201)
     x, y = _arc(s)
     fig, (top, side) = plt.subplots(1, 2, figsize=(6.4, 2.9), width_ratios=(1.25, 1.0))
@@ -67,7 +67,7 @@ def _arc(s: np.ndarray, radius: float = 1.0) -> tuple[np.ndarray, np.ndarray]:
 
 
 def two_links() -> HTML:
-    """The arm of two rods at the pose that is worked by hand, and the columns of its Jacobian."""
+    """The arm of two rods at the pose of the calculation by hand, and its Jacobian's columns."""
     shoulder, elbow, hand = np.array(((0.0, 0.0), (ROD, 0.0), (ROD, ROD)))
     _, axes = plt.subplots(1, 2, figsize=(6.4, 3.4))
     left, right = axes
@@ -112,7 +112,7 @@ def two_links() -> HTML:
 
 
 def loop() -> HTML:
-    """The loop of a joint that is commanded in speeds."""
+    """The loop of a joint that receives speed commands."""
     _, ax = plt.subplots(figsize=(6.4, 2.7))
     boxes = {
         "Kp": (2.3, 1.0), "drive\n1/(τᵥs + 1)": (5.3, 1.0), "1/s": (7.5, 1.0),
@@ -178,7 +178,7 @@ def null_space() -> HTML:
 
 
 def damped() -> HTML:
-    """What an inverse and a damped inverse ask for, and what the damped one loses."""
+    """The commands of an inverse and of a damped inverse, and the motion that the latter loses."""
     damping = WorkspaceVelocityPD.damping
     sigma = np.linspace(0.004, 0.4, 200)
     factor = np.array([damped_inverse(np.array([[x]]), damping)[0, 0] for x in sigma])
@@ -205,7 +205,7 @@ def damped() -> HTML:
 
 
 def _arrow(ax: Any, start: Any, along: Any, ink: str) -> None:
-    """A vector from a point."""
+    """Draw a vector from a point."""
     ax.annotate("", np.add(start, along), start,
                 arrowprops={"arrowstyle": "-|>", "color": ink, "linewidth": 1.8,
                             "shrinkA": 0, "shrinkB": 0})  # fmt: skip

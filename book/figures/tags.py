@@ -1,4 +1,4 @@
-"""Chapter "Tags and cameras": what follows from geometry and time alone."""
+"""Chapter "Tags and cameras": results that follow from geometry and time alone."""
 
 from __future__ import annotations
 
@@ -30,13 +30,13 @@ SEED = 8
 FOCAL = 600.0
 SIZE = 0.08
 NOISE, PERIOD, AGE = 0.001, 0.1, 0.1
-"""Of the readings of the target that sways: noise [m]; time from one to the next and to now [s]."""
+"""Readings of the swaying target: their noise [m], their period [s] and their age [s]."""
 LOST = 0.3
 TILT = (0.26, 1.05)
 
 
 def seen() -> HTML:
-    """A picture of the simulated camera, with the tag as it was found."""
+    """A picture of the simulated camera with the detected tag."""
     scene = circling_board(noise=2.0, seed=SEED)
     image, lens = scene.camera.image(), scene.camera.intrinsics
     found = find_tag(detect_tags(image, scene.camera, scene.board.tag.size), scene.board.tag.id)
@@ -78,7 +78,7 @@ def corners_seen(tilt: float, distance: float) -> np.ndarray:
 
 
 def ambiguity_gap(tilt: float, distance: float) -> float:
-    """RMS pixels between a tilt and the best that the opposite tilt can do."""
+    """The RMS distance in pixels between the corners at a tilt and the best opposite tilt."""
     seen = corners_seen(tilt, distance)
     best = np.inf
     for other in np.linspace(-1.4, -0.02, 60):
@@ -90,7 +90,7 @@ def ambiguity_gap(tilt: float, distance: float) -> float:
 
 
 def ambiguity() -> HTML:
-    """How well a picture tells the two tilts apart."""
+    """How well a picture distinguishes the two tilts."""
     distances = np.linspace(0.25, 2.5, 16)
     _, ax = plt.subplots(figsize=(6.0, 3.2))
     curves = {}
@@ -136,7 +136,7 @@ def _blended(p: float, v: float, a: float, goal: float, T: float) -> np.ndarray:
 
 
 def blend() -> HTML:
-    """A goal that moves mid-way: restart at rest, or go on."""
+    """A goal that moves half-way: the motion restarts from rest, or it continues."""
     first, change, T = lk.Trajectory(lk.Line([0.0], [0.2]), lk.Quintic(2.0)), 1.0, 2.0
     t = np.linspace(0.0, 3.2, 1281)
     p, v, a = (float(x[0]) for x in first(change))
@@ -172,7 +172,7 @@ def blend() -> HTML:
 
 
 class Sway(NamedTuple):
-    """A target that sways, and two beliefs of where it is, each shape (n,), in [s] and [m]."""
+    """A swaying target, and two estimates of its position, each shape (n,), in [s] and [m]."""
 
     t: np.ndarray
     truth: np.ndarray
@@ -180,14 +180,14 @@ class Sway(NamedTuple):
     ahead: np.ndarray
 
     def rms(self, belief: np.ndarray) -> float:
-        """Error of a belief after the filter has settled, in [mm]."""
+        """The error of an estimate after the filter has settled, in [mm]."""
         late = self.t > 1.5
         return 1e3 * float(np.sqrt(np.mean((belief - self.truth)[late] ** 2)))
 
 
 @cache
 def swaying() -> Sway:
-    """Pictures at 10 Hz, each 100 ms old when it arrives, with 1 mm of noise."""
+    """The target seen in pictures at 10 Hz, 100 ms old on arrival, with 1 mm of noise."""
     random = np.random.default_rng(SEED)
     period, age, noise = PERIOD, AGE, NOISE
     t = np.arange(0.0, 8.0, 0.005)
@@ -209,7 +209,7 @@ def swaying() -> Sway:
 
 
 def predict() -> HTML:
-    """A target that sways: last picture against prediction."""
+    """Compare the last picture of a swaying target with a prediction."""
     sway = swaying()
     rms = {"stale": sway.rms(sway.last), "predicted": sway.rms(sway.ahead)}
     holds(rms["predicted"] < 0.4 * rms["stale"], "prediction removes most of the error of age")
@@ -230,7 +230,7 @@ def predict() -> HTML:
 
 
 def following() -> HTML:
-    """The arm above a board that goes round, and as a ghost the arm that looks, then moves."""
+    """The arm above a circling board and, see-through, an arm that looks first and then moves."""
     logs, misses, unseen = {}, {}, {}
     start = ready_pose()
     law = course_controllers(lk.Model("left", lk.BAXTER))["workspace velocity"]
@@ -262,8 +262,8 @@ def following() -> HTML:
         error=misses["predicts"],
     )
     caption = (
-        "The board goes round below the hand, a camera beside the table sees it. The error is the "
-        "distance of the tip from the place 20 cm above the true tag."
+        "The board moves in a circle below the hand, and a camera beside the table sees it. The "
+        "error is the distance of the tip from the place 20 cm above the true tag."
     )
     return HTML(motion_html(motion, caption=caption, poster=poster(motion)))
 
@@ -284,11 +284,11 @@ SETUPS = {
     "corner 30 %": Setup(tilt=TILT, cover=0.3),
     "2 m, noise 2": Setup(tilt=TILT, noise=2.0, distance=2.0),
 }
-"""What is done to a picture of a tag 0.7 m away, tilted by 15 to 60 degrees."""
+"""Changes made to a picture of a tag 0.7 m away, tilted by 15 to 60 degrees."""
 
 
 def trust() -> HTML:
-    """Whether the errors are as large as the detector says, picture by picture."""
+    """Test whether the errors are as large as the detector says, for each kind of picture."""
     found = {name: consistency(setup, PICTURES, seed=5) for name, setup in SETUPS.items()}
     refused = ("blur 2 px", "smear 6 px", "corner 30 %")
     claim(
@@ -319,8 +319,8 @@ def trust() -> HTML:
     said = "; ".join(f"{name} {x:.2g}" if share else f"{name} refused"
                      for name, (share, x) in found.items())  # fmt: skip
     return figure(
-        f"The detector's word, put to the test with {PICTURES} pictures of each kind. Right would "
-        "be 3; the band is from 1.5 to 5.",
+        f"The detector's covariance, tested with {PICTURES} pictures of each kind. The right value "
+        "is 3; the band is from 1.5 to 5.",
         f"A point for each kind of picture. {said}.",
     )
 
@@ -357,9 +357,9 @@ def check_yourself() -> HTML:
             "A target moves at 0.2 m/s and the picture is 50 ms old. How far is it from where it "
             "was seen?",
             [
-                ("1 mm", "That would be the picture of 5 ms ago."),
+                ("1 mm", "That would be right for a picture that is 5 ms old."),
                 ("10 mm", "0.2 m/s times 0.05 s is 0.01 m."),
-                ("It depends on the gain", "The gain does not know."),
+                ("It depends on the gain", "The gain does not affect the target's motion."),
             ],
             1,
         ),

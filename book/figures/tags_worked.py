@@ -1,4 +1,4 @@
-"""Chapter "Tags and cameras": its two drawings, its numbers worked by hand, and where to aim."""
+"""Chapter "Tags and cameras": two drawings, calculations by hand, and the point to aim at."""
 
 from __future__ import annotations
 
@@ -35,18 +35,18 @@ LENS = Intrinsics(width=640, height=480, fx=FOCAL, fy=FOCAL)
 SPEED = 0.1
 AHEAD = TagFollower.horizon + AGE
 PUSHES = {2: 0.03, 3: 0.0035}
-"""How unsteady the velocity [m²/s³], or the acceleration [m²/s⁵], of a tag is believed to be."""
+"""Assumed unsteadiness of a tag's velocity [m²/s³] or of its acceleration [m²/s⁵]."""
 BELIEFS = {
     "it stays": (1, False),
     "it goes straight on": (2, False),
     "it goes on bending": (3, False),
     "it goes on turning": (3, True),
 }
-"""How many of position, velocity and acceleration a belief has, and whether the last one turns."""
+"""Number of states (position, velocity, acceleration) of a belief, and if the last one turns."""
 
 
 def by_hand(words: str, value: float, actual: float, near: float = 0.01) -> None:
-    """Bind a sentence to a number that a reader can work out and the code confirms."""
+    """Bind a sentence to a number that a reader can compute and the code confirms."""
     claim(words, lambda x: math.isclose(x, value, rel_tol=near), x=float(actual))
 
 
@@ -91,7 +91,7 @@ def frames() -> HTML:
 
 
 def timeline() -> HTML:
-    """When pictures are taken, when they arrive, and what is known in between."""
+    """The times at which pictures are taken and arrive, and the knowledge in between."""
     _, ax = plt.subplots(figsize=(6.4, 2.7))
     for k, ink in enumerate(("C0", "C2", "C3", "C4")):
         taken, arrived = 100.0 * k, 100.0 * k + 100.0
@@ -122,7 +122,7 @@ def timeline() -> HTML:
 
 
 def geometry() -> None:
-    """Numbers of the sections on pictures, each worked by hand and by the code."""
+    """Numbers of the sections on pictures, each computed by hand and by the code."""
     at = np.array((0.0, 0.0, 1.0))
     shows("$f$ = 600 pixels and a tag of 80 mm at a distance of 1 m", (600.0, 80.0, 1.0),
           (FOCAL, 1e3 * SIZE, at[2]))  # fmt: skip
@@ -196,7 +196,7 @@ def _tilt_read(left: float, right: float) -> float:
 
 
 def one_blend() -> None:
-    """The blend that is worked by hand."""
+    """The blend that the text computes by hand."""
     now, goal = (np.array([x]) for x in (0.1, 0.0)), np.array([0.12])
     position, still = now
     reference = lk.Sample(position, np.array([0.1]), still)
@@ -212,7 +212,7 @@ def one_blend() -> None:
 
 
 def two_pictures() -> None:
-    """The filter's first steps, which are worked by hand."""
+    """The filter's first steps, which the text computes by hand."""
     noise, q, z = 1e-6 * np.eye(3), 0.0025, 0.012
     by_hand("A first picture says 0 mm, with $R = 1$ mm²", 1.0, 1e6 * noise[0, 0])
     shows("The second picture, 0.1 s later, says 12 mm", (0.1, 12.0), (PERIOD, 1e3 * z))
@@ -276,7 +276,7 @@ def two_pictures() -> None:
 
 
 def old_pictures() -> None:
-    """What age alone costs a target that sways, by hand, against what the run shows."""
+    """The error due to age alone for a swaying target, by hand and from the run."""
     sway = swaying()
     age = math.sqrt(0.15**2 + 0.1**2 / 12.0)
     speed = float(np.sqrt(np.mean(np.gradient(sway.truth, sway.t)[sway.t > 1.5] ** 2)))
@@ -289,7 +289,7 @@ def old_pictures() -> None:
 
 
 def steering() -> None:
-    """How much gain an old picture allows, and how far behind a moving goal the hand stays."""
+    """The gain that an old picture allows, and the distance of the hand behind a moving goal."""
     delay = 0.1
     gain = 1.0 / (math.e * delay)
     by_hand("with an age of 100 ms it is 3.7 1/s", 3.7, gain)
@@ -304,9 +304,9 @@ def steering() -> None:
 
 
 def _steered(gain: float, speed: float = 0.0) -> np.ndarray:
-    """Places of a hand that starts 1 m behind its goal and sees the gap 0.1 s late, from the goal.
+    """Positions, relative to its goal, of a hand that starts 1 m behind it and sees it 0.1 s late.
 
-    With a speed of the goal in [m/s] the hand begins without a gap, and 1 is added.
+    If the goal has a speed, in [m/s], the hand starts at the goal, and 1 is added to the positions.
     """
     dt, lag = 0.001, 100
     gap = [0.0 if speed else 1.0] * (lag + 1)
@@ -316,7 +316,7 @@ def _steered(gain: float, speed: float = 0.0) -> np.ndarray:
 
 
 def _aimed(order: int, turns: bool, noise: float) -> float:
-    """RMS distance in mm between the point aimed at and the tag that goes round."""
+    """The RMS distance in mm between the point aimed at and the circling tag."""
     random, w = np.random.default_rng(1), SPEED / RADIUS
 
     def at(t: float) -> np.ndarray:
@@ -341,7 +341,7 @@ def _aimed(order: int, turns: bool, noise: float) -> float:
 
 
 def aims() -> HTML:
-    """How far ahead a belief can aim, against the noise of the readings."""
+    """The error of aiming ahead by each belief, against the noise of the readings."""
     noises = np.geomspace(0.02e-3, 3e-3, 10)
     _, ax = plt.subplots(figsize=(6.0, 3.2))
     curves = {}
@@ -388,7 +388,7 @@ def aims() -> HTML:
 
 
 def question() -> None:
-    """How fast the tag of the task goes round: a quintic's peak is 15/8 of its mean."""
+    """The speed of the tag in the task: the peak of a quintic is 15/8 of its mean."""
     by_hand("a circle 12 cm across", 0.12, 2.0 * RADIUS)
     by_hand("The hand is to stay 20 cm above the tag", 0.2, OFFSET[2])
     by_hand("With 30 % of the readings lost at random", 0.3, LOST)

@@ -23,11 +23,11 @@ RATES = (200.0, 1000.0)
 SPRING = (200.0, 200.0, 100.0, 100.0, 15.0, 15.0, 10.0)
 DAMPER = (30.0, 30.0, 15.0, 15.0, 2.0, 2.0, 1.5)
 REPORT_KP, REPORT_KD = 8.0, 1.5
-"""What the re-examined report used at its last joint, in N m/rad and N m s/rad."""
+"""The gains of the re-examined report at its last joint, in N m/rad and N m s/rad."""
 
 
 def responses() -> HTML:
-    """Every joint starts 0.1 rad off: what the two laws make of it."""
+    """The responses of the two laws if every joint starts 0.1 rad from its target."""
     q0 = lk.robot("left").ready
     model = lk.Model("left")
     laws = {
@@ -71,14 +71,14 @@ def responses() -> HTML:
 
 
 def radius(inertia: float, kp: float, kd: float, period: float) -> float:
-    """Spectral radius of one joint whose torque is held between ticks."""
+    """The spectral radius of a joint whose torque is held between ticks."""
     A = np.array([[1.0, period], [0.0, 1.0]])
     B = np.array([[0.5 * period**2], [period]]) / inertia
     return float(np.abs(np.linalg.eigvals(A - B @ np.array([[kp, kd]]))).max())
 
 
 def sampled() -> HTML:
-    """Which inertia a held torque can control."""
+    """The inertia that a held torque can control."""
     inertia = np.geomspace(3e-4, 1.0, 400)
     bare = float(lk.Model("left", lk.IDEAL).mass_matrix(lk.robot("left").neutral)[6, 6])
     real = float(lk.Model("left", lk.BAXTER).mass_matrix(lk.robot("left").neutral)[6, 6])
@@ -139,7 +139,7 @@ def weight_runs() -> dict[str, lk.Log]:
 
 
 def weight() -> HTML:
-    """Gravity compensated twice lifts the arm."""
+    """Show that gravity compensation applied twice lifts the arm."""
     _, ax = plt.subplots(figsize=(6.0, 2.8))
     ends = {}
     for k, (name, log) in enumerate(weight_runs().items()):
@@ -174,7 +174,7 @@ def circle_run() -> lk.Log:
 
 
 def circle_replay() -> HTML:
-    """The same in 3-D."""
+    """The circle by computed torque, in 3-D."""
     caption = "Computed torque on the circle, realistic arm, 200 Hz."
     return replay(
         circle_run(), "A circle by computed torque", caption, label="computed torque", torque=True
@@ -182,7 +182,7 @@ def circle_replay() -> HTML:
 
 
 def circle_tracking() -> HTML:
-    """The same as curves, with its number."""
+    """The circle by computed torque, as curves and with its error."""
     number("circle_rms", metrics.summary(circle_run()).rms_mm, ".2g")
     shows("Computed torque with $K_p = 225$ 1/s² and $K_d = 30$ 1/s", (225.0, 30.0),
           (ON_CIRCLE, ON_CIRCLE_KD))  # fmt: skip
@@ -190,7 +190,7 @@ def circle_tracking() -> HTML:
 
 
 def speeds() -> HTML:
-    """Larger gains settle faster, but only up to a point."""
+    """A table which shows that larger gains settle faster, but only up to a point."""
     rows = []
     for kp in (1.0, 4.0, 16.0, 64.0, 256.0):
         slowest = float(-np.roots((1.0, 4.0, kp)).real.max())

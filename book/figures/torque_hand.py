@@ -1,4 +1,4 @@
-"""Chapter "Torque control": its drawing, its sums by hand, and a weight that the law ignores."""
+"""Chapter "Torque control": a drawing, calculations by hand, and a weight that the law ignores."""
 
 from __future__ import annotations
 
@@ -21,11 +21,11 @@ from .page import figure, number, numbers, shown, table
 from .torque import DAMPER, KP, ON_CIRCLE, REPORT_KD, REPORT_KP, SPRING, circle_run, radius
 
 WEIGHT = 0.5
-"""Of the thing in the hand, in [kg]."""
+"""Mass of the thing in the hand, in [kg]."""
 
 
 def box(ax: Axes, x: float, y: float, words: str, width: float = 2.0, ink: str = "C1") -> None:
-    """A box of a diagram, with its middle at (x, y)."""
+    """Draw a box of a diagram with its middle at (x, y)."""
     ax.add_patch(
         plt.Rectangle((x - width / 2, y - 0.42), width, 0.84, fill=False, edgecolor=ink, lw=1.4)
     )
@@ -33,12 +33,12 @@ def box(ax: Axes, x: float, y: float, words: str, width: float = 2.0, ink: str =
 
 
 def arrow(ax: Axes, a: tuple[float, float], b: tuple[float, float], ink: str = "#57606a") -> None:
-    """An arrow of a diagram."""
+    """Draw an arrow of a diagram."""
     ax.annotate("", b, a, arrowprops={"arrowstyle": "->", "color": ink, "lw": 1.2})
 
 
 def drawing() -> HTML:
-    """The two laws as diagrams: where the mass matrix is."""
+    """The two laws as diagrams, which show the place of the mass matrix."""
     _, axes = plt.subplots(2, 1, figsize=(6.4, 4.0))
     rows = (
         ("Computed torque: the gains are accelerations", "gains\nKp e + Kd ė", "× M(q)", True),
@@ -82,7 +82,7 @@ def drawing() -> HTML:
 
 
 def columns() -> HTML:
-    """One joint off its target: what computed torque asks of all the others."""
+    """The torques that computed torque demands of all joints if one is off its target."""
     model = lk.Model("left", lk.IDEAL)
     M = model.mass_matrix(model.robot.ready)
     away = 0.1
@@ -129,7 +129,7 @@ def springs() -> None:
 
 
 def ticks() -> None:
-    """The bare wrist at 200 Hz by trace and determinant, and the conditions against eigenvalues."""
+    """The bare wrist at 200 Hz: trace and determinant, and their conditions against eigenvalues."""
     model = lk.Model("left", lk.IDEAL)
     I = float(model.mass_matrix(lk.robot("left").neutral)[6, 6])
     rate, moving = 200.0, 1.0
@@ -175,7 +175,7 @@ def ticks() -> None:
 
 
 def lifted() -> None:
-    """Gravity added twice: the sum by hand, the balance solved, and the run."""
+    """Gravity added twice: the calculation by hand, the solution of the balance, and the run."""
     model = lk.Model("left", lk.BAXTER)
     q0, K = np.array(model.robot.ready), np.array(SPRING)
     g, J = model.gravity(q0), model.tip_jacobian(q0)
@@ -190,7 +190,7 @@ def lifted() -> None:
 
 
 def cut() -> None:
-    """How far s0 may be off before its motor is at its limit."""
+    """The error of s0 at which its motor reaches its limit."""
     inertia = float(lk.Model("left", lk.BAXTER).mass_matrix(lk.robot("left").ready)[0, 0])
     shows("With $K_p = 100$ 1/s² and 2.17 kg m² an error of 0.25 rad at rest asks s0 for 54 N m, "
           "and its limit is 50 N m", (100.0, 2.17, 0.25, 54.0, 50.0),
@@ -198,7 +198,7 @@ def cut() -> None:
 
 
 def wrists() -> None:
-    """Which joints friction holds beside their targets on the circle."""
+    """The joints that friction holds away from their targets on the circle."""
     off = 1e3 * np.sqrt((metrics.joint_error(circle_run()) ** 2).mean(axis=0))
     numbers({"rms_s0": off[0], "rms_w1": off[5]}, ".2g")
     model = lk.Model("left", lk.BAXTER)
@@ -228,7 +228,7 @@ def wrists() -> None:
 
 
 def payload() -> HTML:
-    """Half a kilogram in the hand that the law does not know of: where the hand comes to rest."""
+    """The place where the hand comes to rest with half a kilogram that the law ignores."""
     model = lk.Model("left", lk.IDEAL)
     q0 = model.robot.ready
     J = model.tip_jacobian(q0)

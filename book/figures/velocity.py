@@ -31,14 +31,14 @@ OFFSET = 0.1
 ENOUGH = 60.0
 """A phase margin that leaves little overshoot, in [degrees]."""
 DELAY = 0.004 + 0.5 / 100.0 + 0.5 / 200.0
-"""What the loop waits on average: the state's age, half its period, half a control period."""
+"""The average delay in the loop: the state's age, half its period, half a control period."""
 
 
 @cache
 def step_run(
     kp: float, kd: float = 0.0, plant: lk.Plant = lk.IDEAL, seconds: float = 2.0
 ) -> lk.Log:
-    """Joint s0 starts a tenth of a radian away from where it should stay."""
+    """Run with joint s0 a tenth of a radian away from its target at the start."""
     q0 = lk.robot("left").ready
     goal = q0 + OFFSET * np.eye(7)[0]
     with lk.Arm("left", plant, SEED, q0=q0) as arm:
@@ -50,7 +50,7 @@ def _error(log: lk.Log) -> np.ndarray:
 
 
 def damping() -> HTML:
-    """The D term slows a velocity-commanded joint, and beyond one it breaks the loop."""
+    """The D term slows a joint under velocity control, and above one it makes the loop unstable."""
     _, (ax, below) = plt.subplots(2, 1, figsize=(6.0, 5.0), height_ratios=(3, 2))
     told, rates = [], []
     for k, kd in enumerate((0.0, 0.5, 0.9)):
@@ -75,7 +75,7 @@ def damping() -> HTML:
     for log, name, style in ((calm, "Kd = 0.9", f"C2{STYLES[2]}"), (wild, "Kd = 1.1", "C4:")):
         below.plot(log.t[:40], log.command[:40, 0], style, marker=".", label=name)
     swings = [np.abs(np.diff(log.command[:, 0])) for log in (wild, calm)]
-    grows, fades = (float(x[8] / x[2]) for x in swings)  # later a limit holds the wild one
+    grows, fades = (float(x[8] / x[2]) for x in swings)  # later a limit stops the growing one
     claim(
         "a sequence that grows if $K_d > 1$",
         lambda grows, fades: grows > 1.5 and 0.2 < fades < 0.9,
@@ -96,7 +96,7 @@ def damping() -> HTML:
 
 
 def derivative() -> HTML:
-    """What the D term does to the error on a curve, and what it costs, on the realistic arm."""
+    """The effect of the D term on the error on a curve, and its cost, on the realistic arm."""
     kds = (0.0, 0.3, 0.6, 0.9)
     found = [speed_gains.trial("joint velocity", "circle", kd, 0) for kd in kds]
     error, shake = ([float(x[name]) for x in found] for name in ("late_rms_mm", "shake_mm_s"))
@@ -122,13 +122,13 @@ def derivative() -> HTML:
     )
     return figure(
         "The joint velocity PD on a circle, Kp = 3 1/s, realistic arm. Left: the error after the "
-        "first second. Right: how fast the hand still moves when it should stand.",
+        "first second. Right: how fast the hand still moves when it should be at rest.",
         f"The error falls with Kd while the jitter at rest grows: {rows}.",
     )
 
 
 def reach() -> None:
-    """Told to go 75 cm forwards, out of reach: where the arm comes to rest."""
+    """The place where the arm comes to rest if its target is 75 cm forwards, out of reach."""
     model = lk.Model("left")
     T = model.pose(model.robot.ready)
     R, goal = T[:3, :3], T[:3, 3] + np.array((0.75, 0.0, 0.0))
@@ -139,7 +139,7 @@ def reach() -> None:
     for lever in (0.26, 1.0):
         law = WorkspaceVelocityPD(model, Kp=3.0, lever=lever)
         with warnings.catch_warnings():
-            warnings.simplefilter("ignore", lk.errors.LabkitWarning)  # it says that it is singular
+            warnings.simplefilter("ignore", lk.errors.LabkitWarning)  # it warns of a singularity
             with lk.Arm("left", lk.BAXTER, SEED, q0=model.robot.ready) as arm:
                 e = metrics.tip_error(lk.run(arm, target, law), model)[-1]
         ends += [1e3 * np.linalg.norm(e[:3]), np.degrees(np.linalg.norm(e[3:]))]
@@ -155,7 +155,7 @@ def reach() -> None:
 
 
 def gains() -> HTML:
-    """How much gain lag and delay allow: measured overshoot beside the loop's phase margin."""
+    """The gain that lag and delay allow: measured overshoot and the loop's phase margin."""
     kps = np.array((1.0, 2.0, 4.0, 6.0, 8.0, 10.0, 14.0, 18.0, 24.0, 30.0))
     over = np.array([max(0.0, -_error(step_run(kp, 0.0, lk.BAXTER)).min() / OFFSET) for kp in kps])
     margin = np.array([phase_margin(kp) for kp in kps])
@@ -190,7 +190,7 @@ def gains() -> HTML:
 
 
 def unstable() -> None:
-    """Where the loop rings: by the damping ratio, by its phase, and in runs."""
+    """The gain at which the loop rings: by the damping ratio, by its phase, and in runs."""
     lag, whole = lk.BAXTER.velocity_lag, lk.BAXTER.velocity_lag + DELAY
     zeta = [1.0 / (2.0 * np.sqrt(kp * whole)) for kp in (14.0, 30.0)]
     past = [100.0 * np.exp(-np.pi * z / np.sqrt(1.0 - z * z)) for z in zeta]
@@ -235,7 +235,7 @@ def unstable() -> None:
 
 
 def phase_margin(kp: float) -> float:
-    """Of the loop Kp / s with the realistic arm's lag and delay, in [degrees]."""
+    """The phase margin of the loop Kp / s with the realistic arm's lag and delay, in [degrees]."""
     s = control.tf("s")
     loop = kp / (s * (lk.BAXTER.velocity_lag * s + 1.0))
     _, margin, _, crossing = control.margin(loop)
@@ -243,7 +243,7 @@ def phase_margin(kp: float) -> float:
 
 
 def rotation_demo() -> HTML:
-    """The live demo of orientation errors; on paper, those with which it opens."""
+    """The live demo of orientation errors; on paper, the errors of its first view."""
     target, actual = (_from_rpy(angles) for angles in ((0.2, 1.3, 0.1), (-2.6, 1.4, -2.7)))
     errors = {
         "logarithm": lk.se3.orientation_error(target, actual),
@@ -256,7 +256,7 @@ def rotation_demo() -> HTML:
     ax.set_xticks(np.arange(3) + 0.2, ["x, roll", "y, pitch", "z, yaw"])
     ax.set(ylabel="error [rad]")
     ax.legend(fontsize="small", loc="lower left", bbox_to_anchor=(0.0, 1.0))
-    caption = "Live: two orientations, and two ideas of the error between them."
+    caption = "Live: two orientations, and two definitions of the error between them."
     return HTML(demo_html("rotation", caption=caption, poster=still()))
 
 
@@ -346,7 +346,7 @@ def circle_runs() -> dict[str, lk.Log]:
 
 
 def circle_replay() -> HTML:
-    """Both on the circle, in 3-D."""
+    """Both controllers on the circle, in 3-D."""
     runs = circle_runs()
     (poses, _), gain = circle_task(), WorkspaceVelocityPD(lk.Model("left"), Kp=5.0).Kp
     shows("follow a circle with a radius of 10 cm in five seconds", (10.0, 5.0),
@@ -381,10 +381,10 @@ def check_yourself() -> HTML:
             "With feed-forward and no disturbance a controller tracks perfectly. Someone has the "
             "sign of e wrong. When does it show?",
             [
-                ("At once", "The error is zero, so its sign is nowhere to be seen."),
+                ("At once", "The error is zero, so its sign has no effect."),
                 (
                     "As soon as anything pushes the arm off, and then the error grows",
-                    "Test a controller from an offset and with the feed-forward taken away.",
+                    "Test a controller from an offset and without feed-forward.",
                 ),
                 ("Never", "It does: the smallest error now feeds on itself."),
             ],
@@ -396,7 +396,7 @@ def check_yourself() -> HTML:
             [
                 ("3 per second", "That is Kd = 0."),
                 ("1 per second", "The rate is Kp / (1 + Kd)."),
-                ("9 per second", "Kp (1 + Kd) would be: Kd acts the other way."),
+                ("9 per second", "This is Kp (1 + Kd), but Kd makes the decay slower."),
             ],
             1,
         ),

@@ -1,6 +1,6 @@
-"""What the chapters work by hand, each number against the code or against another formula.
+"""Calculations by hand in the chapters, each compared with the code or with another formula.
 
-The chapters on paths, on the model and on velocity control.
+These are the chapters on paths, on the model and on velocity control.
 """
 
 from __future__ import annotations
@@ -25,7 +25,7 @@ POSE = (0.0, pi / 2.0)
 
 
 def paths() -> None:
-    """Of the chapter on paths."""
+    """Numbers of the chapter on paths."""
     line = lk.Line(np.zeros(3), np.array(WAY))
     D, tick = line.length, 0.005
     sample = lk.Trajectory(line, lk.Quintic(DURATION))(1.0)
@@ -57,7 +57,7 @@ def paths() -> None:
 
 
 def _durations(D: float) -> None:
-    """How long the line takes, and a centimetre of it."""
+    """The duration of the line, and of a centimetre of it."""
     v, a = 0.25, 0.5
     quintic, bang = lk.Quintic.within(D, v, a).duration, lk.BangBang.within(D, v, a).duration
     trapezoid = lk.Trapezoid(D, v, a).duration
@@ -92,7 +92,7 @@ def _durations(D: float) -> None:
 
 
 def _bends(tick: float) -> None:
-    """A circle and a corner."""
+    """The accelerations on a circle and at a corner."""
     circle = lk.Circle(np.array((0.1, 0.0, 0.0)), np.zeros(3))
     middle = lk.Trajectory(circle, lk.Quintic(5.0))(2.5)
     v, a = np.linalg.norm(middle.velocity), np.linalg.norm(middle.acceleration)
@@ -125,7 +125,7 @@ def two_rods() -> lk.Model:
 
 
 def model() -> None:
-    """Of the chapter on the model."""
+    """Numbers of the chapter on the model."""
     arm = two_rods()
     J = arm.tip_jacobian(POSE)[[0, 2]]
     M, g, dq = arm.mass_matrix(POSE), arm.gravity(POSE), np.array((1.0, 2.0))
@@ -188,7 +188,7 @@ def _newton() -> None:
 
 
 def _elbow() -> None:
-    """At which elbow Baxter's arm is stretched, from its measures."""
+    """The elbow angle at which Baxter's arm is straight, from its dimensions."""
     arm = lk.Model("left")
     s1, e1, w1 = (arm.links(np.zeros(7))[k].T_wl[:3, 3] for k in (1, 3, 5))
     (upper, drop), (fore, sink) = (
@@ -207,14 +207,14 @@ def _elbow() -> None:
 
 
 def _smallest(arm: lk.Model, elbow: float) -> float:
-    """The smallest singular value of the tip Jacobian at an elbow angle, the rest neutral."""
+    """The smallest singular value of the tip Jacobian at an elbow angle, others neutral."""
     q = np.array(arm.robot.neutral)
     q[3] = elbow
     return float(np.linalg.svd(arm.tip_jacobian(q), compute_uv=False)[-1])
 
 
 def velocity() -> None:
-    """Of the chapter on velocity control."""
+    """Numbers of the chapter on velocity control."""
     left = {kd: 0.1 * exp(-3.0 / (1.0 + kd)) for kd in (0.0, 0.6)}
     shows("and the joint starts 0.1 rad away", (0.0050, 0.0153), left.values(), 0.01)
     shows("which is 0.0050 rad", 0.0050, left[0.0], 0.01)
@@ -251,7 +251,7 @@ def velocity() -> None:
 
 
 def _limited(J: np.ndarray) -> None:
-    """The two joints with a limit on the first: cut, and by the quadratic program."""
+    """The two joints with a limit on the first, cut off or by the quadratic program."""
     cut = np.minimum(np.linalg.pinv(J)[:, 0], (0.3, np.inf))
     price = 1e-4 * np.eye(2)
     best = lsq_linear(np.vstack((J, price)), (1.0, 0.0, 0.0), ([-0.3, -9.0], [0.3, 9.0]), "bvls").x
@@ -289,7 +289,7 @@ def _integral() -> None:
 
 
 def _wanted() -> None:
-    """The exercise on damping: the lambda that keeps a limit, and what it costs elsewhere."""
+    """The exercise on damping: the lambda that keeps a limit, and its cost elsewhere."""
     least = 0.2 / (2.0 * 1.5)
     ratios = np.geomspace(1e-3, 1.0, 999)
     slow = max(0.2 * damped_inverse(np.array([[x]]), least**2)[0, 0] for x in ratios)
@@ -299,7 +299,7 @@ def _wanted() -> None:
 
 
 def _swing() -> None:
-    """The error of a swinging joint behind a lag: the formula, and the equation integrated."""
+    """The error of a swinging joint with a lag, by the formula and by integration."""
     lag, kp, w, size = lk.BAXTER.velocity_lag, 3.0, 2.5, 0.3
     amplitude, run = [], []
     for kd in (0.0, 0.6):
@@ -318,7 +318,7 @@ def _swing() -> None:
 
 
 def _finite() -> None:
-    """A damped inverse in one direction."""
+    """The effect of a damped inverse in one direction."""
     damping = WorkspaceVelocityPD.damping
     factor = float(damped_inverse(np.array([[0.05]]), damping)[0, 0])
     shows("with $\\sigma = 0.05$ m/rad the tip should move at 0.1 m/s", 2.0, 0.1 / 0.05)

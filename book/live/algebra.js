@@ -1,5 +1,5 @@
-// Vectors as arrays of numbers, matrices as arrays of rows.  The loops are written out: when one function made
-// both numbers and rows, V8 boxed every number, and the laws ran 1.1 to 4.4 times slower (12 cases, node 20).
+// Vectors are arrays of numbers, and matrices are arrays of rows.  Loops are repeated on purpose: when one function
+// made both numbers and rows, V8 boxed every number, and the laws ran 1.1 to 4.4 times slower (12 cases, node 20).
 
 export const zeros = (n) => new Array(n).fill(0);
 
@@ -27,7 +27,7 @@ export function dot(a, b) {
   return sum;
 }
 
-/** Element by element; a gain may be one number for all. */
+/** The product element by element; a gain may be one number for all elements. */
 export function times(gain, a) {
   if (!Array.isArray(gain)) return scale(gain, a);
   const out = new Array(a.length);
@@ -70,7 +70,7 @@ export function transpose(A) {
   return rows;
 }
 
-/** A B^T: each entry is a product of two rows. */
+/** A B^T, in which each entry is the product of two rows. */
 export function timesTransposed(A, B) {
   const rows = [];
   for (let i = 0; i < A.length; i++) rows.push(apply(B, A[i]));
@@ -95,7 +95,7 @@ export function addDiagonal(A, d) {
   return out;
 }
 
-/** X of A X = B, B a matrix, by Gauss and Jordan with pivots. */
+/** The solution X of A X = B for a matrix B, by Gauss-Jordan elimination with pivots. */
 export function solveMatrix(A, B) {
   const n = A.length, rows = A.map((row, i) => row.concat(B[i])), wide = rows[0].length;
   for (let k = 0; k < n; k++) {
@@ -116,7 +116,7 @@ export function solveMatrix(A, B) {
 export const solve = (A, b) => solveMatrix(A, b.map((x) => [x])).map((row) => row[0]);
 export const inverse = (A) => solveMatrix(A, identity(A.length));
 
-/** Whether a symmetric matrix is positive definite: Cholesky finds no root of a negative number. */
+/** Whether a symmetric matrix is positive definite, so that Cholesky's method succeeds. */
 export function isPositive(S) {
   const L = S.map((row) => row.slice());
   for (let j = 0; j < L.length; j++) {
@@ -128,21 +128,21 @@ export function isPositive(S) {
   return true;
 }
 
-/** Eigenvalues, rising, and eigenvectors as rows, of a symmetric matrix: Jacobi's rotations. */
+/** The eigenvalues of a symmetric matrix in rising order, and its eigenvectors as rows, by Jacobi's rotations. */
 export function eigen(S) {
   const n = S.length, A = S.map((row) => row.slice()), V = identity(n);
   for (let sweep = 0; sweep < 60; sweep++) {
     let off = 0, on = 0;
     for (let i = 0; i < n; i++) for (let j = 0; j < n; j++) if (i === j) on += A[i][i] ** 2; else off += A[i][j] ** 2;
     if (off <= 1e-26 * on) break;
-    const least = 1e-15 * Math.sqrt(on); // what is smaller does not count
+    const least = 1e-15 * Math.sqrt(on); // smaller entries are taken for zero
     for (let p = 0; p < n; p++) for (let q = p + 1; q < n; q++) if (Math.abs(A[p][q]) > least) rotate(A, V, p, q);
   }
   const order = A.map((_, i) => i).sort((i, j) => A[i][i] - A[j][j]);
   return { values: order.map((i) => A[i][i]), axes: order.map((i) => V[i]) };
 }
 
-/** Turn rows and columns p and q of A, and the rows of V, so that A[p][q] vanishes. */
+/** Rotate rows and columns p and q of A, and the rows of V, so that A[p][q] vanishes. */
 function rotate(A, V, p, q) {
   const theta = (A[q][q] - A[p][p]) / (2 * A[p][q]);
   const t = (theta < 0 ? -1 : 1) / (Math.abs(theta) + Math.sqrt(theta * theta + 1));
@@ -174,5 +174,5 @@ export function root(S) {
 /** The smallest singular value of a wide matrix. */
 export const smallestSingularValue = (J) => Math.sqrt(Math.max(0, eigen(timesTransposed(J, J)).values[0]));
 
-/** J^T (J J^T + lambda^2 I)^-1; with lambda 0 the pseudo-inverse. */
+/** J^T (J J^T + lambda^2 I)^-1, which is the pseudo-inverse if lambda is 0. */
 export const dampedInverse = (J, damping) => transpose(solveMatrix(addDiagonal(timesTransposed(J, J), damping), J));

@@ -1,4 +1,4 @@
-// The arm: the plant in the engine.  Ask it for its state, give it a command, let time pass; `labkit/arm.py`.
+// The arm, which is the plant in the engine: read its state, set a command, advance the time; `labkit/arm.py`.
 import { apply, zeros } from "./algebra.js";
 import { Engine } from "./engine.js";
 import { Joints } from "./joints.js";
@@ -6,11 +6,11 @@ import { Model } from "./model.js";
 import { Motors } from "./motors.js";
 
 export class Arm {
-  /** `things` are {act, place}: see scene.js; `random` gives normal numbers for the noise. */
+  /** `things` are {act, place}, see scene.js; `random` returns normally distributed numbers for the noise. */
   constructor(mujoco, robot, plant, constants, random = null) {
     Object.assign(this, { robot, plant, random, dt: constants.dt, steps: 0, things: [] });
     this.model = new Model(robot, plant);
-    // It does not know what it carries; while it carries nothing, both are one.
+    // The arm's own model does not include its payload; without a payload both models are the same.
     this.own = plant.payload > 0 ? new Model(robot, { ...plant, payload: 0 }) : this.model;
     this.engine = new Engine(mujoco, robot, plant, this.dt);
     this.joints = new Joints(this.model, this.dt, constants.quick);
@@ -34,17 +34,17 @@ export class Arm {
   stop() { this.follow({ kind: "velocity", value: zeros(this.q.length) }); }
   follow(command) { this.motors.follow(command); }
 
-  /** The joints as they really are. */
+  /** The true state of the joints. */
   truth() { return { t: this.t, q: this.q, dq: this.dq }; }
 
-  /** The joints as the arm reports them now: as old and as noisy as the plant makes them. */
+  /** The state of the joints that the arm reports now, with the delay and the noise of the plant. */
   state() {
     if (!this.every) return this.truth();
     this.report();
     return this.newest();
   }
 
-  /** What a thing does to the point of the arm that it acts on; null where it does not reach it. */
+  /** The effect of a thing on its point of the arm; null if the thing does not reach the point. */
   touch(thing) {
     const { p, J } = this.model.point(this.q, thing.place ?? null);
     const touch = thing.act({ p, v: apply(J, this.dq) }, this.dt);
@@ -71,7 +71,7 @@ export class Arm {
     this.reported = this.steps;
     const noise = this.plant.velocity_noise;
     const dq = this.random ? this.dq.map((x, i) => x + noise[i] * this.random()) : this.dq;
-    this.newest(); // forgets those that nobody asked for
+    this.newest(); // deletes older reports that have arrived
     this.mail.push({ t: this.t, q: this.q, dq });
   }
 

@@ -1,9 +1,9 @@
-// In a page with live panels: a button each; the first click loads the viewer, MuJoCo and the panel.
+// Gives each live panel of a page a button; the first click loads the viewer, MuJoCo and the panel.
 
 const base = document.currentScript.src.split("?")[0].replace(/[^/]*$/, "");
 const asked = {};
 
-/** A classic script, once: works from a file, where fetch and modules do not. */
+/** Loads a classic script once; this works in pages opened from disk, where fetch and modules do not. */
 function script(name) {
   return (asked[name] ??= new Promise((done, failed) => {
     const element = document.createElement("script");

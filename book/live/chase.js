@@ -1,4 +1,4 @@
-// The task of following a tag: the tag moves or is dragged, a camera sees it, the tip goes where it is aimed.
+// The task of following a tag, which moves or is dragged: a camera sees it, and the tip moves to the aim.
 import { add, apply, dampedInverse, scale, subtract } from "./algebra.js";
 import { inverseKinematics } from "./inverse.js";
 import { Model } from "./model.js";
@@ -10,16 +10,16 @@ export const CAMERA = { rate: 10, age: 0.1, sigma: 0.001, predict: true };
 export const LAP = TAG.duration;
 
 export class Chase {
-  /** `ready` is the tip's pose over the tag's start; `joints` asks for a target of joint angles. */
+  /** `ready` is the tip's pose over the tag's start; with `joints` the target has joint angles. */
   constructor({ move = "circle", tagSpeed = (2 * Math.PI * TAG.radius) / TAG.lap, camera = CAMERA }, ready, joints, seed) {
     Object.assign(this, { ready, joints, dragged: null, path: MOVES[move]({ speed: tagSpeed, radius: TAG.radius }),
       sight: new Sight(camera, gaussian(seed)), model: new Model(ROBOT), q: ROBOT.ready });
   }
 
-  /** Where the tip should be at time t: over the tag as it is. */
+  /** The tip's goal at time t, which is over the true position of the tag. */
   goal(t) { return add(this.ready.p, this.dragged ?? this.path(t)); }
 
-  /** Where the law is told to be: what the camera makes of it. */
+  /** The target of the law, which comes from the camera's readings. */
   target(t) {
     this.sight.look(t, subtract(this.goal(t), this.ready.p));
     this.aimed = this.sight.aim(t);

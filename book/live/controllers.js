@@ -1,7 +1,7 @@
-// The five controllers of the course and Baxter's own way, as in `solutions/study`.
+// The five controllers of the course and Baxter's own controller, as in `solutions/study`.
 //
-// Each is made from a model and gains, and is a function of the arm's state {t, q, dq} and the
-// target's sample that returns a command.  Errors are target minus actual.
+// Each function takes a model and gains and returns a law, which takes the arm's state {t, q, dq} and
+// the target's sample and returns a command.  Errors are target minus actual.
 import { add, addDiagonal, apply, applyTransposed, dampedInverse, inverse, isPositive, root, scale, smallestSingularValue,
   solveMatrix, subtract, times, timesTransposed, transpose } from "./algebra.js";
 
@@ -9,13 +9,13 @@ export const position = (value) => ({ kind: "position", value });
 export const velocity = (value) => ({ kind: "velocity", value });
 export const torque = (value) => ({ kind: "torque", value });
 
-/** How much of the largest damping is due: 0 away from singularities, 1 at one. */
+/** The fraction of the largest damping to use: 0 far from singularities, 1 at a singularity. */
 export function nearness(J, threshold) {
   if (isPositive(addDiagonal(timesTransposed(J, J), -(threshold ** 2)))) return 0; // all singular values are above it
   return 1 - (smallestSingularValue(J) / threshold) ** 2;
 }
 
-/** Joint speeds of the damped inverse, which lets a radian count as much as `lever` metres. */
+/** Joint speeds by the damped inverse, for which a radian counts as much as `lever` metres. */
 export function dampedSpeeds(J, V, lambda2, lever) {
   const counts = [1, 1, 1, lever, lever, lever];
   return apply(dampedInverse(J.map((row, i) => scale(counts[i], row)), lambda2), times(counts, V));
@@ -29,7 +29,7 @@ export const workspaceVelocity = (model, { Kp, Kd, posture, pull, damping, lever
   const V = add(add(target.twist, times(Kp, e)), times(Kd, subtract(target.twist, apply(J, dq))));
   const wish = scale(pull, subtract(posture, q));
   const exact = dampedInverse(J, 0);
-  const free = subtract(wish, apply(exact, apply(J, wish))); // what of the wish the tip does not feel
+  const free = subtract(wish, apply(exact, apply(J, wish))); // the part of the wish that does not move the tip
   const lambda2 = nearness(J, threshold) * damping;
   return velocity(add(free, lambda2 ? dampedSpeeds(J, V, lambda2, lever) : apply(exact, V)));
 };
@@ -49,7 +49,7 @@ export const jointTorque = (model, { Kp, Kd, gravity }) => (state, target) => {
   return torque(gravity ? tau : subtract(tau, model.gravity(q)));
 };
 
-/** tau = J^T Lambda (dV_d + Lambda^-1 (D de + K e) - dJ dq) + C dq + g, and a posture that the tip does not feel. */
+/** tau = J^T Lambda (dV_d + Lambda^-1 (D de + K e) - dJ dq) + C dq + g, and a posture term that does not move the tip. */
 export const workspaceImpedance = (model, { K, zeta, gravity, posture, pull, damping, threshold }) => (state, target) => {
   const { q, dq } = state;
   const J = model.tipJacobian(q), M = model.massMatrix(q);
@@ -65,7 +65,7 @@ export const workspaceImpedance = (model, { K, zeta, gravity, posture, pull, dam
   return torque(gravity ? tau : subtract(tau, model.gravity(q)));
 };
 
-/** D = zeta (Lambda^1/2 K^1/2 + K^1/2 Lambda^1/2): every direction damped for the inertia that it moves. */
+/** D = zeta (Lambda^1/2 K^1/2 + K^1/2 Lambda^1/2), so that the damping in each direction suits its inertia. */
 function damper(inertia, K, zeta) {
   const A = root(inertia).map((row) => row.map((x, j) => x * Math.sqrt(K[j])));
   return A.map((row, i) => row.map((x, j) => zeta * (x + A[j][i])));
@@ -80,5 +80,5 @@ export const jointImpedance = (model, { K, D, gravity }) => (state, target) => {
   return torque(gravity ? add(tau, model.gravity(q)) : tau);
 };
 
-/** Baxter's own way: its server tells the arm's position mode where to be, 100 times a second. */
+/** Baxter's own controller: its server sends a target to the arm's position mode 100 times a second. */
 export const baxtersOwn = () => (state, target) => position(target.position);

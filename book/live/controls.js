@@ -1,9 +1,9 @@
-// Which dials a controller has, and which the arm has: label, unit, range, and what it sets.
+// The dials of each controller and of the arm, with their labels, units, ranges and the values that they set.
 import { CONTROLLERS } from "./numbers.js";
 
 const first = (x) => (Array.isArray(x) ? x[0] : x);
 
-/** The dials of a controller's gains, beginning where the comparison has them. */
+/** The dials of a controller's gains, which begin at the gains of the comparison. */
 export function gainDials(plant, controller) {
   const { gains } = CONTROLLERS[plant][controller];
   const of = (key, label, unit, max) => ({ key, label, unit, min: 0, max, value: first(gains[key]) });
@@ -21,7 +21,7 @@ export function gainDials(plant, controller) {
   }[controller]();
 }
 
-/** The dials of the arm and of what stands around it. */
+/** The dials of the arm and of its surroundings. */
 export const ARM_DIALS = [
   { key: "friction", label: "Friction ×", unit: "Baxter's", min: 0, max: 3 },
   { key: "payload", label: "Payload", unit: "kg", min: 0, max: 2 },

@@ -1,4 +1,4 @@
-// The corners of a tag in a picture, to be dragged: which two poses they allow, and when the better one changes.
+// A tag in a picture whose corners can be dragged: it shows the two poses that they allow, and when the better one changes.
 import { add, dot, length, scale } from "./algebra.js";
 import { dial } from "./dial.js";
 import { TAG } from "./numbers.js";
@@ -6,28 +6,28 @@ import { product } from "./space.js";
 import { cornersOf, seen, twoPoses } from "./two_poses.js";
 
 const NAMES = ["upper left", "upper right", "lower right", "lower left"];
-const WIDE = 168, TALL = 132; // of the part of the picture that is shown, in its pixels: room for the nearest, most tilted tag
-const STEP = 0.5; // of a key, in pixels
+const WIDE = 168, TALL = 132; // the part of the picture that is shown, in its pixels, with room for the nearest and most tilted tag
+const STEP = 0.5; // step of a button, in pixels
 const COLOURS = { A: "var(--lk-line-0)", B: "var(--lk-line-3)" };
 const MARGIN = 4;
 
-/** A tag straight ahead, in [m], turned about the picture's vertical by so many degrees. */
+/** The pose of a tag straight ahead at a distance in [m], turned about the picture's vertical by an angle in degrees. */
 export function tilted(distance, degrees) {
   const a = (degrees * Math.PI) / 180, c = Math.cos(a), s = Math.sin(a);
   return { R: product([c, 0, s, 0, 1, 0, -s, 0, c], [1, 0, 0, 0, -1, 0, 0, 0, -1]), p: [0, 0, distance] };
 }
 
-/** Its corners in the picture, in pixels from the picture's middle. */
+/** The corners of a tag in the picture, in pixels from the picture's middle. */
 export const pictured = (pose) => cornersOf(TAG.size).map((corner) => scale(TAG.focal, seen(pose, corner)));
 
-/** Both poses by name, each the one that is nearer to what had its name `before`, and the name of the better one. */
+/** Both poses by name, and the name of the better one; each name stays with the pose nearer to the one that had it `before`. */
 export function named(image, before) {
   const [one, other] = twoPoses(TAG.size, image.map((corner) => scale(1 / TAG.focal, corner)));
   const swapped = before && dot(before.A.R, other.R) > dot(before.A.R, one.R);
   return swapped ? { A: other, B: one, better: "B" } : { A: one, B: other, better: "A" };
 }
 
-/** How a pose stands, in words. */
+/** A description of a pose. */
 function told({ R, p, miss }) {
   const normal = [R[2], R[5], R[8]], angle = Math.acos(Math.min(1, -dot(normal, p) / length(p)));
   const [side, up] = [normal[0] > 0 ? "to the right" : "to the left", normal[1] > 0 ? "downwards" : "upwards"];
@@ -35,7 +35,7 @@ function told({ R, p, miss }) {
   return `${((angle * 180) / Math.PI).toFixed(0)}° ${way}, ${length(p).toFixed(3)} m away, misses the corners by ${(TAG.focal * miss).toFixed(2)} px`;
 }
 
-/** The field. */
+/** The fieldset with the picture, the descriptions and the controls. */
 export function corners({ h, svg, unique }) {
   let image, found, chosen = 0, at = { distance: 0.9, tilt: 15 };
   const art = svg("svg", { class: "lk-corners", viewBox: `${-WIDE / 2} ${-TALL / 2} ${WIDE} ${TALL}`, role: "img",
@@ -75,7 +75,7 @@ export function corners({ h, svg, unique }) {
     show();
   }
 
-  /** A pointer holds corner k until it goes up. */
+  /** Let a pointer drag corner k until the pointer is released. */
   function take(event, k) {
     event.preventDefault();
     choose.value = String((chosen = k));
@@ -98,7 +98,7 @@ export function corners({ h, svg, unique }) {
     at = { ...at, ...what };
     image = pictured(tilted(at.distance, at.tilt));
     found = null;
-    show("As the tag is: A is right.");
+    show("These are the tag's true corners, and pose A is right.");
   }
 
   const dials = [

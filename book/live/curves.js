@@ -1,15 +1,15 @@
-// The plots of a panel: a whole run, the run before it faint, the kept one dashed, on axes that stay.
+// The plots of a panel: a whole run, a faint line for the run before it, a dashed one for the kept run, on fixed axes.
 import { wholeRun } from "./session.js";
 
 const POINTS = 160;
 const rest = () => new Promise((go) => setTimeout(go, 0));
 
-/** What can be plotted of a run's ticks; `top` is the least height of its axis. */
-export const ERROR = { title: "Tip error, computed anew for the whole run [mm]", unit: "mm", top: 10, value: (tick) => 1000 * tick.error };
+/** Quantities of a run's ticks that can be plotted; `top` is the smallest maximum of the axis. */
+export const ERROR = { title: "Tip error, computed again for the whole run [mm]", unit: "mm", top: 10, value: (tick) => 1000 * tick.error };
 export const ASKED = { title: "Largest joint speed that the law asks for [rad/s]", unit: "rad/s", top: 5, most: 20,
   value: (tick) => Math.max(...tick.asked.map(Math.abs)) };
 
-/** Numbers of a run: root mean square and largest error in mm, quickest joint in rad/s. */
+/** Numbers of a run: the root mean square and the largest error in mm, and the highest joint speed in rad/s. */
 export function summary(ticks) {
   const errors = ticks.map((tick) => 1000 * tick.error);
   const rms = Math.sqrt(errors.reduce((sum, x) => sum + x * x, 0) / errors.length);
@@ -24,7 +24,7 @@ export class Curves {
     this.element.append(...this.plots.map(({ plot }) => plot.element));
   }
 
-  /** Simulate a run and draw it; returns its numbers in words. */
+  /** Simulate a run, draw it, and return a sentence with its numbers. */
   async run(mujoco, settings, seconds, stopped) {
     const ticks = await wholeRun(mujoco, settings, seconds, { rest, stopped });
     if (stopped()) return "";
@@ -34,7 +34,7 @@ export class Curves {
     return `error ${rms.toFixed(2)} mm (root mean square), ${most.toFixed(2)} mm at most; the fastest joint reaches ${speed.toFixed(2)} rad/s.`;
   }
 
-  /** Draw these ticks as the present run; the one before stays behind them. */
+  /** Draw these ticks as the present run; the previous run stays behind it. */
   show(ticks) {
     const step = Math.max(1, Math.floor(ticks.length / POINTS)), few = ticks.filter((_, k) => k % step === 0);
     [this.before, this.last] = [this.last, few];
@@ -52,7 +52,7 @@ export class Curves {
       if (this.kept) series.push({ name: "kept", values: fit(this.kept), colour: "#1f77d0", dash: "7 3" });
       series.push({ name: "now", values: fit(this.last), colour: "var(--lk-trace)", dash: "", width: 2.4 });
       const high = Math.max(...series.flatMap((s) => s.values));
-      while (high > one.top) one.top *= /^2/.test(String(one.top)) ? 2.5 : 2; // never shrinks under the reader's eyes
+      while (high > one.top) one.top *= /^2/.test(String(one.top)) ? 2.5 : 2; // the axis never shrinks while the reader looks at it
       one.plot.least = one.top;
       one.plot.set(series, x);
     }
@@ -62,9 +62,9 @@ export class Curves {
   drop() { this.kept = null; this.draw(); }
   time(t) { this.plots.forEach(({ plot }) => plot.time(t)); }
 
-  /** The numbers at a time, in words. */
+  /** A description of the values at a time. */
   at(t) {
-    if (!this.last) return "not there yet";
+    if (!this.last) return "the curve is not ready yet";
     const i = Math.max(0, this.last.findIndex((tick) => tick.t >= t));
     return this.plots.map(({ of }) => {
       const told = (ticks) => `${of.value(ticks[Math.min(i, ticks.length - 1)]).toFixed(1)} ${of.unit}`;

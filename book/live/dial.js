@@ -1,4 +1,4 @@
-// A slider with a typed number beside it, linear or with even ratios; any value that is typed counts.
+// A slider with a box for a number beside it, with linear or logarithmic steps; any typed value within the limits is used.
 
 export function dial({ h, unique }, { label, unit = "", min, max, value, ratio = false, digits = 3, oninput }) {
   const id = unique("live"), STEPS = 1000;

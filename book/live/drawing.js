@@ -1,4 +1,4 @@
-// The picture of a live panel: the arm, its path, the things around it, and forces as arrows.
+// The picture of a live panel, with the arm, its path, the things around it, and arrows for forces.
 import { subtract } from "./algebra.js";
 import { Form } from "./form.js";
 import { hold } from "./hands.js";
@@ -6,7 +6,7 @@ import { quaternion } from "./model.js";
 import { TAG } from "./numbers.js";
 import { ELBOW, READY, wallAt } from "./settings.js";
 
-const NEWTON = 0.01; // metres of arrow for a newton
+const NEWTON = 0.01; // length of an arrow for 1 N, in metres
 
 export class Drawing extends Form {
   draw3d(robot) {
@@ -24,13 +24,13 @@ export class Drawing extends Form {
     this.drawPath();
   }
 
-  /** What the first view shows: the target's path, and the arm from the elbow on. */
+  /** The points that the first view shows: the target's path, and the arm from the elbow to the tip. */
   inSight() {
     const { arm, lap } = this.session, { joints } = arm.own.frames(arm.q);
     return [0, 0.25, 0.5, 0.75].map((s) => this.session.goal(s * lap)).concat([arm.own.pose(arm.q).p, joints[ELBOW].p]);
   }
 
-  /** The path of the target, dashed. */
+  /** Draw the path of the target as a dashed line. */
   drawPath() {
     const { viewer, picture, session } = this;
     if (!picture.works) return;
@@ -42,7 +42,7 @@ export class Drawing extends Form {
     picture.stage.draw();
   }
 
-  /** The arms as they are now, what stands around them, and what pushes. */
+  /** Draw the arms in their present state, their surroundings, and the forces on them. */
   drawNow(now) {
     const { picture } = this;
     picture.pose("left", this.session.arm.q);
@@ -59,7 +59,7 @@ export class Drawing extends Form {
     const [w, ...xyz] = quaternion(this.session.turn);
     const things = { target: { kind: "target", position: now.goal, quaternion: [...xyz, w] } };
     if (this.session.chase) things.tag = { kind: "tag", position: subtract(now.goal, TAG.offset), size: TAG.size };
-    if (this.settings.controller === "workspaceImpedance") things.spring = { kind: "band", position: now.goal }; // what the law makes
+    if (this.settings.controller === "workspaceImpedance") things.spring = { kind: "band", position: now.goal }; // the spring that the law simulates
     if (this.settings.wall !== undefined) {
       const { point, size } = wallAt(this.settings.wall);
       things.wall = { kind: "face", position: point, quaternion: [0, -Math.SQRT1_2, 0, Math.SQRT1_2], size };

@@ -1,9 +1,9 @@
-// MuJoCo's WebAssembly as the engine of an arm; `labkit/sim/mujoco.py`, from the same model file.
+// MuJoCo's WebAssembly as the engine of an arm, with the same model file as `labkit/sim/mujoco.py`.
 import { bodiesOf, principal } from "./model.js";
 
 const OFF = ["mjDSBL_CONSTRAINT", "mjDSBL_SENSOR", "mjDSBL_ACTUATION", "mjDSBL_AUTORESET"];
 
-/** A typed array as a plain one, many times quicker than by Array.from. */
+/** A plain array copied from a typed one, many times faster than with Array.from. */
 function numbers(typed) {
   const out = new Array(typed.length);
   for (let i = 0; i < out.length; i++) out[i] = typed[i];
@@ -11,7 +11,7 @@ function numbers(typed) {
 }
 
 export class Engine {
-  /** `mujoco` is the loaded module; stops, contacts and friction are the lab's own. */
+  /** `mujoco` is the loaded module; the lab's own code simulates stops, contacts and friction. */
   constructor(mujoco, robot, plant, dt) {
     Object.assign(this, { mujoco, model: mujoco.MjModel.from_xml_string(robot.urdf) });
     const { model } = this;
@@ -32,7 +32,7 @@ export class Engine {
     model.body_iquat.set(quaternion, 4 * last);
   }
 
-  /** Windows on MuJoCo's memory, opened anew where that memory has grown. */
+  /** Views of MuJoCo's memory, which are made again if the memory has grown. */
   view() {
     if (this.q?.length) return this;
     return Object.assign(this, { q: this.data.qpos, dq: this.data.qvel, tau: this.data.qfrc_applied });

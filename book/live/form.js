@@ -1,4 +1,4 @@
-// The fields of a live panel: what one chooses, dials and pushes.
+// The fields of a live panel, with its choices, dials and push buttons.
 import { ARM_DIALS, gainDials } from "./controls.js";
 import { dial } from "./dial.js";
 import { AXES, pushTips } from "./hands.js";
@@ -10,7 +10,7 @@ const PATHS = ["line", "circle", "square", "tag", "stay"];
 const key = (names, label) => Object.keys(names).find((k) => names[k] === label);
 
 export class Form {
-  /** What stands under the picture, in order. */
+  /** The parts below the picture, in order. */
   parts() {
     return [this.buttons(), this.choices(), this.fieldset("Gains", this.gainbox), this.hands(), this.details(), this.numbers,
       this.curves.element, this.said];
@@ -49,7 +49,7 @@ export class Form {
     const { plant, controller, gains } = this.settings;
     const dials = gainDials(plant, controller).map((spec) => this.dial({ ...spec, value: gains[spec.key] ?? spec.value },
       (x) => this.change({ gains: { ...this.settings.gains, [spec.key]: x } })));
-    const none = "The position mode has no gains to choose: it goes to its target as fast as its motors can still brake.";
+    const none = "The position mode has no gains to choose: it moves to its target at the highest speed from which its motors can still brake.";
     this.gainbox.replaceChildren(...(dials.length ? dials.map((d) => d.element) : [this.h("p", { class: "lk-kept" }, none)]));
   }
 

@@ -1,15 +1,15 @@
-// Hands on the arm: a spring to the pointer or finger, and pushes of so many newtons by button or key.
+// Hands on the arm: a spring to the pointer or finger, and pushes with a given force by button or key.
 import { add, length, scale, subtract } from "./algebra.js";
 import { push, spring } from "./scene.js";
 import { placeOn } from "./session.js";
 
 const PULL = { stiffness: 250, damping: 8 }; // N/m and N s/m of the spring to the pointer
-const REACH = 0.2; // how far it stretches at most, in [m]
-const PUSH = 1; // how long a push by button lasts, in [s] of the arm's time
+const REACH = 0.2; // the largest length of that spring, in [m]
+const PUSH = 1; // duration of a push by button, in [s] of the arm's time
 
 export const AXES = { "+x": [1, 0, 0], "−x": [-1, 0, 0], "+y": [0, 1, 0], "−y": [0, -1, 0], "+z": [0, 0, 1], "−z": [0, 0, -1] };
 
-/** Let pointers take hold of the arm, or of `things()`, {name: move(point)}; calls `touched` as they do. */
+/** Let pointers take hold of the arm or of `things()`, {name: move(point)}; each hold calls `touched`. */
 export function hold(picture, sessions, things, touched) {
   picture.grab((picked) => {
     const move = things()[picked.thing];
@@ -33,7 +33,7 @@ export function hold(picture, sessions, things, touched) {
   }, ({ thing }) => !thing || thing in things());
 }
 
-/** Push the tips of some sessions along an axis, for a second of their time. */
+/** Push the tips of the arms in `sessions` along an axis, for a second of their time. */
 export function pushTips(sessions, axis, newtons) {
   for (const session of sessions) {
     session.hands = session.hands.filter(({ name }) => name !== "push");
@@ -41,7 +41,7 @@ export function pushTips(sessions, axis, newtons) {
   }
 }
 
-/** Take away pushes whose time is over. */
+/** Remove pushes whose time is over. */
 export function tire(session) {
   session.hands = session.hands.filter(({ until }) => until === undefined || session.loop.t < until);
 }

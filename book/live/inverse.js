@@ -5,7 +5,7 @@ import { spline } from "./spline.js";
 
 export class Unreachable extends Error {}
 
-/** Of all joint angles that put the tip at a pose, the nearest to `posture`: Gauss and Newton from q0. */
+/** The joint angles for a tip pose that are nearest to `posture`, found from q0 by the Gauss-Newton method. */
 export function inverseKinematics(model, pose, q0, posture) {
   const { bodies } = model.robot;
   const inside = (x) => x.map((v, i) => Math.min(Math.max(v, bodies[i].lower), bodies[i].upper));
@@ -27,7 +27,7 @@ export function inverseKinematics(model, pose, q0, posture) {
   throw new Unreachable(`the pose at ${pose.p.map((x) => x.toFixed(3)).join(", ")} m cannot be reached from here`);
 }
 
-/** The joint motion that takes the tip along a target of poses, near q0 all along. */
+/** The joint motion that moves the tip along a target of poses and stays near q0. */
 export function jointTrajectory(model, target, q0, samples) {
   if (!target.parts) return follow(model, target, q0, q0, samples);
   let q = q0;

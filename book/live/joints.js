@@ -1,14 +1,14 @@
-// The joints: what motors, dry friction and stops give in one physics step; `labkit/joints.py`.
+// The torques of motors, dry friction and stops at the joints in one physics step; `labkit/joints.py`.
 import { add, apply, applyTransposed, cut, dot, identity, inverse, scale, solve, subtract, timesTransposed, transpose, zeros } from "./algebra.js";
 
-// Where a joint stands: at its lower stop, given all there is upwards, at its target, given all there
-// is downwards, at its upper stop.
+// The cases for a joint: at its lower stop, with the largest torque upwards, at its target speed, with
+// the largest torque downwards, at its upper stop.
 const STICK = 3;
 const ROUNDING = 1e-14, TOGETHER = 20, ROUNDS = 200;
 
 /**
- * Torques y for which the speeds u + G y are the target's, as far as the bounds allow, and where each
- * joint stands.  Torque over speed is a staircase that falls, so there is one solution.
+ * Torques y for which the speeds u + G y are the target's as far as the bounds allow, and the case of
+ * each joint.  Torque over speed is a falling staircase, so the solution is unique.
  */
 export function jointTorques(G, u, target, bound, slowest, fastest, guess) {
   const n = u.length, unit = identity(n);
@@ -19,7 +19,7 @@ export function jointTorques(G, u, target, bound, slowest, fastest, guess) {
   const stands = [...guess];
   let y = zeros(n);
   for (let round = 0; round < ROUNDS; round++) {
-    const held = stands.map((k) => k % 2 === 1); // the speed is given, else the torque
+    const held = stands.map((k) => k % 2 === 1); // then the speed is given, otherwise the torque
     const given = stands.map((k, i) => (held[i] ? stairs[i][k] - u[i] : stairs[i][k]));
     y = held.some(Boolean) ? solve(held.map((h, i) => (h ? G[i] : unit[i])), given) : given;
     const v = add(u, apply(G, y));
@@ -32,7 +32,7 @@ export function jointTorques(G, u, target, bound, slowest, fastest, guess) {
       if (!move) continue;
       stands[i] += move;
       wrong = true;
-      if (round >= TOGETHER) break; // from then on one at a time
+      if (round >= TOGETHER) break; // in later rounds one joint at a time
     }
     if (!wrong) break;
   }
@@ -49,7 +49,7 @@ export class Joints {
 
   reset() { this.stands = this.lower.map(() => STICK); }
 
-  /** What the joints give in this step: `tau` all torque on them, `held` that of the drive within its bound. */
+  /** The torques in this step: `tau` is the whole torque on the joints, `held` that of the drive within its bound. */
   solve(q, dq, drive, touches) {
     const { model, dt } = this;
     const tau = subtract(drive.tau, model.plant.viscous.map((d, i) => d * dq[i]));
@@ -67,7 +67,7 @@ export class Joints {
       const a = apply(G, add(subtract(push, h), y));
       const speeds = add(dq, a);
       const kept = touches.filter((touch) => pushes(touch, apply(touch.J, speeds)));
-      if (kept.length < touches.length) return this.solve(q, dq, drive, kept); // the tip has left the others
+      if (kept.length < touches.length) return this.solve(q, dq, drive, kept); // the tip has left the other faces
       force = subtract(push, apply(D, a));
       this.felt = touches.map((touch) => subtract(touch.force, apply(touch.damping, apply(touch.J, speeds))));
     }
@@ -76,7 +76,7 @@ export class Joints {
   }
 }
 
-/** Forces f = f0 - D v, v at the end of the step and v = J dq, as torques and damping of the joints. */
+/** Forces f = f0 - D v, with v = J dq at the end of the step, as torques and damping of the joints. */
 function pressed(dq, tau, touches) {
   let push = tau, D = null;
   for (const { J, force, damping } of touches) {

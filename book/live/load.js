@@ -1,4 +1,4 @@
-// MuJoCo from its packed WebAssembly, which a script left as base64: no fetch, so file:// will do.
+// Loads MuJoCo from compressed WebAssembly, which a script contains as base64, so it also works on file://.
 
 export function unpacked(base64) {
   const packed = Uint8Array.from(atob(base64), (c) => c.charCodeAt(0));
@@ -6,7 +6,7 @@ export function unpacked(base64) {
   return new Response(plain).arrayBuffer();
 }
 
-/** The module, once for the page. */
+/** The module, which a page loads only once. */
 export function mujoco() {
   return (globalThis.labkitMuJoCo ??= unpacked(globalThis.labkitMuJoCoPacked).then((wasmBinary) => {
     delete globalThis.labkitMuJoCoPacked;

@@ -1,12 +1,12 @@
-// What the equations know of the arm: M(q) ddq + C(q, dq) dq + g(q) = tau.  Its numbers are `Robot`'s,
-// its frames are found by walking from the base to the tip, its torques by Newton and Euler.
+// The model of the arm, M(q) ddq + C(q, dq) dq + g(q) = tau.  Its numbers are those of `Robot`, its frames
+// are computed from the base to the tip, and its torques by the Newton-Euler method.
 import { add, addDiagonal, apply, dot, eigen, scale, subtract, zeros } from "./algebra.js";
 import { cross, inner, log, minus, plus, product, reverse, rotated, scaled, spun, withPoint } from "./space.js";
 
 export const GRAVITY = 9.81;
 const ZERO = [0, 0, 0];
 
-/** Two bodies as one; inertias about their centres, nine numbers each. */
+/** Two bodies combined into one; inertias are about the centres of mass, nine numbers each. */
 function joined(A, B) {
   const mass = A.mass + B.mass;
   const com = scaled(1 / mass, plus(scaled(A.mass, A.com), scaled(B.mass, B.com)));
@@ -14,7 +14,7 @@ function joined(A, B) {
   return { mass, com, inertia: withPoint(withPoint(both, A.mass, minus(A.com, com)), B.mass, minus(B.com, com)) };
 }
 
-/** The arm's bodies as nine and three numbers, the last one with what the hand carries. */
+/** The arm's bodies as plain numbers; the last one includes the payload in the hand. */
 export function bodiesOf({ bodies, tip }, payload) {
   const found = bodies.map((b) => ({
     R: b.T_parent.slice(0, 3).flatMap((row) => row.slice(0, 3)), p: b.T_parent.slice(0, 3).map((row) => row[3]),
@@ -24,7 +24,7 @@ export function bodiesOf({ bodies, tip }, payload) {
 }
 
 export class Model {
-  /** `plant` gives the payload in [kg] and each joint's rotor in [kg m^2]. */
+  /** `plant` has the payload in [kg] and each joint's rotor inertia in [kg m^2]. */
   constructor(robot, plant = { payload: 0, armature: zeros(robot.bodies.length) }) {
     Object.assign(this, { robot, plant, n: robot.bodies.length, bodies: bodiesOf(robot, plant.payload) });
   }
@@ -47,14 +47,14 @@ export class Model {
   /** The tip's pose {R, p} in the world. */
   pose(q) { return this.frames(q).tip; }
 
-  /** (v, w) = J dq for the tip's origin, world axes: six rows. */
+  /** J in (v, w) = J dq for the tip's origin in world axes, six rows. */
   tipJacobian(q) {
     const { joints, tip } = this.frames(q);
     const columns = joints.map(({ p, axis }) => cross(axis, minus(tip.p, p)).concat(axis));
     return [0, 1, 2, 3, 4, 5].map((k) => columns.map((c) => c[k]));
   }
 
-  /** A point of a link {link, local}: where it is, and its velocity's Jacobian, three rows; null is the tip. */
+  /** The position of a link's point {link, local}, and the three rows of its Jacobian; null means the tip. */
   point(q, place) {
     const { joints, tip } = this.frames(q);
     const p = place ? plus(joints[place.link].p, rotated(joints[place.link].R, place.local)) : tip.p;
@@ -63,7 +63,7 @@ export class Model {
     return { p, J: [0, 1, 2].map((k) => columns.map((c) => c[k])) };
   }
 
-  /** Velocities and accelerations from the base outwards: per joint w, dw and the origin's a. */
+  /** Velocities and accelerations from the base outwards: w, dw and the origin's acceleration a of each joint. */
   motion(q, dq, ddq, a0) {
     const { joints } = this.frames(q);
     let w = ZERO, dw = ZERO, a = a0, before = ZERO;
@@ -77,14 +77,14 @@ export class Model {
     });
   }
 
-  /** The tip's acceleration while the joints turn evenly: dJ/dt dq. */
+  /** The tip's acceleration dJ/dt dq while the joint speeds are constant. */
   drift(q, dq) {
     const { w, dw, a } = this.motion(q, dq, zeros(this.n), ZERO).at(-1);
     const { joints, tip } = this.frames(q);
     return carried(a, w, dw, minus(tip.p, joints.at(-1).p)).concat(dw);
   }
 
-  /** Torques of a motion by Newton and Euler, rotors left out; gravity as the base's acceleration. */
+  /** Torques of a motion by Newton-Euler, without rotors; gravity is an acceleration of the base. */
   newtonEuler(q, dq, ddq, gravity) {
     const { joints } = this.frames(q);
     const motion = this.motion(q, dq, ddq, [0, 0, gravity]);
@@ -103,7 +103,7 @@ export class Model {
     return tau;
   }
 
-  /** M(q): the bodies beyond each joint as one body, turned about it (Featherstone, section 6.2). */
+  /** M(q), from the bodies beyond each joint combined into one body (Featherstone, section 6.2). */
   massMatrix(q) {
     const { joints } = this.frames(q);
     const M = zeros(this.n).map(() => zeros(this.n));
@@ -128,26 +128,26 @@ export class Model {
     return this.newtonEuler(q, dq, ddq, GRAVITY).map((x, i) => x + this.plant.armature[i] * ddq[i]);
   }
 
-  /** C(q, a) b.  With Christoffel's C it is symmetric in a and b: the mixed term of a square. */
+  /** C(q, a) b.  With Christoffel symbols it is symmetric in a and b, and so the mixed term of a square. */
   coriolisTimes(q, a, b) {
     const square = (v) => this.newtonEuler(q, v, zeros(this.n), 0);
     return scale(0.5, subtract(subtract(square(add(a, b)), square(a)), square(b)));
   }
 
-  /** Target minus actual: place, and the turn that takes one into the other, world axes. */
+  /** Target minus actual in world axes: the difference of positions, and the rotation between them. */
   poseError(target, q) {
     const tip = this.pose(q);
     return minus(target.p, tip.p).concat(log(product(target.R, reverse(tip.R))));
   }
 
-  /** Half of dq M dq. */
+  /** The kinetic energy, half of dq M dq. */
   kineticEnergy(q, dq) { return 0.5 * dot(dq, apply(this.massMatrix(q), dq)); }
 }
 
 /** The acceleration of a point at r on a body whose origin accelerates with a. */
 const carried = (a, w, dw, r) => plus(plus(a, cross(dw, r)), cross(w, cross(w, r)));
 
-/** Principal moments and axes of a body, as MuJoCo keeps them: moments and a quaternion w, x, y, z. */
+/** A body's principal moments and axes in MuJoCo's form, moments and a quaternion w, x, y, z. */
 export function principal(inertia) {
   const { values, axes } = eigen([0, 3, 6].map((k) => inertia.slice(k, k + 3)));
   const [a, b] = axes, c = cross(a, b);

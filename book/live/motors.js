@@ -1,15 +1,15 @@
-// The motors: what each kind of command makes them do, physics step by physics step; `labkit/motors.py`.
+// The motors' response to each kind of command in each physics step; `labkit/motors.py`.
 import { cut, subtract, zeros } from "./algebra.js";
 
 export class Motors {
-  /** `own` is what the arm knows of itself: its own weight, not what it carries. */
+  /** `own` is the arm's model of itself, which has its own weight but not the payload. */
   constructor(dt, plant, own, braking) {
     const { bodies } = own.robot;
     Object.assign(this, { dt, plant, own, braking, nothing: zeros(bodies.length),
       effort: bodies.map((b) => b.effort), speed: bodies.map((b) => b.speed), saturated: false });
   }
 
-  /** Follow a command from the next physics step on, cut to the limits. */
+  /** Follow a command, limited to what the motors can do, from the next physics step. */
   follow({ kind, value }) {
     this.saturated = false;
     this.wanted = value;
@@ -26,7 +26,7 @@ export class Motors {
     return kept;
   }
 
-  /** {tau: given whatever happens, speed: held beside it, bound: the most torque that holds it}. */
+  /** {tau: a fixed torque, speed: the speed to hold in addition, bound: the largest torque that holds it}. */
   drive(q, dq) {
     const { plant, nothing } = this;
     if (this.kind === "torque") {
@@ -50,7 +50,7 @@ export class Motors {
     return (this.lagged = before.map((x, i) => x + (this.wanted[i] - x) * share));
   }
 
-  /** The position mode's speeds, from which the motors can still brake before they are there. */
+  /** The position mode's speeds, from which the motors can still brake before the target. */
   approach(q) {
     if (this.fresh) {
       const M = this.own.massMatrix(q), g = this.own.gravity(q);

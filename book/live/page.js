@@ -1,4 +1,4 @@
-// The door of the bundle: leaves `labkitLive` behind.
+// The entry point of the bundle, which defines `labkitLive`.
 import { mujoco } from "./load.js";
 import { Panel } from "./panel.js";
 import { tagPiece } from "./tag_piece.js";

@@ -1,4 +1,4 @@
-// The open page's panel: any path with any controller, dials, hands, a kept run beside the present one.
+// The panel of the live page: any path with any controller, dials, hands, and a kept run beside the present one.
 import { Curves, ERROR } from "./curves.js";
 import { ARM_DIALS } from "./controls.js";
 import { Drawing } from "./drawing.js";
@@ -10,13 +10,13 @@ import { TASK } from "./numbers.js";
 import { write } from "./predict.js";
 
 const GHOST = 0x1f77d0;
-export const CALM = 800; // ms without another curve until the last one is told
-const SIGNS = { zeta: "ζ", lambda2: "λ²", threshold: "damped where σ is below" }; // of gains, as the text has them
-const UNITS = { lambda2: " m²", threshold: " m" }; // a radian counts as a lever of so many metres
+export const CALM = 800; // ms without another curve before a screen reader is given the last one
+const SIGNS = { zeta: "ζ", lambda2: "λ²", threshold: "damped where σ is below" }; // symbols of gains, as in the text
+const UNITS = { lambda2: " m²", threshold: " m" }; // lengths, because angles are multiplied by a lever in metres
 
-const FORCES = { hand: "your pull" }; // what a reader calls them, where it is not their name
+const FORCES = { hand: "your pull" }; // words for a reader, if they differ from the name
 
-/** Settings in words: arm, controller, and what of both the reader has changed. */
+/** A description of settings: the arm, the controller, and what the reader has changed in both. */
 export function described({ controller, gains, plant, ...arm }) {
   const short = (x) => +x.toPrecision(3);
   const changed = ARM_DIALS.filter(({ key }) => key in PRESETS[plant] && arm[key] !== PRESETS[plant][key])
@@ -52,7 +52,7 @@ export class Panel extends Drawing {
     this.gainbox = h("div", { class: "lk-dials" });
     this.curves = new Curves(viewer, this.quantities(), (t) => this.say(`At ${t.toFixed(2)} s: ${this.curves.at(t)}`));
     this.element.append(stagebox, ...this.parts(), this.status);
-    if (this.predicted) this.element.prepend(this.predicted.element); // the question comes before the picture
+    if (this.predicted) this.element.prepend(this.predicted.element); // the question is above the picture
     host.append(this.element);
     this.picture = new viewer.Picture(stagebox, "Baxter, live");
     if (this.picture.works) {
@@ -61,14 +61,14 @@ export class Panel extends Drawing {
       stagebox.after(element);
       alone(true);
     }
-    else stagebox.append(h("p", { class: "lk-note" }, "This browser draws no 3-D (WebGL is missing). The arm is simulated all the same: push it by the buttons; numbers and curve follow."));
+    else stagebox.append(h("p", { class: "lk-note" }, "This browser cannot draw in 3-D (WebGL is missing). The arm is still simulated: push it with the buttons, and watch the numbers and the curve."));
     this.showGains();
   }
 
-  /** What is plotted of a run. */
+  /** The quantities of a run that are plotted. */
   quantities() { return [ERROR]; }
 
-  /** New settings: the arm goes on under them at once, the curve is made again. */
+  /** Use new settings: the arm continues with them at once, and the curve is computed again. */
   change(what) {
     this.settings = { ...this.settings, ...what };
     try {
@@ -85,7 +85,7 @@ export class Panel extends Drawing {
     this.showGains();
   }
 
-  /** Put this run beside the next ones: a see-through arm, and its curve. */
+  /** Show this run beside the next ones, as a see-through arm and a curve. */
   keep() {
     this.other?.close();
     this.picture.works && this.ghost?.remove();
@@ -97,7 +97,7 @@ export class Panel extends Drawing {
       this.restart();
     }
     this.keeper.textContent = this.kept ? "Discard the kept run" : "Keep this run";
-    this.say(this.kept ? "Kept: the see-through arm goes on with these values." : "The kept run is gone.");
+    this.say(this.kept ? "The see-through arm keeps these values." : "The kept run was discarded.");
   }
 
   restart() {
@@ -121,7 +121,7 @@ export class Panel extends Drawing {
     this.live(Math.min(asked, 0.3));
   }
 
-  /** Let time pass for the arms, in [s], and show what came of it. */
+  /** Advance the arms by a time in [s], and show the result. */
   live(seconds) {
     try {
       for (const session of this.sessions) {
@@ -150,7 +150,7 @@ export class Panel extends Drawing {
     }
   }
 
-  /** The curve of a whole run with the present settings; what was there stays behind it, faint. */
+  /** Compute the curve of a whole run with the present settings; the previous curve stays as a faint line. */
   recompute() {
     clearTimeout(this.due);
     this.due = setTimeout(async () => {
@@ -169,11 +169,11 @@ export class Panel extends Drawing {
   lost(problem) {
     this.pause(true);
     for (const session of this.sessions) session.restart();
-    this.numbers.textContent = `Stopped: ${problem.message}. The arm is back at its start; change a dial and go on.`;
+    this.numbers.textContent = `Stopped: ${problem.message}. The arm is back at its start; change a dial and continue.`;
     this.say(this.numbers.textContent);
   }
 
-  /** Tell a screen reader something, once and politely: of what comes in a row, the last alone. */
+  /** Let a screen reader say a sentence without interrupting; of several in a row, only the last one. */
   say(text, later = 0) {
     clearTimeout(this.telling);
     if (later) this.telling = setTimeout(() => this.say(text), later);

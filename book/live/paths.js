@@ -1,4 +1,4 @@
-// Paths, curves in s from 0 to 1, and what follows them in time; `labkit/paths.py`, `trajectory.py`.
+// Paths, which are curves in s from 0 to 1, and trajectories along them; `labkit/paths.py`, `trajectory.py`.
 import { add, length, scale, subtract, zeros } from "./algebra.js";
 import { profile, trapezoid, trapezoidDuration } from "../../labkit/replay/viewer/scaling.js";
 
@@ -22,7 +22,7 @@ export function circle(start, centre, turns = 1) {
   return Object.assign(path, { distance: Math.abs(rate) * Math.hypot(x, y) });
 }
 
-/** The segments from corner to corner. */
+/** The straight segments from corner to corner. */
 export const polyline = (points) => points.slice(1).map((goal, i) => line(points[i], goal));
 
 /** A path of points with one orientation along it. */
@@ -48,7 +48,7 @@ export const hold = (place, duration) => Object.assign(() => (place.p
   ? { pose: place, twist: zeros(6), dtwist: zeros(6) }
   : { position: place, velocity: zeros(place.length), acceleration: zeros(place.length) }), { duration, place });
 
-/** Trajectories one after another; at a joint the later one speaks. */
+/** Trajectories one after another; where two meet, the later one counts. */
 export function chain(parts) {
   const starts = parts.map((_, i) => parts.slice(0, i).reduce((sum, part) => sum + part.duration, 0));
   const target = (t) => {
@@ -63,7 +63,7 @@ export function chain(parts) {
 const PEAKS = { "bang-bang": [2, 4], cubic: [1.5, 6], quintic: [1.875, 10 / Math.sqrt(3)] };
 export const SCALINGS = [...Object.keys(PEAKS), "trapezoid"];
 
-/** The quickest schedule of a shape for which a path of this length keeps both limits. */
+/** The fastest schedule of a shape that keeps both limits on a path of this length. */
 export function within(shape, distance, speed, acceleration) {
   if (shape === "trapezoid") {
     return { scaling: (t) => trapezoid(distance, speed, acceleration, t), duration: trapezoidDuration(distance, speed, acceleration) };

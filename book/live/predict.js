@@ -1,19 +1,19 @@
-// A box for the reader's prediction: what they say stands beside what the arm does, or what equations give.
+// A box for the reader's prediction, which is shown beside the arm's result or that of the equations.
 
-/** Words for an element that a screen reader hears: the same words again are no news. */
+/** Write words into an element that a screen reader reads; repeated words are not written again. */
 export function write(element, text) {
   if (element.textContent !== text) element.textContent = text;
 }
 
 /**
- * `found()` gives the answer; `commit()` is called when the reader has said a number.  What
- * would tell it before is put `behind` some words, which then make room for it.
+ * `found()` returns the answer; `commit()` is called when the reader has entered a number.  Until
+ * then, `behind` shows some words in place of the elements that would give the answer away.
  */
 export function predictBox(h, { question, unit, commit, found }) {
   const number = h("input", { type: "number", step: "any", "aria-label": `Your prediction in ${unit}` });
   const answer = h("p", { role: "status" });
   const veils = [];
-  let said = null, told = false; // once the arm has answered, what a hand does to it later does not count
+  let said = null, told = false; // once the arm has answered, a later hand does not change the answer
   const tell = () => {
     if (said === null || told) return;
     const now = found();

@@ -1,6 +1,6 @@
-// Chance that repeats itself: numbers from a seed (Mulberry32), and normal ones by Box and Muller.
+// Repeatable random numbers: uniform ones from a seed (Mulberry32), and normal ones by the Box-Muller method.
 
-/** Numbers evenly from 0 to 1. */
+/** Uniformly distributed numbers from 0 to 1. */
 export function uniform(seed) {
   let state = seed >>> 0;
   return () => {
@@ -11,7 +11,7 @@ export function uniform(seed) {
   };
 }
 
-/** Normal numbers, mean 0 and deviation 1. */
+/** Normally distributed numbers with mean 0 and standard deviation 1. */
 export function gaussian(seed) {
   const draw = uniform(seed);
   return () => Math.sqrt(-2 * Math.log(1 - draw())) * Math.cos(2 * Math.PI * draw());

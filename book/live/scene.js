@@ -1,7 +1,7 @@
-// What the tip can meet: walls and tables that push, springs, hands; `labkit/scene.py`.
-// Each gives {act}, a function of a point {p, v} of the arm and the step dt that returns
-// {force, damping, outwards}, the force being f0 - D v at the end of the step, or null.
-// A `place` {link, local} on it is where on the arm it acts; without one it is the tip.
+// The things that the tip can meet: walls and tables that push, springs, hands; `labkit/scene.py`.
+// Each returns {act}, a function of a point {p, v} of the arm and of the step dt.  It returns null or
+// {force, damping, outwards}, where the force is f0 - D v at the end of the step.
+// A thing acts on its `place` {link, local} on the arm; without a `place` it acts on the tip.
 import { dot, length, scale, subtract } from "./algebra.js";
 import { cross } from "./space.js";
 
@@ -9,7 +9,7 @@ const outer = (a, b, s = 1) => a.map((x) => b.map((y) => s * x * y));
 const plus = (A, B) => A.map((row, i) => row.map((x, j) => x + B[i][j]));
 const diagonal = (s) => [[s, 0, 0], [0, s, 0], [0, 0, s]];
 
-/** A flat solid face: {point, normal, size, stiffness, damping, friction}; `pad` is the finger's rubber. */
+/** A flat solid face {point, normal, size, stiffness, damping, friction}; `pad` is the rubber of the finger. */
 export function wall({ point, normal, size, stiffness, damping, friction }, pad) {
   const n = scale(1 / length(normal), normal);
   const side = cross(Math.abs(n[1]) < 0.9 ? [0, 1, 0] : [0, 0, 1], n);
@@ -29,10 +29,10 @@ export function wall({ point, normal, size, stiffness, damping, friction }, pad)
   return { act };
 }
 
-/** A spring of no length of its own between the tip and an anchor. */
+/** A spring between the tip and an anchor, with a rest length of zero. */
 export const spring = ({ anchor, stiffness, damping, place }) => ({
   place,
   act: ({ p }, dt) => ({ force: scale(stiffness, subtract(anchor, p)), damping: diagonal(damping + stiffness * dt) }) });
 
-/** A hand that pushes with a force, whatever gives way. */
+/** A hand that pushes with a constant force, however far the arm moves. */
 export const push = (force) => ({ act: () => ({ force, damping: diagonal(0) }) });

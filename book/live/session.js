@@ -1,4 +1,4 @@
-// One arm at work: it follows its target again and again, is touched, and takes new settings as it goes.
+// One arm that follows its target again and again, is touched, and accepts new settings while it moves.
 import { length, subtract } from "./algebra.js";
 import { Arm } from "./arm.js";
 import { Chase, LAP } from "./chase.js";
@@ -14,7 +14,7 @@ export class Session {
     this.change(settings);
   }
 
-  /** New settings; the arm stays where it is and goes on as it goes. */
+  /** Use new settings; the arm keeps its position and its speed. */
   change(settings) {
     const before = this.arm, time = this.loop?.t ?? 0;
     this.settings = settings;
@@ -31,7 +31,7 @@ export class Session {
     this.solid = thingsOf(settings);
   }
 
-  /** What the law is told to follow, and what counts: a known motion, again and again, or a tag. */
+  /** Set the target of the law and the true goal: a known motion, which is repeated, or a tag. */
   follow(settings, joints) {
     if (settings.path === "tag") {
       const { dragged = null } = this.chase ?? {};
@@ -52,10 +52,10 @@ export class Session {
     this.arm.reset(this.settings.start ?? ROBOT.ready);
   }
 
-  /** What touches the arm now: things that stand around, and hands. */
+  /** Set what may touch the arm now: the things around it, and hands. */
   touched() { this.arm.things = [...this.solid, ...this.hands]; }
 
-  /** Let the arm live for a while, in [s]; what each control tick saw. */
+  /** Advance the arm by a time in [s], and return the values of each control tick. */
   advance(seconds) {
     const seen = [], end = this.loop.t + seconds - 1e-9;
     while (this.loop.t < end) {
@@ -67,7 +67,7 @@ export class Session {
     return seen;
   }
 
-  /** A tick in numbers: place of the tip and of its target, error, joint speed, forces. */
+  /** The values of a tick: positions of the tip and of its target, error, joint speed, forces. */
   measured({ t, q, dq, tau, command }) {
     const p = this.arm.own.pose(q).p, goal = this.goal(t);
     const off = subtract(goal, p);
@@ -78,14 +78,14 @@ export class Session {
   close() { this.arm.close(); }
 }
 
-/** Where a point of a link, seen from outside, is on it: {link, local}; the tip is null. */
+/** The place {link, local} on a link of a point in world axes, or null for the tip. */
 export function placeOn(q, link, at) {
   if (link >= q.length) return null;
   const { joints } = new Model(ROBOT).frames(q), { R, p } = joints[link], d = subtract(at, p);
   return { link, local: [0, 1, 2].map((k) => R[k] * d[0] + R[3 + k] * d[1] + R[6 + k] * d[2]) };
 }
 
-/** A whole run from the start, in slices so that the page stays awake: ticks as `measured` gives them. */
+/** The ticks of a whole run from the start, in the form of `measured`; pauses keep the page responsive. */
 export async function wholeRun(mujoco, settings, seconds, { rest, stopped = () => false } = {}) {
   const session = new Session(mujoco, settings), ticks = [];
   try {

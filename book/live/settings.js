@@ -1,4 +1,4 @@
-// What the dials say, as an arm, a law and a target.
+// Makes an arm, a law and a target from the values of the dials.
 import { add, scale } from "./algebra.js";
 import * as laws from "./controllers.js";
 import { jointTrajectory } from "./inverse.js";
@@ -14,12 +14,12 @@ export const NAMES = {
   workspaceVelocity: "workspace velocity", jointVelocity: "joint velocity", jointTorque: "joint torque",
   workspaceImpedance: "workspace impedance", jointImpedance: "joint impedance", baxtersOwn: "Baxter's own (position mode)" };
 
-/** Where the plant's dials stand for an ideal and for a realistic arm. */
+/** The values of the plant's dials for an ideal and for a realistic arm. */
 export const PRESETS = Object.fromEntries(Object.entries(PLANTS).map(([name, plant]) => [name, {
   plant: name, friction: +(name === "baxter"), noise: +(name === "baxter"), lag: 1000 * plant.velocity_lag,
   latency: 1000 * plant.state_delay, payload: plant.payload }]));
 
-/** The plant that the dials ask for: friction and noise are shares of Baxter's. */
+/** The plant that the dials describe; friction and noise are multiples of Baxter's. */
 export function plantOf({ plant, friction, viscous = friction, noise, lag, latency, payload, positionGain }) {
   const real = PLANTS.baxter;
   return { ...PLANTS[plant], payload, velocity_lag: lag / 1000, state_delay: latency / 1000,
@@ -28,7 +28,7 @@ export function plantOf({ plant, friction, viscous = friction, noise, lag, laten
     velocity_noise: scale(noise, real.velocity_noise), lost_ticks: noise * real.lost_ticks };
 }
 
-/** The gains that the dials ask for, on top of those with which the controllers are compared. */
+/** The gains of the comparison, changed by those of the dials. */
 export function gainsOf({ plant, controller, gains = {}, start }) {
   const base = CONTROLLERS[plant][controller].gains, all = (x) => [x, x, x, x, x, x];
   const { Kp, Kd, K, Kx, Ky, Kz, stiffness, damping, zeta, lambda2, threshold } = gains;
@@ -44,7 +44,7 @@ export function gainsOf({ plant, controller, gains = {}, start }) {
   return made;
 }
 
-/** The controller with a model, which does not know what the hand carries, and how often it is asked. */
+/** The controller, whose model does not include the payload, and the rate at which it is called. */
 export function lawOf(settings, model) {
   const { plant, controller } = settings;
   return { law: laws[controller](model, gainsOf(settings)), ...CONTROLLERS[plant][controller] };
@@ -55,9 +55,9 @@ const CLOSED = {
   ...PATHS,
   line: (p, task) => [line(p, add(p, task.line)), line(add(p, task.line), p)],
 };
-const kept = new Map(); // joint motions by what they were made from: inverse kinematics takes a while
+const kept = new Map(); // joint motions by their inputs, because inverse kinematics takes a while
 
-/** Outwards from the shoulder until the elbow is as good as stretched, and back. */
+/** A path outwards from the shoulder until the elbow is almost straight, and back. */
 function stretch({ start, way }) {
   const from = new Model(ROBOT).pose(start);
   const paths = [line(from.p, add(from.p, way)), line(add(from.p, way), from.p)];
@@ -81,7 +81,7 @@ export const wallAt = (distance, stiffness = CONSTANTS.wall.stiffness) => ({
   ...CONSTANTS.wall, size: [0.3, 0.3], stiffness, normal: [-1, 0, 0],
   point: add(READY.p, [distance + CONSTANTS.pad.radius, 0, 0]) });
 
-/** What stands around the arm. */
+/** The things around the arm. */
 export function thingsOf({ wall: at, wallStiffness }) {
   return at === undefined ? [] : [{ name: "wall", ...wall(wallAt(at, wallStiffness), CONSTANTS.pad) }];
 }

@@ -1,4 +1,4 @@
-// "Where the impossible goes": the elbow is stretched, joint speeds grow, and damping turns them into path error.
+// "Where the impossible goes": as the elbow straightens, joint speeds grow, and damping turns them into path error.
 import { add, apply, scale, subtract, length } from "./algebra.js";
 import { dampedSpeeds } from "./controllers.js";
 import { ASKED, ERROR } from "./curves.js";
@@ -9,46 +9,46 @@ import { Panel } from "./panel.js";
 import { predictBox } from "./predict.js";
 import { ELBOW } from "./settings.js";
 
-const LIMIT = 1.5; // rad/s, of Baxter's quickest large joints
-const SPEED = 0.1; // of the tip, in [m/s]
+const LIMIT = 1.5; // rad/s, the limit of the fastest of Baxter's large joints
+const SPEED = 0.1; // speed of the tip, in [m/s]
 const LEVER = CONTROLLERS.ideal.workspaceVelocity.gains.lever;
 const model = new Model(ROBOT);
 const posed = (e1) => ROBOT.ready.map((x, i) => (i === ELBOW ? e1 : x));
 
-/** From the shoulder to the wrist, level: the direction in which the elbow stretches the arm. */
+/** The horizontal direction from the shoulder to the wrist, in which the elbow stretches the arm. */
 function outwards(q) {
   const { joints } = model.frames(q), way = subtract(joints[5].p, joints[1].p);
   return scale(1 / length(way), way);
 }
 
-/** Joint speeds for a tip speed of 10 cm/s outwards at an elbow angle, and what of that speed is lost, in [mm/s]. */
+/** Joint speeds for a tip speed of 10 cm/s outwards at an elbow angle, and the part of that speed that is lost, in [mm/s]. */
 export function atElbow(e1, lambda2) {
   const q = posed(e1), J = model.tipJacobian(q), V = [...scale(SPEED, outwards(q)), 0, 0, 0];
   const dq = dampedSpeeds(J, V, lambda2, LEVER);
   return { quickest: Math.max(...dq.map(Math.abs)), lost: 1000 * length(subtract(V, apply(J, dq)).slice(0, 3)) };
 }
 
-/** What the equations say for a damping, over elbow angles: a pole has no largest speed. */
+/** A sentence about the result of the equations for a damping; without damping the speed has no maximum. */
 export function told(lambda2, x, found) {
   const peak = found.reduce((a, b) => (b.quickest > a.quickest ? b : a)), at = x[found.indexOf(peak)].toFixed(2);
-  if (!lambda2) return `With λ² = 0: the speed of the fastest joint grows without bound at e1 = ${at} rad; nothing of the tip's speed is lost.`;
+  if (!lambda2) return `With λ² = 0: the speed of the fastest joint grows without bound at e1 = ${at} rad; the tip does not lose speed.`;
   const lost = Math.max(...found.map((f) => f.lost)).toFixed(0);
-  return `With λ² = ${lambda2} m²: the fastest joint turns at ${peak.quickest.toFixed(1)} rad/s, at e1 = ${at} rad; up to ${lost} of 100 mm/s are lost.`;
+  return `With λ² = ${lambda2} m²: the fastest joint turns at ${peak.quickest.toFixed(1)} rad/s, at e1 = ${at} rad; the tip loses up to ${lost} of 100 mm/s.`;
 }
 
 /** The elbow angles of the maps, in [rad]. */
 export const ANGLES = Array.from({ length: 240 }, (_, k) => 0.0025 * (k + 1));
 
-/** The elbow angle at which a joint must turn quickest. */
+/** The elbow angle at which a joint must turn fastest. */
 export function worstElbow() {
   const angles = Array.from({ length: 1200 }, (_, k) => 0.0005 * (k + 1));
   return angles.reduce((best, e1) => (atElbow(e1, 0).quickest > atElbow(best, 0).quickest ? e1 : best));
 }
 
-/** From the shoulder to the wrist: it depends on the elbow alone, and is longest where the speed is worst. */
+/** The distance from the shoulder to the wrist, which depends only on the elbow and is largest where the speed is. */
 const span = (e1) => { const { joints } = model.frames(posed(e1)); return length(subtract(joints[5].p, joints[1].p)); };
 
-const FROM = 1.0, TO = 0.2; // elbow angles at the two ends of the path, the hand's orientation kept
+const FROM = 1.0, TO = 0.2; // elbow angles at the two ends of the path, on which the hand's orientation is constant
 const READY = model.pose(ROBOT.ready), OUT = outwards(ROBOT.ready);
 const at = (e1) => add(READY.p, scale(span(e1) - span(ROBOT.ready[ELBOW]), OUT));
 const START = inverseKinematics(model, { R: READY.R, p: at(FROM) }, ROBOT.ready, ROBOT.ready);
@@ -62,7 +62,7 @@ class Singular extends Panel {
   parts() {
     const { h, viewer } = this;
     this.predicted = predictBox(h, {
-      question: "The tip is to move outwards at 10 cm/s while the elbow stretches. By the equations alone, at which elbow angle e1 must some joint turn quickest? (0 is the straight elbow.)",
+      question: "The tip is to move outwards at 10 cm/s while the elbow stretches. By the equations alone, at which elbow angle e1 must a joint turn fastest? (0 is the straight elbow.)",
       unit: "rad", commit: () => this.map(0), found: worstElbow });
     this.lambda = this.dial({ label: "Damping λ²", unit: "m²", min: 0, max: 0.02, value: 0 }, (lambda2) => {
       this.change({ gains: { ...this.settings.gains, lambda2 } });
@@ -80,7 +80,7 @@ class Singular extends Panel {
 
   showGains() {}
 
-  /** What the equations say at each elbow angle, shown once the reader has predicted. */
+  /** The result of the equations at each elbow angle, shown once the reader has predicted. */
   map(lambda2) {
     if (this.predicted.said === null) return;
     const x = ANGLES, found = x.map((e1) => atElbow(e1, lambda2));

@@ -1,4 +1,4 @@
-// Vectors of three and rotations as nine numbers, written out: a physics step uses hundreds of them.
+// Vectors of three numbers and rotations of nine, without loops, because a physics step uses hundreds of them.
 export { log } from "../../labkit/replay/viewer/so3.js";
 
 export const plus = (a, b) => [a[0] + b[0], a[1] + b[1], a[2] + b[2]];
@@ -19,7 +19,7 @@ export function product(A, B) {
   return C;
 }
 
-/** R turned about its own z axis. */
+/** R rotated about its own z axis. */
 export function spun(R, angle) {
   const c = Math.cos(angle), s = Math.sin(angle);
   return [
@@ -28,7 +28,7 @@ export function spun(R, angle) {
     c * R[6] + s * R[7], c * R[7] - s * R[6], R[8]];
 }
 
-/** The inertia of a point mass at d, nine numbers added to `inertia`. */
+/** The nine numbers of `inertia` plus the inertia of a point mass at d. */
 export function withPoint(inertia, mass, d) {
   const square = inner(d, d), out = inertia.slice();
   for (let i = 0; i < 3; i++) for (let j = 0; j < 3; j++) out[3 * i + j] += mass * ((i === j ? square : 0) - d[i] * d[j]);

@@ -1,9 +1,9 @@
-// The smooth curve through given values: a quintic spline without a knot at its second and third value.
+// The smooth curve through given values, a quintic spline without knots at its second and third value.
 import { scale, subtract, zeros } from "./algebra.js";
 
 const DEGREE = 5;
 
-/** The B-splines of a degree that do not vanish at x, the first of them by its number. */
+/** The B-splines of a degree that do not vanish at x, and the number of the first one. */
 function basis(knots, degree, x) {
   let k = degree;
   while (k < knots.length - degree - 2 && x >= knots[k + 1]) k += 1;
@@ -54,7 +54,7 @@ export function spline(s, values) {
   });
   let coefficients = banded(rows, values.map((v) => [...v]), DEGREE + 1);
   const starts = [s[0], ...s.slice(3, -3)];
-  const taylor = []; // of each derivative: its value at the start of each piece, over the factorial
+  const taylor = []; // for each derivative, its value at the start of each piece, divided by the factorial
   for (let degree = DEGREE, factorial = 1; degree >= 0; degree--) {
     taylor.push(starts.map((x) => scale(1 / factorial, value(knots, degree, coefficients, x))));
     const before = knots, d = degree;

@@ -1,11 +1,11 @@
-// "Stiffness has a direction": a hand before a wall, with a weight in it, and one dial or three.
+// "Stiffness has a direction": a hand that carries a weight in front of a wall, with one dial or three.
 import { add } from "./algebra.js";
 import { Panel } from "./panel.js";
 import { predictBox, write } from "./predict.js";
 import { READY } from "./settings.js";
 
 const LIMITS = { wall: 12, sag: 5 }; // N and mm
-const BEHIND = 0.03; // how far the target lies behind the wall's face, in [m]
+const BEHIND = 0.03; // distance of the target behind the wall's face, in [m]
 const SETTINGS = { controller: "workspaceImpedance", path: "stay", place: [BEHIND, 0, 0], wall: 0, payload: 0.3,
   viscous: 1, gains: { K: 300 } };
 const MODES = { one: "one K for all directions", three: "Kx, Ky, Kz", position: "position mode" };
@@ -29,7 +29,7 @@ class Stiffness extends Panel {
       this.fieldset("Weight in the hand, wall", h("div", { class: "lk-dials" }, weight.element, this.walldial.element)), this.hands(), this.said];
   }
 
-  /** Other gains: one dial, three, or none. */
+  /** Use other gains, with one dial, three dials or none. */
   gains(gains, mode) {
     this.mode = mode;
     this.choose.set(MODES[mode]);
@@ -37,7 +37,7 @@ class Stiffness extends Panel {
     const next = mode === "three" ? { Kx: had, Ky: had, Kz: had, ...gains } : { K: had, ...gains };
     this.change({ controller: mode === "position" ? "baxtersOwn" : "workspaceImpedance", gains: mode === "position" ? {} : next });
     this.showGains();
-    this.say(`Held by ${MODES[mode]}${next.K && mode === "one" ? `, K = ${next.K} N/m` : ""}.`);
+    this.say(`The arm is held by ${MODES[mode]}${next.K && mode === "one" ? `, K = ${next.K} N/m` : ""}.`);
   }
 
   showGains() {
@@ -52,13 +52,13 @@ class Stiffness extends Panel {
     Object.assign(this, { since: this.session.loop.t, told: false });
   }
 
-  /** The hand and the wall. */
+  /** The points that the first view shows, around the hand and the wall. */
   inSight() { return [[-0.1, 0, -0.1], [0.1, 0, 0.2]].map((d) => add(READY.p, d)); }
 
-  recompute() {} // what counts here is where the arm comes to rest
+  recompute() {} // here only the place where the arm comes to rest matters
   settled() { return this.session.loop.t - (this.since ?? 0) > 2; }
 
-  /** Before the reader has said a number, no arrow tells the wall's force. */
+  /** Hide the arrow of the wall's force until the reader has entered a number. */
   drawNow(now) {
     super.drawNow(this.predicted.said === null ? { ...now, forces: now.forces.filter((f) => f.name !== "wall") } : now);
   }
@@ -73,17 +73,17 @@ class Stiffness extends Panel {
     this.predicted.tell();
     if (!this.settled()) { write(this.verdict, "Coming to rest…"); this.told = false; return; }
     if (this.told) return;
-    this.told = true; // once it is at rest, once for a screen reader
+    this.told = true; // said to a screen reader only once, when the arm is at rest
     this.verdict.textContent = `At rest: ${this.wallForce.toFixed(1)} N on the wall (at most ${LIMITS.wall}), ${tenths(this.sag)} mm of sag (at most ${LIMITS.sag}). ${kept(this.wallForce, this.sag)}`;
     this.host.dataset.wall = this.wallForce.toFixed(2);
     this.host.dataset.sag = this.sag.toFixed(2);
   }
 }
 
-/** A number of one decimal place, with a minus and no negative zero. */
+/** A number with one decimal place and a minus sign, but without negative zero. */
 const tenths = (x) => x.toFixed(1).replace(/^-0\.0$/, "0.0").replace("-", "−");
 
-/** Which of the two limits are kept, in words. */
+/** A sentence that says which of the two limits are kept. */
 function kept(force, sag) {
   const over = [...(force > LIMITS.wall ? ["force"] : []), ...(sag > LIMITS.sag ? ["sag"] : [])];
   if (over.length === 2) return "The force and the sag are over their limits.";

@@ -1,4 +1,4 @@
-// "Age, not noise": a tag that moves or is dragged, a camera that is slow, and a prediction that can harm.
+// "Age, not noise": a tag that moves or is dragged, a slow camera, and a prediction that can do harm.
 import { add, length, subtract } from "./algebra.js";
 import { CAMERA, Chase } from "./chase.js";
 import { corners } from "./corners.js";
@@ -11,10 +11,10 @@ const MOVES = { conveyor: "a conveyor", circle: "a circle", hand: "a hand with s
 const SECONDS = 8, TICK = 0.005;
 const SETTINGS = { controller: "workspaceVelocity", path: "tag", move: "conveyor", tagSpeed: 0.06,
   camera: { ...CAMERA, age: 0.2, rate: 20, sigma: 0.0005, predict: false }, gains: {} };
-const AIM = { title: "From the point aimed at to the tag [mm]", unit: "mm", top: 20, value: (tick) => tick.miss };
-const AGE = { title: "Speed of the tag times age of the reading [mm]", unit: "mm", top: 20, value: (tick) => tick.due };
+const AIM = { title: "Distance from the aim to the tag [mm]", unit: "mm", top: 20, value: (tick) => tick.miss };
+const AGE = { title: "Speed of the tag times the age of the reading [mm]", unit: "mm", top: 20, value: (tick) => tick.due };
 
-/** What the camera makes of the tag for some seconds, without the arm: a tick each 5 ms. */
+/** The camera's readings of the tag for some seconds, without the arm, as ticks 5 ms apart. */
 export function watched(settings, seconds = SECONDS) {
   const chase = new Chase(settings, READY, false, 3), ticks = [];
   let before = chase.goal(0);
@@ -29,7 +29,7 @@ export function watched(settings, seconds = SECONDS) {
   return ticks;
 }
 
-/** Root mean square of the miss, in [mm]. */
+/** The root mean square of the aim's distance from the tag, in [mm]. */
 export const miss = (settings) => {
   const ticks = watched(settings);
   return Math.sqrt(ticks.reduce((sum, tick) => sum + tick.miss ** 2, 0) / ticks.length);
@@ -43,7 +43,7 @@ class Age extends Panel {
     const camera = (what) => this.change({ camera: { ...this.settings.camera, ...what } });
     const { camera: now, tagSpeed } = this.settings;
     this.predicted = predictBox(h, {
-      question: "The tag rides on a conveyor at 60 mm/s; what the camera says is 200 ms old. How far beside the tag does the hand aim, by the equations alone (as a root mean square)?",
+      question: "The tag rides on a conveyor at 60 mm/s, and the camera's readings are 200 ms old. By the equations alone, how far from the tag does the hand aim (as a root mean square)?",
       unit: "mm", commit: () => this.change({ ...this.settings, ...SETTINGS }), found: () => miss({ ...this.settings, ...SETTINGS }) });
     const move = viewer.choice({ label: "The tag on", values: Object.values(MOVES), value: MOVES[this.settings.move],
       onchange: (label) => { this.release(); this.change({ move: Object.keys(MOVES).find((k) => MOVES[k] === label) }); } });
@@ -59,13 +59,13 @@ class Age extends Panel {
     const results = this.predicted.behind("Once you have entered a number above, the distance between the point aimed at and the tag appears here as a number, a curve and a table.",
       this.curves.element, this.said, h("div", { class: "lk-scroll", tabindex: 0 }, this.table));
     return [this.predicted.element, this.buttons(), this.fieldset("The tag, which can be dragged", move.element, dials[3].element, h("div", { class: "lk-pushes" }, keys)),
-      this.fieldset("The camera", h("div", { class: "lk-dials" }, dials.slice(0, 3).map((d) => d.element)), h("label", { class: "lk-check" }, box, "predict: go on as in the last two pictures")),
+      this.fieldset("The camera", h("div", { class: "lk-dials" }, dials.slice(0, 3).map((d) => d.element)), h("label", { class: "lk-check" }, box, "predict: continue the motion of the last two pictures")),
       this.numbers, ...results, corners(viewer)];
   }
 
   showGains() {}
 
-  /** The point over the tag and the tag itself, all along their path. */
+  /** The points that the first view shows: the tag and the point over it, along the whole path. */
   inSight() {
     const over = [0, 0.25, 0.5, 0.75].map((s) => this.session.goal(s * this.session.lap));
     return over.concat(over.map((p) => subtract(p, TAG.offset)));
@@ -74,7 +74,7 @@ class Age extends Panel {
   release() { for (const { chase } of this.sessions) chase.dragged = null; }
   drag(place) { for (const { chase } of this.sessions) chase.dragged = place.map((x) => Math.max(-0.15, Math.min(0.15, x))); }
 
-  /** Three dots: the tag now, the tag as seen, the point aimed at. */
+  /** Draw three dots: the tag now, the tag as seen, and the aim. */
   more(now) {
     const at = (p) => add(subtract(add(READY.p, p), TAG.offset), [0, 0, 0.004]);
     const seen = now.aimed ?? { seen: [0, 0, 0], p: [0, 0, 0] };
@@ -88,22 +88,22 @@ class Age extends Panel {
     if (!now.aimed) return;
     const off = 1000 * length(subtract(now.goal, add(READY.p, now.aimed.p)));
     const words = [`t = ${now.t.toFixed(2)} s`, `reading ${(1000 * now.aimed.old).toFixed(0)} ms old`];
-    if (this.predicted.said !== null) words.push(`aimed ${off.toFixed(1)} mm beside the tag`, `hand ${(1000 * now.error).toFixed(1)} mm beside`);
+    if (this.predicted.said !== null) words.push(`aim ${off.toFixed(1)} mm from the tag`, `hand ${(1000 * now.error).toFixed(1)} mm from the tag`);
     this.numbers.textContent = words.join(" · ");
   }
 
-  /** The camera alone decides this curve, so it needs no arm and is there at once. */
+  /** Draw the curve at once: it depends only on the camera, so no arm has to be simulated. */
   recompute() {
     const { h } = this, { settings } = this, began = performance.now();
     this.curves.show(watched(settings));
     const row = (predict) => Object.keys(MOVES).map((move) => miss({ ...settings, move, camera: { ...settings.camera, predict } }).toFixed(1));
     const lines = [["as seen", row(false)], ["predicted", row(true)]];
-    this.table?.replaceChildren(h("caption", {}, "Root mean square of the miss [mm] with these dials"),
+    this.table?.replaceChildren(h("caption", {}, "Root mean square of the aim's distance from the tag [mm] with these dials"),
       h("thead", {}, h("tr", {}, h("td", {}, ""), Object.values(MOVES).map((name) => h("th", { scope: "col" }, name)))),
       h("tbody", {}, lines.map(([name, cells]) => h("tr", {}, h("th", { scope: "row" }, name), cells.map((x) => h("td", {}, x))))));
     const rms = miss(settings), { age, rate, predict } = settings.camera;
-    const turn = settings.move === "circle" ? ` The circle turns by ω T = ${((settings.tagSpeed / TAG.radius) * age).toFixed(2)} in the age of a picture.` : "";
-    this.said.textContent = `The hand aims ${rms.toFixed(1)} mm beside the tag (root mean square); speed × mean age is ${(1000 * settings.tagSpeed * (age + 0.5 / rate)).toFixed(1)} mm.${turn}`;
+    const turn = settings.move === "circle" ? ` During the age of a picture the circle turns by ω T = ${((settings.tagSpeed / TAG.radius) * age).toFixed(2)}.` : "";
+    this.said.textContent = `The hand aims ${rms.toFixed(1)} mm from the tag (root mean square); speed × mean age is ${(1000 * settings.tagSpeed * (age + 0.5 / rate)).toFixed(1)} mm.${turn}`;
     if (this.predicted.said !== null) this.say(`${predict ? "Predicted" : "As seen"}: ${this.said.textContent}`, CALM);
     this.host.dataset.rerun = String(Math.round(performance.now() - began));
   }

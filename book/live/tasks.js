@@ -1,8 +1,8 @@
-// The report's tasks: a line, a circle, a square whose corners are stops, and a tag; `solutions/study/tasks.py`.
+// The report's tasks: a line, a circle, a square with stops at its corners, and a tag; `solutions/study/tasks.py`.
 import { add } from "./algebra.js";
 import { chain, circle, hold, line, polyline, posePath, trajectory, within } from "./paths.js";
 
-/** Follow paths one after another, at rest between them, and hold at the end; all numbers are `constants.task`'s. */
+/** Follow paths one after another, with rests between them, and hold at the end; all numbers are from `constants.task`. */
 export function smooth(paths, R, { shape = "quintic", speed, acceleration, rest }) {
   const parts = paths.map((path) => {
     const { scaling, duration } = within(shape, path.distance, speed, acceleration);

@@ -1,4 +1,4 @@
-// Quizzes, the film's captions, the gallery's choice, tables on a phone; details open for print.  Nothing is stored or sent.
+// Quizzes, the film's captions, the choice in galleries, tables on phones, and open details in print.  Nothing is stored or sent.
 (function () {
   function answer(event) {
     var choice = event.target;
@@ -21,7 +21,7 @@
     closed.forEach(function (d) { d.open = false; });
   });
 
-  // The film's captions are the list below it: a page from the disk may not fetch a file of captions.
+  // The film's captions come from the list below it, because a page from disk may not fetch a file of captions.
   document.querySelectorAll(".lab-film").forEach(function (film) {
     var track = film.querySelector("video").addTextTrack("captions", "English", "en");
     film.querySelectorAll("[data-until]").forEach(function (line) {
@@ -30,7 +30,7 @@
     track.mode = "showing";
   });
 
-  // A gallery shows one method at a time; an address such as #joint-torque chooses it. On paper all are shown.
+  // A gallery shows one method at a time, which an address such as #joint-torque chooses. On paper all are shown.
   var runs = Array.prototype.map.call(document.querySelectorAll(".lab-one"), function (p) { return p.closest("section"); });
   if (runs.length) {
     var choice = document.createElement("select");
@@ -55,7 +55,7 @@
     choose();
   }
 
-  // On a phone a table that is too wide becomes a card for each row; the roles keep it a table.
+  // On a phone, a table that is too wide becomes a card for each row; for screen readers its roles keep it a table.
   var heads = function (table) { return Array.prototype.map.call(table.querySelectorAll("thead th, thead td"), function (h) { return h.textContent; }); };
   var fold = function () {
     document.querySelectorAll(".bd-article table:not(.indextable)").forEach(function (table) {

@@ -1,4 +1,4 @@
-// Drawings that a phone makes small open at a readable size: over the page, to be moved and pinched.
+// Opens drawings that are small on a phone at a readable size over the page, where they can be moved and zoomed.
 (function () {
   var dialog, gap, drawing;
 
@@ -39,6 +39,6 @@
     var figure = event.target.closest && event.target.closest(".lab-enlarge, .lab-figure > .lab-svg, .lab-figure > img");
     figure = figure && figure.closest(".lab-figure");
     var button = figure && figure.querySelector(".lab-enlarge");
-    if (button && button.checkVisibility()) open(figure); // where there is room the drawing is large
+    if (button && button.checkVisibility()) open(figure); // on a wide screen the drawing is large already
   });
 })();

@@ -1,7 +1,7 @@
-// Search: the words around each hit, without fetching pages (a page from the disk may not), and
-// marks on the page that a hit leads to.  Nothing is stored: the words travel in the address.
+// Search: shows the words around each hit without fetching pages, which a page from disk may not do, and
+// marks the words on the page of a hit.  Nothing is stored: the words are in the address of the page.
 (function () {
-  window.SPHINX_HIGHLIGHT_ENABLED = false; // the theme's own marks need storage and break formulas
+  window.SPHINX_HIGHLIGHT_ENABLED = false; // the theme's marks need storage and break formulas
 
   function pattern(roots) {
     var escaped = roots.map(function (r) { return r.replace(/[.*+?^${}()|[\]\\]/g, "\\$&"); });
@@ -10,7 +10,7 @@
 
   // ---- The page of results -------------------------------------------------------------------
 
-  // What a word and its stem begin with alike: "gravit" finds gravity and gravitational.
+  // The common beginning of a word and its stem: "gravit" finds gravity and gravitational.
   function rootsOf(query) {
     var stemmer = new Stemmer();
     return splitQuery(query.toLowerCase()).map(function (word) {
@@ -20,14 +20,14 @@
     });
   }
 
-  // How many of the words a part has; where that is equal, how often.
+  // The value of a part: how many of the words it has and, if that is equal, how often.
   function worth(part, roots) {
     var text = part[1] + " " + part[2];
     var kinds = roots.filter(function (root) { return pattern([root]).test(text); }).length;
     return kinds + Math.min((text.match(pattern(roots)) || []).length, 99) / 100;
   }
 
-  // The part of a page to quote: the one that was found, else the one that is worth most.
+  // The part of a page to quote: the one that was found, otherwise the one with the highest value.
   function best(parts, place, roots) {
     var named = parts.filter(function (p) { return p[0] === place; });
     return (named.length ? named : parts).reduce(function (a, b) {
@@ -70,7 +70,7 @@
     link.href = address[0] + words + (address[1] ? "#" + address[1] : "");
   }
 
-  // How many letters were left out, added, changed or swapped with the next one.
+  // The number of letters that were left out, added, changed or swapped with the next one.
   function slips(a, b) {
     var rows = [Array.from({length: b.length + 1}, function (_, j) { return j; })];
     for (var i = 1; i <= a.length; i++) {
@@ -134,7 +134,7 @@
     document.head.append(texts);
   }
 
-  // Chapters and guides explain: they come before notebooks, and these before the reference.
+  // Chapters and guides come before notebooks, because they explain; notebooks come before the reference.
   function score(result) {
     var page = result[0];
     if (page.startsWith("reference/")) return result[4];
@@ -199,6 +199,6 @@
   if (!document.getElementById("search-results")) marks();
   else {
     Scorer.score = score;
-    document.addEventListener("DOMContentLoaded", results); // after the theme's own, which makes the list
+    document.addEventListener("DOMContentLoaded", results); // after the theme's own script, which makes the list
   }
 })();

@@ -1,13 +1,13 @@
-"""Plausible answers, right and wrong, to measure how many mistakes a check names, and how surely.
+"""Plausible answers, right and wrong, to measure how many mistakes the checks name correctly.
 
 Their authors wrote them from the notebooks' stubs and the model answers, and had read neither the
-known mistakes nor the judges.  So they stand for answers that nobody has foreseen: never add a
-known mistake because it is here, or the measure is worth nothing.  Whoever improves the naming may
-look at the wrong answers that are not `held`, and at no others: those in ``second`` and later sets,
-by other authors, are all held.
+known mistakes nor the judges.  So they represent answers that nobody has foreseen: never add a
+known mistake because it is here, or the measure is worth nothing.  To improve the naming, look only
+at the wrong answers that are not `held`; those in ``second`` and later sets, by other authors, are
+all held.
 
-There is a file for each notebook.  A line `# %% question wrong: what is wrong`, or `# %% question
-right: how it is written`, stands above a whole answer cell of a notebook with `np` and `lk`.
+There is a file for each notebook.  Each answer is a whole cell of a notebook with `np` and `lk`,
+below a line `# %% question wrong: what is wrong` or `# %% question right: how it is written`.
 """
 
 import re
@@ -18,12 +18,12 @@ from typing import NamedTuple
 
 HERE = Path(__file__).parent
 AUTHORS = ("", "second", "third", "fourth")
-"""Whose answers there are, by their folders."""
+"""The authors of the answers, by the names of their folders."""
 _HEAD = re.compile(r"^# %% (\w+) (right|wrong): (.+)\n", re.M)
 
 
 class Answer(NamedTuple):
-    """One answer cell: notebook and question, whether and how it is right, its code, the author."""
+    """One answer cell: its notebook, question, kind, description, code and author."""
 
     topic: str
     question: str
@@ -34,9 +34,9 @@ class Answer(NamedTuple):
 
     @property
     def held(self) -> bool:
-        """Whether those who improve the naming must not see it: by a hash of the source.
+        """Whether it is hidden from those who improve the naming; a hash of the source decides.
 
-        With this number in front, the hash holds back about half of each question's wrong answers.
+        With this number in front, the hash withholds about half of each question's wrong answers.
         """
         return bool(self.author) or sha256(f"1774{self.source}".encode()).digest()[0] % 2 == 1
 

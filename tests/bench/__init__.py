@@ -1,1 +1,1 @@
-"""How quick labkit is, against loops written by hand and by others: `python -m tests.bench`."""
+"""The speed of labkit compared with loops by hand and by others: `python -m tests.bench`."""

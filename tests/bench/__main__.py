@@ -1,7 +1,7 @@
 """Measure, print and write build/bench.json: `make bench`, or `python -m tests.bench start`.
 
-A measurement is a file here with a function ``measure() -> {key: number or None}``, whose first
-line of documentation says what the numbers are, and a place in `MEASUREMENTS`.
+A measurement is a file here with a function ``measure() -> {key: number or None}`` and an entry in
+`MEASUREMENTS`.  The first line of the function's docstring says what the numbers are.
 """
 
 import argparse
@@ -53,7 +53,7 @@ OUT = Path("build/bench.json")
 
 
 def main(arguments=()):
-    """Take measurements in turn; one that fails says so and leaves its keys out.
+    """Take the measurements in turn; if one fails, say so and leave its keys out.
 
     Args:
         arguments: Names of measurements, which are then only printed; by default all are taken.
@@ -69,7 +69,7 @@ def main(arguments=()):
         print(module.measure.__doc__.splitlines()[0])
         try:
             measured = module.measure()
-        except Exception as error:  # whatever it is, the others are still wanted
+        except Exception as error:  # the other measurements are still wanted
             failed.append(module.__name__)
             print(f"  failed: {type(error).__name__}: {error}", file=sys.stderr, flush=True)
             continue

@@ -1,4 +1,4 @@
-"""What a picture and a detection cost: `python -m tests.bench camera`."""
+"""The time for a picture and for a detection: `python -m tests.bench camera`."""
 
 import time
 
@@ -11,11 +11,11 @@ from labkit.tags import Board
 from labkit.tags.camera import BACKGROUND
 
 EYE, AT = (1.5, 0.3, 0.7), (0.85, 0.3, -0.26)
-"""Where the camera of the measured frame stands and what it looks at: a table, arm and tag."""
+"""The positions of the measured frame's camera and of the point that it looks at."""
 
 
 def quickest(action, rounds=15):
-    """The least time an action took, on one core, in [ms]: other work on the machine only adds."""
+    """The least time of an action on one core, in [ms], because other work only adds time."""
     threads = cv2.getNumThreads()
     cv2.setNumThreads(1)
     times = []
@@ -28,7 +28,7 @@ def quickest(action, rounds=15):
 
 
 def measure():
-    """Milliseconds of a full frame, of a quick one of the tag alone, and of a detection."""
+    """Milliseconds for a full frame, for a fast one of the tag alone, and for a detection."""
     world = lk.World(things=[lk.Table()])
     with lk.Arm("left", world=world, q0=lk.robot("left").ready):
         T_wm = se3.pose(se3.rotation(np.array([0.0, 0.0, 0.3])), np.array([0.8, 0.25, -0.2]))

@@ -1,4 +1,4 @@
-"""How long one seed of the whole campaign takes, on two cores."""
+"""The time for one seed of the whole campaign on two cores."""
 
 import os
 import time
@@ -8,7 +8,7 @@ from solutions.study.grid import work_through
 
 
 def measure():
-    """Seconds for one seed of every way, task and plant, workers' start included."""
+    """Seconds for one seed of every method, task and plant, with the start of the workers."""
     began = time.perf_counter()
     rows = work_through(numbers, grid(1), jobs=min(2, os.cpu_count() or 1))
     seconds = time.perf_counter() - began

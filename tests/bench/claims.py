@@ -1,4 +1,4 @@
-"""How many sentences of the book stop its build when their data are wrong: `... claims`."""
+"""The number of sentences of the book that stop its build if their data are wrong."""
 
 import sys
 from pathlib import Path
@@ -7,7 +7,7 @@ sys.path.append(str(Path(__file__).parents[2] / "book/_tools"))
 
 
 def measure():
-    """Sentences with a number or a comparison, and those that wrong data stop."""
+    """Numbers of sentences with a number or a comparison, and of those that wrong data stop."""
     import book_claims
 
     found = book_claims.count(book_claims.noted())

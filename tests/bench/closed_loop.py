@@ -16,21 +16,21 @@ WAY = np.array([0.4, 0.2, -0.3, 0.3, 0.2, -0.3, 0.4])
 
 
 def task():
-    """The target and the controller that every loop is given, made anew."""
+    """A new target and a new controller, the same for every loop."""
     q = lk.robot("left").neutral
     target = lk.Trajectory(lk.Line(q, q + WAY), lk.Quintic(SECONDS))
     return target, ComputedTorque(lk.Model("left"), Kp=100.0, Kd=20.0)
 
 
 def timed(loop):
-    """How long a call takes, in [s], and what it gives."""
+    """The time of a call, in [s], and its result."""
     start = perf_counter()
     result = loop()
     return perf_counter() - start, result
 
 
 def measure():
-    """Speed of `run`, with its log and checks, as a share of the plain loop's."""
+    """Speed of `run`, with its log and checks, as a fraction of the plain loop's speed."""
     target, controller = task()
     client, body = open_arm(lk.robot("left").urdf())
     ratios, by_hand = [], []

@@ -1,4 +1,4 @@
-"""What a class costs to grade: open questions, closed loops, answers that never end."""
+"""The cost of grading a class with open questions, closed loops or answers that never end."""
 
 import json
 import os
@@ -16,7 +16,7 @@ ENDLESS = "\n\ndef {name}(*args, **kwargs):\n    while True:\n        pass\n"
 
 
 def endless(notebook, most):
-    """Let the first answers, so many at most, never end."""
+    """Change the first answers, at most `most` of them, so that they never end."""
     answers = (x for x in notebook["cells"] if x["metadata"].get("nbgrader", {}).get("solution"))
     code = [cell for cell in answers if cell["cell_type"] == "code"]
     for cell in code[:most]:
@@ -27,7 +27,7 @@ def endless(notebook, most):
 
 @contextmanager
 def handed_in(assignment, count, never_end=0):
-    """A course in which so many hand in the solved notebook, some answers of which never end."""
+    """A course in which `count` students hand in a solved notebook with some endless answers."""
     with fresh_course() as course:
         release(course, assignment, seed=1)
         path = course.solution / assignment / f"{assignment}.ipynb"
@@ -40,28 +40,28 @@ def handed_in(assignment, count, never_end=0):
 
 
 def graded(course, assignment, options):
-    """Grade everybody: seconds by the clock, and the share that is the students' own code."""
+    """Grade everybody; return the seconds that passed, and the share of the students' own code."""
     who = students(course, assignment)
     start = time.perf_counter()
     done = [one.result for one in grade_class(course, assignment, who, options)]
     elapsed = time.perf_counter() - start
     if len(done) != len(who) or len({result.score for result in done}) != 1:
-        raise RuntimeError(f"{len(done)} of {len(who)} were graded, and not all alike")
+        raise RuntimeError(f"{len(done)} of {len(who)} were graded, or with different results")
     whole, own = (sum(result.seconds[part] for result in done) for part in ("all", "student"))
     return elapsed, own / whole
 
 
 def measure(opened=600, loops=100, never=4):
-    """Costs: a worker's seconds for a submission, submissions a minute, the students' own share.
+    """Costs: a worker's seconds for a submission, submissions per minute, the students' share.
 
     ``open`` is a solved notebook 01, ``loops`` a solved 05 with its runs of the arm, ``answer`` a
-    01 with one answer that never ends, ``endless`` a 01 in which none ends.  ``dask`` is the same
-    through two workers of Dask.  The workers' start is counted.
+    01 with one answer that never ends, ``endless`` a 01 in which no answer ends.  ``dask`` is the
+    same with two workers of Dask.  The start of the workers is included.
 
     Args:
-        opened: How many hand in a solved 01.
-        loops: How many hand in a solved 05.
-        never: How many hand in a 01 that does not end.
+        opened: Number of students who hand in a solved 01.
+        loops: Number of students who hand in a solved 05.
+        never: Number of students who hand in a 01 that does not end.
     """
     from distributed import LocalCluster
 

@@ -1,4 +1,4 @@
-"""A course away from this one, to measure in."""
+"""A temporary course for measurements."""
 
 import shutil
 import tempfile
@@ -12,7 +12,7 @@ ROOT = Path(__file__).parents[2]
 
 @contextmanager
 def fresh_course():
-    """A course of these sources with nothing released yet; gone with the block."""
+    """A course of these sources without a release, which is deleted after the block."""
     with tempfile.TemporaryDirectory(prefix="labkit-bench-") as folder:
         (Path(folder) / "solutions").symlink_to(ROOT / "solutions")
         shutil.copy(ROOT / "nbgrader_config.py", folder)

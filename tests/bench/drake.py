@@ -58,7 +58,7 @@ def diagram(target, controller):
 
 
 def measure():
-    """Speed of `run` on MuJoCo as a multiple of Drake's; None without Drake."""
+    """Speed of `run` on MuJoCo as a multiple of Drake's speed; None without Drake."""
     try:
         import pydrake  # noqa: F401
     except ImportError:

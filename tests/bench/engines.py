@@ -1,4 +1,4 @@
-"""The closed loop of `closed_loop` on both engines: how alike, and how quick."""
+"""The loop of `closed_loop` on both engines: the difference of the results, and the speeds."""
 
 from statistics import median
 
@@ -14,7 +14,7 @@ PAIRS = 15
 
 
 def measure():
-    """Angles on two engines [rad]; speed on MuJoCo against PyBullet, and its own plain loop."""
+    """Difference of angles [rad]; speed on MuJoCo relative to PyBullet and to a plain loop."""
     target, controller = task()
     model = mujoco.MjModel.from_xml_string(lk.robot("left").urdf())
     model.opt.timestep = 1e-3

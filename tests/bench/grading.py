@@ -1,4 +1,4 @@
-"""How quick grading is: its overhead per submission, and against nbgrader's own engine."""
+"""The speed of grading: its overhead per submission, and compared with nbgrader's engine."""
 
 import os
 import shutil
@@ -13,13 +13,13 @@ from .courses import fresh_course
 
 ASSIGNMENT = "00_warmup"
 COUNT = 100
-"""How many solved submissions the isolated engine grades."""
+"""Number of solved submissions that the isolated engine grades."""
 SERIAL = 10
-"""How many of them nbgrader's engine grades, which is serial."""
+"""Number of these submissions that nbgrader's serial engine grades."""
 
 
 def submit_solved(course):
-    """Hand in the solved notebook so many times."""
+    """Hand in the solved notebook for each student."""
     release(course, ASSIGNMENT, seed=1)
     pack_hidden(course, ASSIGNMENT)
     solved = course.solution / ASSIGNMENT / f"{ASSIGNMENT}.ipynb"
@@ -30,11 +30,11 @@ def submit_solved(course):
 
 
 def measure():
-    """Grading: seconds of a worker for one submission, and throughput against nbgrader.
+    """Grading: seconds of a worker for one submission, and throughput relative to nbgrader.
 
-    The seconds include a worker's start and imports, and nothing is taken off for the student's own
-    computation: an upper bound, and larger on a busy machine.  Both engines grade in one run, the
-    isolated one on all cores.
+    The seconds include a worker's start and imports and the student's own computation, so they are
+    an upper bound, and larger on a busy machine.  Both engines grade in one run, the isolated one
+    on all cores.
     """
     jobs = len(os.sched_getaffinity(0))
     with fresh_course() as course:

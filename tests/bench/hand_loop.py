@@ -1,6 +1,6 @@
-"""The plain loops that `run` is measured against: an engine by hand, no classes, log or checks.
+"""Plain loops to compare with `run`: calls of an engine without classes, log or checks.
 
-Their physics are those of `run`: torques end at the joints' limits, joints at their stops.
+Their physics are those of `run`, with limits of the torques and stops of the joints.
 """
 
 import tempfile
@@ -17,14 +17,14 @@ LEAST = -MOST
 
 
 def pybullet():
-    """The engine, imported when it is asked for: it has wheels for few machines."""
+    """The engine, imported only when it is needed, because few machines have wheels for it."""
     with quiet():
         import pybullet
     return pybullet
 
 
 def open_arm(urdf):
-    """Load the arm of a URDF text into a world of its own; its client and its body."""
+    """Load the arm of a URDF text into a new world; return its client and its body."""
     bullet = pybullet()
     client = bullet.connect(bullet.DIRECT)
     with quiet(), tempfile.NamedTemporaryFile("w", suffix=".urdf") as file:
@@ -43,7 +43,7 @@ def open_arm(urdf):
 
 
 def hand_loop(client, body, target, controller, seconds):
-    """Drive the arm after the target from its start, a thousand times a second; the last q."""
+    """Let the arm follow the target at 1 kHz from its start; return the last q."""
     bullet = pybullet()
     q = target(0.0).position
     for j in JOINTS:
@@ -60,7 +60,7 @@ def hand_loop(client, body, target, controller, seconds):
 
 
 def hand_loop_mujoco(model, data, target, controller, seconds):
-    """The same in MuJoCo."""
+    """Let the arm follow the target in MuJoCo; return the last q."""
     mujoco.mj_resetData(model, data)
     q, dq, tau = data.qpos, data.qvel, data.qfrc_applied
     q[:] = target(0.0).position

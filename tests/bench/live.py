@@ -1,4 +1,4 @@
-"""How quick the book's live arm is in a headless Chromium, and how near Python's run it stays."""
+"""The speed of the book's live arm in a headless Chromium."""
 
 import sys
 from pathlib import Path
@@ -24,9 +24,9 @@ SPEED = """async () => {
 
 
 def measure():
-    """Milliseconds from click to motion and from dial to curve, speed over real time, sizes in MB.
+    """Milliseconds from click to motion and from dial to curve, real-time factor, sizes in MB.
 
-    The best of three visits; None for a book that has not been built.
+    These are the best of three visits, or None if the book has not been built.
     """
     from live_reference import LAWS, apart
 
@@ -50,7 +50,7 @@ def measure():
 
 
 def visits(times=3):
-    """What a reader waits for on the live page."""
+    """The times that a reader waits on the live page."""
     from chromium import program
     from playwright.sync_api import sync_playwright
 

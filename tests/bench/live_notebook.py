@@ -1,6 +1,6 @@
-"""The live arm in JupyterLab, pulled at by a mouse.
+"""The live arm in JupyterLab, pulled by a mouse.
 
-`python -m tests.bench.live_notebook FOLDER` pulls at wrong laws and keeps a picture of each.
+`python -m tests.bench.live_notebook FOLDER` pulls arms with wrong laws and saves a picture of each.
 """
 
 import os
@@ -19,7 +19,7 @@ import nbformat
 ROOT = Path(__file__).parents[2]
 FLAGS = ["--no-sandbox", "--enable-unsafe-swiftshader"]
 SECONDS, DRAGS = 5.0, 5
-PULL = 5.0  # of a force that is seen, in [N]
+PULL = 5.0  # smallest force that counts as a pull, in [N]
 LIVE = "document.querySelector('.lk-live').parentElement.labkit"
 
 ARM = """
@@ -110,7 +110,7 @@ RECORD = """() => {
 
 @contextmanager
 def notebook(*cells):
-    """A page of JupyterLab, its notebook open and run from the top."""
+    """A page of JupyterLab with an open notebook that has been run from the top."""
     from chromium import program
     from playwright.sync_api import sync_playwright
 
@@ -174,7 +174,7 @@ def answers(port, server, log, patience=240.0):
 
 
 def execute(page, command, cell=None):
-    """One of JupyterLab's commands, on a cell."""
+    """Execute a command of JupyterLab on a cell."""
     page.evaluate(
         """([command, cell]) => {
             if (cell !== null) jupyterapp.shell.currentWidget.content.activeCellIndex = cell;
@@ -185,7 +185,7 @@ def execute(page, command, cell=None):
 
 
 def press(page):
-    """Take hold of the tip with the mouse; where that was, in [px]."""
+    """Take hold of the tip with the mouse; return its position, in [px]."""
     x, y = page.evaluate(TIP)
     page.mouse.move(x, y)
     page.mouse.down()
@@ -193,18 +193,18 @@ def press(page):
 
 
 def seen(page, since=0):
-    """What was drawn: rows of wall clock [ms], the arm's time [s], force [N], pictures so far."""
+    """The drawn frames: rows of wall clock [ms], the arm's time [s], force [N], picture count."""
     return page.evaluate(f"{LIVE}.seen.slice({since})")
 
 
 def a_second(rows, column):
-    """How much a number of `seen` grew in a second of the wall's clock."""
+    """The growth of a number of `seen` per second of the wall clock."""
     (first, *_, last) = rows
     return 1000 * (last[column] - first[column]) / (last[0] - first[0])
 
 
 def latency(page):
-    """Milliseconds from the mouse's first move to the first number of a force in the page."""
+    """Milliseconds from the first move of the mouse to the first force that the page shows."""
     x, y = press(page)
     page.wait_for_function(f"{LIVE}.seen.length && {LIVE}.seen.at(-1)[2] < 1")
     page.evaluate(f"{LIVE}.moved = null; {LIVE}.seen = []")
@@ -217,9 +217,9 @@ def latency(page):
 
 
 def measure():
-    """The live arm in JupyterLab: real time, pictures a second, milliseconds from drag to force.
+    """The live arm in JupyterLab: real-time factor, pictures per second, ms from drag to force.
 
-    Of the drags the median; what the other keys are, `seen` and `BUSY` say.
+    The last one is the median of several drags; `seen` and `BUSY` explain the other keys.
     """
     with notebook(ARM, "pass", BUSY) as page:
         page.evaluate(f"{LIVE}.seen = []")
@@ -234,7 +234,7 @@ def measure():
         page.evaluate(f"{LIVE}.seen = []")
         page.wait_for_timeout(2000)
         busy = seen(page)
-        page.evaluate(f"{LIVE}.send = () => {{}}")  # from here on the kernel hears nothing
+        page.evaluate(f"{LIVE}.send = () => {{}}")  # from here on the kernel receives nothing
         said = page.locator(".jp-OutputArea-output", has_text="let go after")
         said.wait_for()
         let_go = float(said.inner_text().split()[3])
@@ -251,7 +251,7 @@ def measure():
 
 
 def feel(folder):
-    """Pull at each wrong law with the mouse: its sentence and a picture of what is to be seen."""
+    """Pull the arm under each wrong law with the mouse; print its state and save a picture."""
     with notebook(ARM) as page:
         for law in page.get_by_label("Controller").locator("option").all_inner_texts():
             start, note = page.locator(".lk-live .lk-play"), page.locator(".lk-live .lk-say")

@@ -1,7 +1,7 @@
-"""How many wrong answers the checks call by their names, on answers that the names never saw.
+"""The number of wrong answers whose mistake the checks name, for answers unknown to the checks.
 
-`build/names_AUTHOR.tsv` lists each wrong answer with its author's sentence and with what the
-student is told, so that somebody can judge whether it fits.
+`build/names_AUTHOR.tsv` lists each wrong answer with its author's sentence and the message to the
+student, so that a person can judge whether the message fits.
 """
 
 import linecache
@@ -20,13 +20,13 @@ BEFORE = "import control\nimport cv2\nimport numpy as np\nimport labkit as lk\nf
 
 
 def desks():
-    """The desk of each notebook, by its topic."""
+    """The desks of all notebooks, by topic."""
     files = sorted((ROOT / "assignments").glob("*/checks.json"))
     return {file.parent.name.partition("_")[2]: student.Desk.beside(file.parent) for file in files}
 
 
 def function_of(question, source):
-    """The function that a cell's text defines, where a notebook's imports ran before it."""
+    """The function that a cell's text defines after the imports of a notebook."""
     file = f"<{question} {abs(hash(source))}>"
     linecache.cache[file] = (len(source), None, source.splitlines(True), file)
     cell = {}
@@ -36,7 +36,7 @@ def function_of(question, source):
 
 
 def told(desk, answer):
-    """The verdict of the real check on an answer, and the text that a student reads."""
+    """The verdict of the real check on an answer, and the text for the student."""
     try:
         function = function_of(answer.question, answer.source)
     except Exception as error:
@@ -46,14 +46,14 @@ def told(desk, answer):
 
 
 FORM = (Kind.TYPE, Kind.PARTS, Kind.KEY, Kind.NOTHING, Kind.CHANGED, Kind.REFUSED)
-"""Differences whose sentence says what is wrong: another type or shape, nothing, NaN."""
+"""Differences whose sentence says what is wrong: wrong type or shape, no result, NaN."""
 FACTOR = re.compile("is [-0-9.e+]+ times what")
-"""A sentence that says by how much an answer is off, but not why; it does not count as a name."""
+"""A sentence that says by which factor an answer is wrong, but not why, does not name a mistake."""
 NAMED = ("known", "observed", "form")
 
 
 def name_of(verdict):
-    """How a verdict knows the mistake, and the sentence; "numbers" where it only shows these."""
+    """How a verdict names the mistake, and the sentence; "numbers" if it shows only numbers."""
     if verdict.mistake is not None:
         known = verdict.mistake.name
         how = "known" if known else "factor" if FACTOR.search(verdict.mistake.says) else "observed"
@@ -68,7 +68,7 @@ def name_of(verdict):
 
 
 def measure_answers(answers, out=OUT):
-    """Check answers, write the table, and count: {question: Counter}."""
+    """Check answers, write the table, and return the counts {question: Counter}."""
     found, counts, lines = desks(), {}, []
     for answer in answers:
         count = counts.setdefault(f"{answer.topic}/{answer.question}", Counter())
@@ -94,7 +94,7 @@ def measure_answers(answers, out=OUT):
 
 
 def measure():
-    """Wrong answers that are named, wrong ones that pass, right ones that do not."""
+    """Numbers of wrong answers that are named, wrong ones that pass, right ones that fail."""
     answers = [answer for topic in TOPICS for answer in read(topic)]
     by_author = {
         author or "first": measure_answers(

@@ -1,4 +1,4 @@
-"""What a student's machine, or a hub, has to give: time and memory of the solved notebooks."""
+"""The time and memory that solved notebooks need on a student's machine or on a hub."""
 
 import tempfile
 
@@ -31,7 +31,7 @@ def worked_through(path):
 
 
 def measure():
-    """The most seconds and megabytes that a solved notebook takes of its kernel."""
+    """The largest numbers of seconds and megabytes that the kernel of a solved notebook needs."""
     found = {}
     with fresh_course() as course:
         for name in course.names():

@@ -1,4 +1,4 @@
-"""The arm as its users found it, under each of the five controllers."""
+"""The realistic arm under each of the five controllers."""
 
 from time import perf_counter
 
@@ -11,7 +11,7 @@ SECONDS = 2.0
 
 
 def measure():
-    """How many times faster than real time the slowest of the five runs on the BAXTER plant."""
+    """The real-time factor of the slowest of the five controllers on the BAXTER plant."""
     model = lk.Model("left", lk.BAXTER)
     q0 = model.robot.ready
     T = model.pose(q0)

@@ -1,4 +1,4 @@
-"""From nothing to an arm that can be used, each time in a process of its own."""
+"""The time until an arm can be used, each time in a new process."""
 
 import subprocess
 import sys
@@ -21,7 +21,7 @@ TIMES = 7
 
 
 def measure():
-    """Seconds to import labkit and to make an arm, best of several; the import over its engines."""
+    """Best seconds to import labkit and to make an arm; the import relative to the engines'."""
     imports, arms, engines = [], [], []
     for _ in range(TIMES):
         imported, arm = _printed(PROGRAM)

@@ -1,6 +1,6 @@
-"""How good the tag's pose is: `python -m tests.bench.tags --seed 1` writes build/tags.json.
+"""The precision of a tag's pose: `python -m tests.bench.tags --seed 1` writes build/tags.json.
 
-Nothing here is fitted: the poses come from the seed, the truth from the simulation.
+Nothing here is fitted: the poses come from the seed and the true values from the simulation.
 """
 
 import argparse
@@ -15,11 +15,11 @@ from solutions.study import sensing
 
 LIMITS = {"found": 0.99, "position_p95_mm": 2.0, "position_max_mm": 5.0, "orientation_p95_deg": 0.5}
 STEEP = pi / 12
-"""Below this tilt the orientation is ambiguous and is reported apart."""
+"""Below this tilt the orientation is ambiguous and is reported separately."""
 
 
 def figures(seed, distance, count=200):
-    """Shares and percentiles at one distance, tilt evenly from 0 to 60 degrees."""
+    """Shares and percentiles at one distance, with tilts uniform from 0 to 60 degrees."""
     setup = sensing.Setup(distance=distance)
     poses = sensing.random_poses(setup, count, np.random.default_rng(seed))
     readings = sensing.read(setup, poses)
@@ -47,7 +47,7 @@ def figures(seed, distance, count=200):
 
 
 def main():
-    """Measure, write, and say whether the limits hold."""
+    """Measure, write the file, and say whether the limits hold."""
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--seed", type=int, required=True, help="of the poses")
     parser.add_argument("--out", type=Path, default=Path("build/tags.json"))

@@ -1,4 +1,4 @@
-"""How soon a reader of the book can read, and watch a motion, in a headless Chromium."""
+"""The time until a reader of the book can read and watch a motion, in a headless Chromium."""
 
 import shutil
 import tempfile
@@ -12,7 +12,7 @@ BOOK = Path("book/_build/html/index.html")
 
 
 def motion():
-    """A turn of the shoulder, as a run gives it."""
+    """A rotation of the shoulder, as a motion of a run."""
     with lk.Arm() as arm:
         q = arm.robot.neutral
         goal = q + [0.5, 0.2, 0.0, 0.0, 0.0, 0.0, 0.0]
@@ -25,7 +25,7 @@ def motion():
 
 
 def page(folder):
-    """A page of its own with one motion, written into ``folder``."""
+    """A page with one motion, written into ``folder``."""
     from figures.embed import motion_html, shared_files
 
     for name, path in shared_files().items():
@@ -38,7 +38,7 @@ def page(folder):
 def measure():
     """Milliseconds until the book's first page is loaded and until a motion can be played.
 
-    The best of several each; None for a book that has not been built.
+    Both are the best of several; they are None if the book has not been built.
     """
     from chromium import program
     from playwright.sync_api import sync_playwright

@@ -1,4 +1,4 @@
-"""A week of `labkit grade --watch`: how long people wait, and whether anything is lost."""
+"""A week of `labkit grade --watch`: the waiting times, and the number of lost hand-ins."""
 
 import json
 import math
@@ -21,16 +21,16 @@ ASSIGNMENT = "01_paths"
 PEOPLE = 150
 WEEK = timedelta(days=7).total_seconds()
 HURRY = timedelta(hours=2).total_seconds()
-"""How long before the deadline the typical late hand-in comes."""
+"""Time before the deadline at which a typical late hand-in comes."""
 PACE = 60.0
-"""So many times faster than the clock the hours pass in which people hand in."""
+"""Factor by which the hours with hand-ins pass faster than the clock."""
 LONGEST = 1.0
-"""The longest gap between two hand-ins [s]; a grader that waits for an hour does nothing new."""
+"""The longest gap between two hand-ins [s]; a longer wait of the grader would show nothing new."""
 PATIENCE = 600.0
 
 
 def hand_ins(seed=1):
-    """Who hands in after how many seconds: each early, and again in the rush at the end."""
+    """The times in [s] and the students of hand-ins: each hands in early, and again at the end."""
     draw = random.Random(seed)
     early = [(draw.uniform(0.0, WEEK - HURRY), k) for k in range(PEOPLE)]
     late = [(max(0.0, WEEK - draw.expovariate(1.0 / HURRY)), k) for k in range(PEOPLE)]
@@ -38,7 +38,7 @@ def hand_ins(seed=1):
 
 
 class Watching:
-    """A `labkit grade --watch` of its own, as an instructor starts it."""
+    """A separate process of `labkit grade --watch`, as an instructor starts it."""
 
     def __init__(self, course):
         self.process = subprocess.Popen(
@@ -49,13 +49,13 @@ class Watching:
         )
 
     def end(self, how):
-        """End it by a signal."""
+        """End the process with a signal."""
         self.process.send_signal(how)
         self.process.wait()
 
 
 def waits(course, handed_in):
-    """Seconds from each person's last hand-in to its result; infinite while there is none."""
+    """Seconds from each person's last hand-in to its result; infinite if there is no result yet."""
     results = Results(course, ASSIGNMENT)
     for student, (moment, data) in handed_in.items():
         result = results.get(student)
@@ -66,8 +66,8 @@ def waits(course, handed_in):
 def measure():
     """A week with `grade --watch`: seconds that people wait, and hand-ins that are lost.
 
-    150 people hand in notebook 01 twice, most of them in the last hours, which pass sixty times as
-    fast as the clock's.  In the middle of the rush the grader is killed and started again.
+    150 people hand in notebook 01 twice, most of them in the last hours, which pass sixty times
+    faster than the clock.  In the middle of the rush the grader is killed and started again.
     """
     with fresh_course() as course:
         release(course, ASSIGNMENT, seed=1)
@@ -76,8 +76,8 @@ def measure():
         handed_in = {}
 
         def hand_in(student, number):
-            """Put a notebook where it is looked for, at one stroke."""
-            notebook["metadata"]["hand-in"] = number  # no two are the same file
+            """Put a notebook where the grader looks for it, in one atomic step."""
+            notebook["metadata"]["hand-in"] = number  # so that all files differ
             data = json.dumps(notebook).encode()
             place = course.submitted / student / ASSIGNMENT
             place.mkdir(parents=True, exist_ok=True)
@@ -86,7 +86,7 @@ def measure():
             handed_in[student] = time.time(), data
 
         def all_waited(until):
-            """How long each waited, when nobody waits any more."""
+            """The waiting times, as soon as nobody waits any more."""
             while math.inf in (waited := list(waits(course, handed_in))):
                 if time.monotonic() > until:
                     break

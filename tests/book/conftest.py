@@ -11,13 +11,13 @@ ROOT = Path(__file__).parents[2]
 HTML = ROOT / "book/_build/html"
 sys.path[:0] = [str(ROOT / "book/_ext")]
 ABORTED = "net::ERR_ABORTED"
-"""What a request says whose page was left; that of a file that is not there says so."""
+"""The errors of a request whose page was left; a request for a missing file has another error."""
 BUILD = [sys.executable, str(ROOT / "book/_tools/build_book.py")]
 
 
 @pytest.fixture(scope="session")
 def book(testrun_uid):
-    """The folder of the book; a second worker waits, and builds nothing under the first's eyes."""
+    """The folder of the book, which the first worker builds while a second one waits."""
     lock = ROOT / "build/book.lock"
     lock.parent.mkdir(exist_ok=True)
     with lock.open("a+") as file:
@@ -33,7 +33,7 @@ def book(testrun_uid):
 
 @pytest.fixture
 def visit(book, chromium):
-    """Open a page of the book; in the end nothing was asked of a network and nothing complained."""
+    """Open a page of the book; assert at the end that it made no request and no complaint."""
     seen, contexts = [], []
 
     def go(name, *, phone=False, browser=chromium, **options):
@@ -41,7 +41,7 @@ def visit(book, chromium):
         context = browser.new_context(viewport=size, **options)
         contexts.append(context)
         page = context.new_page()
-        page.set_default_timeout(120_000)  # a guard against hanging only
+        page.set_default_timeout(120_000)  # only so that no test hangs
         page.on("console", lambda m: m.type == "error" and seen.append(m.text))
         page.on("pageerror", lambda e: seen.append(str(e)))
         page.on("requestfailed", lambda r: r.failure == ABORTED or seen.append(f"missing: {r.url}"))

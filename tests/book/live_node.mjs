@@ -1,4 +1,4 @@
-// The book's live arm under node: a list of requests on stdin, the list of answers on stdout.
+// Runs the book's live arm in node: reads a list of requests from stdin, writes the answers to stdout.
 import { readFileSync } from "node:fs";
 import { runInThisContext } from "node:vm";
 import { gunzipSync } from "node:zlib";
@@ -20,12 +20,12 @@ const { ROBOT, PLANTS, CONTROLLERS, CONSTANTS, TASK } = numbers;
 const bundle = new URL("../../book/live/bundle/", import.meta.url);
 
 async function engine() {
-  globalThis.window = globalThis; // MuJoCo's script is the page's
+  globalThis.window = globalThis; // because MuJoCo's script is made for pages
   runInThisContext(readFileSync(new URL("mujoco.js", bundle), "utf8"));
   return globalThis.labkitLoadMuJoCo({ wasmBinary: gunzipSync(readFileSync(new URL("mujoco.wasm.gz", bundle))) });
 }
 
-/** A plant by name without chance in it, with what a test changes. */
+/** A plant by its name, without random effects and with the changes of a test. */
 const quiet = ({ plant, change }) => ({ ...PLANTS[plant], velocity_noise: ROBOT.ready.map(() => 0), lost_ticks: 0, ...change });
 
 const ASK = {
@@ -39,7 +39,7 @@ const ASK = {
     const law = laws[controller](new Model(ROBOT, PLANTS[plant]), CONTROLLERS[plant][controller].gains);
     return states.map(([state, target]) => law(state, target).value);
   },
-  flip: ({ distance, tilt }) => { // half pixels of the upper right corner, downwards
+  flip: ({ distance, tilt }) => { // moves the upper right corner down in steps of half a pixel
     const corners = pictured(tilted(distance, tilt));
     let found = named(corners, null), count = 0;
     while (found.better === "A" && count < 100) {

@@ -135,7 +135,7 @@ def test_a_line_never_begins_with_the_sign_after_a_formula():
     """The page says the same as before; a formula without such a sign is left alone."""
     text = '<p>At <span class="math">x</span>, and <span class="math">y</span> on.</p>'
     page = BeautifulSoup(text, "html.parser")
-    lab.mend(page)
+    lab.correct_page(page)
     assert page.get_text() == "At x, and y on."
     assert [kept.get_text() for kept in page.select(".lab-keep")] == ["x,"]
 
@@ -152,7 +152,7 @@ def test_the_reference_shows_no_object_of_the_machine_that_built_it(book):
 def test_a_line_never_breaks_within_an_option():
     """The word --lower in code receives the class that keeps it whole."""
     page = BeautifulSoup('<code><span class="pre">--lower</span></code>', "html.parser")
-    lab.mend(page)
+    lab.correct_page(page)
     assert page.select_one("code .pre")["class"] == ["pre", "lab-keep"]
 
 

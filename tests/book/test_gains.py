@@ -47,7 +47,7 @@ def test_the_dials_are_moved_by_keyboard_and_say_recorded(visit):
     typed.press("Enter")
     page.wait_for_function(
         "text => document.querySelector('.lk-recorded').textContent.includes(text)",
-        arg="at Kp 12; shown is the nearest, 8",
+        arg="at Kp 12; the nearest, 8, is shown",
     )
     page.get_by_label("Task", exact=True).select_option("circle")
     page.wait_for_function("document.querySelector('.lk-recorded').textContent.includes('circle')")

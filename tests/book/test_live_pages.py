@@ -243,7 +243,7 @@ def test_the_tag_tells_nothing_before_the_reader_has(live):
     page = live("live_age", phone=True)
     results = page.locator(".lk-live .lk-table")
     assert results.is_hidden()
-    assert "beside" not in page.inner_text(".lk-live .lk-readout")
+    assert "from the tag" not in page.inner_text(".lk-live .lk-readout")
     page.keyboard.type("12")  # the box has the focus
     page.keyboard.press("Enter")
     results.wait_for()

@@ -5,7 +5,7 @@ from labkit.course.messages import why
 
 
 def says(difference):
-    """A difference in words."""
+    """The sentence about a difference."""
     return why(TestResult("a test", 1.0, Outcome.WRONG, difference=difference))
 
 

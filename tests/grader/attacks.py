@@ -1,7 +1,7 @@
 """Attacks on the grader, by class.
 
-An attack is a cell in an otherwise empty notebook, or what a question's function becomes.  It says
-`GOT ...` in an exception when it has what it should not have.
+An attack is a cell in an otherwise empty notebook, or it replaces a question's function.  It raises
+an exception with `GOT ...` when it has obtained something forbidden.
 """
 
 from __future__ import annotations
@@ -25,9 +25,9 @@ class Attack:
     answer: str = ""
 
     def planted(self, notebook, at=2, **own):
-        """Put it into a notebook; words in braces stand for what is the test's own.
+        """Put the attack into a notebook; words in braces are replaced by values of the test.
 
-        GOT stands there in disguise, for whoever fails is shown the line that failed.
+        GOT is disguised there, because a traceback shows the line that failed.
         """
         cell, answer = self.cell, self.answer.replace("NAME", "bang_bang")
         for word, value in own.items():
@@ -44,7 +44,7 @@ def cells(**sources: str) -> dict[str, Attack]:
 
 
 def answers(**bodies: str) -> dict[str, Attack]:
-    """Attacks from within the function, each given as its body."""
+    """Attacks from within the function, each given as the body of the function."""
     made = {}
     for name, body in bodies.items():
         lines = "\n    ".join(body.strip().splitlines())

@@ -1,4 +1,4 @@
-"""Gradescope's container as this machine can make it: its folders, its limits, Docker's rights."""
+"""An imitation of Gradescope's container, with its folders and limits and with Docker's rights."""
 
 from __future__ import annotations
 
@@ -20,16 +20,16 @@ from labkit.grader.gradescope.run import PLACE
 from labkit.grader.sandbox.cgroup import Group
 
 GIVEN = {"memory": 768 * 2**20, "processor": 50_000}
-"""What Gradescope gives by default: bytes, and microseconds of each 100 ms."""
+"""Gradescope's default limits: bytes of memory, and microseconds of processor in each 100 ms."""
 RIGHTS = (
     "chown dac_override fowner fsetid kill setgid setuid setpcap net_bind_service net_raw "
     "sys_chroot mknod audit_write setfcap"
 )
-"""Those of root in a container that was given no others; none makes a namespace."""
+"""The rights of root in a container by default; none of them allows making a namespace."""
 
 
 class Ended(NamedTuple):
-    """How a run ended: what Gradescope reads, what the instructor may read, the folder's mode."""
+    """The end of a run: Gradescope's results, the text for the instructor, the folder's mode."""
 
     results: dict
     said: str
@@ -40,7 +40,7 @@ class Ended(NamedTuple):
 
 
 def packed(course, assignment, to, monkeypatch):
-    """The zip of an assignment, without labkit in it."""
+    """The zip of an assignment, which does not contain labkit."""
     shutil.copy(ROOT / "constraints.txt", course.root)
     monkeypatch.setattr(gradescope_zip, "wheel", lambda root, to: None)
     gradescope_zip.autograder(course, assignment, to)
@@ -48,7 +48,7 @@ def packed(course, assignment, to, monkeypatch):
 
 
 def installed(folder):
-    """A folder that every user may read, with labkit and nothing else of the checkout."""
+    """A folder that every user may read, with only labkit from the checkout."""
     folder.chmod(0o755)
     (folder / "labkit").symlink_to(ROOT / "labkit")
     return folder / "labkit"
@@ -56,7 +56,7 @@ def installed(folder):
 
 @contextmanager
 def unpacked(archive):
-    """``/autograder``, made of a zip, where every user may look for it."""
+    """The folder ``/autograder``, made from a zip, in a place that every user may read."""
     with tempfile.TemporaryDirectory(prefix="autograder-") as folder:
         installed(Path(folder))
         place = Path(folder, "autograder")

@@ -1,4 +1,4 @@
-"""01_paths with two cells more that a person marks: an answer in words, and a task."""
+"""01_paths with two more cells that a person marks: an answer in words and a task."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ def _cell(name, source, **flags):
 
 
 def with_hand_marked(path, questions, predictions):
-    """What `source_notebook` makes; in place of its why, at its end: 2 points by hand, and 4."""
+    """The result of `source_notebook` with two cells by hand, of 2 and 4 points, and no why."""
     notebook = source_notebook(path, questions, predictions)
     (why,) = (k for k, cell in enumerate(notebook.cells) if cell.metadata["lab"] == "why")
     del notebook.cells[why - 1 : why + 1]
@@ -32,7 +32,7 @@ def with_hand_marked(path, questions, predictions):
 
 
 def author(monkeypatch):
-    """Let `labkit release` find these cells in the assignment's source."""
+    """Let `labkit release` find these two cells in the source of the assignment."""
     monkeypatch.setattr("labkit.course.authoring.release.source_notebook", with_hand_marked)
 
 

@@ -1,4 +1,4 @@
-"""A released course in a folder of its own, and a sandbox, for the tests of the grader."""
+"""A released course in a temporary folder, and a sandbox, for the tests of the grader."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ SEED = 7
 
 @pytest.fixture(scope="session")
 def released(tmp_path_factory):
-    """A course with 01_paths released, never written to again."""
+    """A course with 01_paths released, to which no test writes."""
     root = tmp_path_factory.mktemp("course")
     (root / "solutions").symlink_to(ROOT / "solutions")
     shutil.copy(ROOT / "nbgrader_config.py", root)
@@ -30,7 +30,7 @@ def released(tmp_path_factory):
 
 @pytest.fixture
 def course(released, tmp_path):
-    """A copy of it, to write to."""
+    """A copy of the released course to which a test may write."""
     root = tmp_path / "course"
     shutil.copytree(released.root, root, symlinks=True)
     return Course(root)
@@ -59,11 +59,11 @@ def _solved(released):
 
 @pytest.fixture
 def blank(_blank):
-    """The assignment as it is handed out, as JSON data."""
+    """The assignment as students receive it, as JSON data."""
     return copy.deepcopy(_blank)
 
 
 @pytest.fixture
 def solved(_solved):
-    """The assignment with the right answers in it."""
+    """The assignment with the right answers, as JSON data."""
     return copy.deepcopy(_solved)

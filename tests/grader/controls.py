@@ -1,7 +1,7 @@
-"""A control for each class of attack: one that pays or harms under plain nbgrader.
+"""A control for each class of attack, which pays or does harm under plain nbgrader.
 
-The same notebook is given to both engines.  {loot} is a folder, {port} a server and {mark} a
-number, all of the test's own: by them it sees what was taken, who was called and what was left.
+Both engines receive the same notebook.  {loot} is a folder, {port} the port of a server and {mark}
+a number, all made by the test, which detects with them stolen data, calls and processes left over.
 """
 
 from __future__ import annotations
@@ -16,15 +16,15 @@ VICTIM = "honest, graded last"
 
 @dataclass
 class After:
-    """What is there once a class has been graded, by class of attack where it says so.
+    """The state after a class has been graded.
 
     Attributes:
-        scores: What each student got; None where nobody graded him.
-        written: How many bytes the grader wrote for each.
-        pages: The feedback for those who were given some.
-        loot: What was taken.
-        calls: What a server outside the sandbox was told.
-        left: Processes that still ran.
+        scores: The score of each student; None for those who were not graded.
+        written: The number of bytes that the grader wrote for each student.
+        pages: The feedback of those who received some.
+        loot: The stolen data.
+        calls: The messages that a server outside the sandbox received.
+        left: The processes that still ran.
     """
 
     scores: dict[str, float | None]
@@ -36,44 +36,44 @@ class After:
 
 
 def pays(after: After, kind: str) -> bool:
-    """It got points for no answer."""
+    """Whether the attack earned points without an answer."""
     return bool(after.scores[kind])
 
 
 def takes(after: After, kind: str) -> bool:
-    """It had what it should not have, and put it where it should not write."""
+    """Whether the attack obtained forbidden data and wrote it to a forbidden place."""
     return kind in after.loot
 
 
 def calls(after: After, kind: str) -> bool:
-    """It told somebody outside."""
+    """Whether the attack sent something out of the sandbox."""
     return kind.encode() in after.calls
 
 
 def kills(after: After, kind: str) -> bool:
-    """It left a process behind, and whoever came after it was not graded."""
+    """Whether the attack left a process behind and prevented the grading of the next student."""
     return bool(after.left) and after.scores[VICTIM] is None
 
 
 def fills(after: After, kind: str) -> bool:
-    """It made the grader write what it pleased, and as much."""
+    """Whether the attack made the grader write much data of the attack's choice."""
     return after.written[kind] > 10**7
 
 
 def speaks(after: After, kind: str) -> bool:
-    """Its script runs in the browser of whoever reads the feedback."""
+    """Whether a script of the attack runs in the browser of a person who reads the feedback."""
     return "<script>alert('GOT')" in after.pages[kind]
 
 
 @dataclass(frozen=True)
 class Control:
-    """One attack with what comes of it under nbgrader.
+    """One attack and its effect under nbgrader.
 
     Attributes:
-        does: What comes of it.
-        attack: The attack; its cell stands at the top.
-        plain: Whether it is aimed at the plain test in `PLAIN`, as labkit's check resists it even
-            in one process.
+        does: The function that detects the effect.
+        attack: The attack, whose cell is at the top of the notebook.
+        plain: Whether its target is the plain test in `PLAIN`, because labkit's check resists the
+            attack even in one process.
     """
 
     does: Callable[[After, str], bool]
@@ -93,7 +93,7 @@ PLAIN = """import numpy as np
 
 off = np.abs(np.subtract(bang_bang(0.5, 2.0), (0.125, 0.5, 1.0))).max()
 float(np.clip(3.0 - off, 0.0, 3.0))"""
-"""A test with partial credit as many are written: three points, less how far the answer is off."""
+"""A typical test with partial credit: three points minus the error of the answer."""
 
 CONTROLS: dict[str, Control] = {
     "patched comparison": cell(
@@ -137,7 +137,7 @@ CONTROLS: dict[str, Control] = {
         "with socket.create_connection(('127.0.0.1', {port}), 2) as line: line.sendall(b'network')",
     ),
     "endless": cell(fills, "print('x' * 20_000_000)"),
-    "kernel": cell(  # a call to the kernel that gives the grader ten more minutes to live
+    "kernel": cell(  # a system call that gives the grader ten more minutes of processor time
         takes,
         "import os, resource\nresource.prlimit(os.getppid(), resource.RLIMIT_CPU, (600, 600))\n"
         "open('{loot}/kernel', 'w').write('it is done')",
@@ -155,7 +155,7 @@ CONTROLS: dict[str, Control] = {
         "from IPython.display import HTML, display\n"
         "display(HTML(\"<script>alert('GOT')</script>\"))",
     ),
-    "signals and processes": cell(  # the last one: nobody after it is graded
+    "signals and processes": cell(  # the last one, because nobody after it is graded
         kills,
         "import os, signal\nos.system('setsid sleep 30 {mark} &')\n"
         "os.kill(os.getppid(), signal.SIGKILL)",

@@ -1,4 +1,4 @@
-"""Small changes to a notebook's JSON, handing it in, and nbgrader's own commands."""
+"""Functions that change a notebook's JSON, hand it in, and run nbgrader's own commands."""
 
 from __future__ import annotations
 
@@ -14,12 +14,12 @@ from labkit.grader.sandbox.limits import Limits
 
 ROOT = Path(__file__).parents[2]
 FULL = 22.0
-"""What the machine gives a right 01_paths; of its 24 points two are a why's."""
+"""The points by machine for a right 01_paths; two of its 24 points belong to a why."""
 QUICK = Limits(cell=2.0, call=1.0, question=20.0, wall=60.0)
 
 
 def timeless(result):
-    """A result without what depends on the machine: all else comes out the same anywhere."""
+    """A result without the parts that depend on the machine; the rest is the same anywhere."""
     cells = tuple({**cell, "seconds": 0.0} for cell in result.cells)
     return replace(result, cells=cells, seconds={}, isolation="")
 
@@ -55,9 +55,9 @@ def hand_in(course, assignment, student, notebook):
 
 
 def nbgrader(folder, *words):
-    """Run a command of nbgrader's in a folder: how it ended, and what it said.
+    """Run a command of nbgrader in a folder; return its exit code and its output.
 
-    What students start may end it, and may outlive it; so there is no waiting for a pipe to close.
+    Processes of students may end the command or outlive it, so do not wait until a pipe closes.
     """
     here = Path(sys.executable).parent
     with tempfile.TemporaryFile() as out:

@@ -1,4 +1,4 @@
-"""A class that is graded without a sandbox: results made by hand, as the grader writes them."""
+"""A class graded without a sandbox, with handmade results in the grader's format."""
 
 from __future__ import annotations
 
@@ -16,19 +16,19 @@ from labkit.grader.nbgrader.gradebook import record
 
 NAME = "01_paths"
 WHY = "why_twice_the_time"
-"""Its text that a person marks where it is drawn; of this class nobody's is."""
+"""The text that a person marks if it is drawn; in this class none is drawn."""
 NOTEBOOK = {"cells": [], "metadata": {}, "nbformat": 4, "nbformat_minor": 5}
 
 
 def notebook_of(student):
-    """Bytes that no other student handed in."""
+    """The bytes of a notebook, which differ for each student."""
     return json.dumps(NOTEBOOK | {"metadata": {"of": student}}).encode()
 
 
 def result_of(course, student, *, share=1.0, rejected="", data=None, **more):
-    """What came of a student's notebook: this share of every question's points.
+    """The result of a student's notebook, with a share of the points of every question.
 
-    Who has all of them also wrote why.
+    A student with all points has also written the why.
     """
     bundle = Bundle.of(course, NAME)
     data = notebook_of(student) if data is None else data
@@ -60,7 +60,7 @@ def result_of(course, student, *, share=1.0, rejected="", data=None, **more):
 
 
 def changed(result, number=0, verdict=None, **more):
-    """A result with other contents in one of its answers, and in that answer's verdict."""
+    """A result with changes in one of its answers and in the verdict on that answer."""
     answers = list(result.questions)
     found = replace(answers[number].verdict, **(verdict or {}))
     answers[number] = replace(answers[number], verdict=found, **more)
@@ -68,14 +68,14 @@ def changed(result, number=0, verdict=None, **more):
 
 
 def saying(verdict, words):
-    """A verdict each test of which failed with an exception that says so."""
+    """A verdict in which each test failed with an exception that has the given words."""
     why = Difference(Kind.RAISED, found=words, error="ValueError")
     tests = tuple(replace(t, outcome=Outcome.ERROR, difference=why) for t in verdict.tests)
     return replace(verdict, tests=tests)
 
 
 def said_by_hand(result, **comments):
-    """The mark of a result, with what a person wrote on some of its questions."""
+    """The mark of a result with a person's comments on some of its questions."""
     mark = mark_of(result)
     lines = tuple(replace(x, comment=comments.get(x.name, "")) for x in mark.lines)
     return replace(mark, lines=lines)
@@ -87,7 +87,7 @@ def handed_in(course, *students):
 
 
 def graded(course, *results, recorded=True):
-    """Keep results, their submissions beside them, and record them."""
+    """Save results and their submissions, and record them."""
     for result in results:
         handed_in(course, result.student)
         Results(course, NAME).keep(result)
@@ -95,6 +95,6 @@ def graded(course, *results, recorded=True):
 
 
 def marks(text):
-    """A table of the layout ``questions``: each student's last two cells, score and remark."""
+    """Each student's score and remark, the last two cells in the layout ``questions``."""
     rows = [line.split(",", maxsplit=8) for line in text.splitlines()[2:]]
     return {row[0]: (row[-2], row[-1]) for row in rows}

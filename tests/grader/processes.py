@@ -1,15 +1,15 @@
-"""Processes of this machine: which ones descend from one, and whether they are gone."""
+"""Processes of this machine: the descendants of a process, and whether they have ended."""
 
 from __future__ import annotations
 
 import time
 from pathlib import Path
 
-GUARD = 120.0  # seconds after which a test is taken to hang
+GUARD = 120.0  # seconds after which a test is considered to hang
 
 
 def _all() -> dict[int, tuple[int, str]]:
-    """Of each process: its parent, and when it started, which tells it from a later one."""
+    """The parent and the starting time of each process; the time identifies reused numbers."""
     found = {}
     for folder in Path("/proc").glob("[0-9]*"):
         try:
@@ -27,7 +27,7 @@ def running() -> set[int]:
 
 
 def child(pid: int, word: str, but: set[int] = frozenset()) -> int:
-    """A child of a process that was started with a word, once there is one beside some others."""
+    """Wait for a child of a process that has `word` in its command and is not in `but`."""
     until = time.monotonic() + GUARD
     while time.monotonic() < until:
         for one, (parent, _) in _all().items():
@@ -42,7 +42,7 @@ def child(pid: int, word: str, but: set[int] = frozenset()) -> int:
 
 
 def below(pid: int, at_least: int) -> set[tuple[int, str]]:
-    """A process and its descendants, once there are so many."""
+    """A process and its descendants, as soon as there are at least `at_least`."""
     until = time.monotonic() + GUARD
     while time.monotonic() < until:
         known, family, size = _all(), {pid}, 0
@@ -56,7 +56,7 @@ def below(pid: int, at_least: int) -> set[tuple[int, str]]:
 
 
 def wait_until_gone(processes: set[tuple[int, str]]) -> None:
-    """Wait until none of these is left."""
+    """Wait until all these processes have ended."""
     until = time.monotonic() + GUARD
     while left := {(pid, start) for pid, (_, start) in _all().items()} & processes:
         assert time.monotonic() < until, f"still there: {left}"

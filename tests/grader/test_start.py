@@ -109,7 +109,7 @@ def test_a_python_that_will_not_do_hands_over_to_one_that_will(start, monkeypatc
     """Or says what is needed and how to get it."""
     monkeypatch.setattr(start, "VERSIONS", ("3.99",))
     monkeypatch.setattr(start, "PLACES", (str(tmp_path),))
-    needs = r"this is Python .*needs 3.11, 3.12 or 3.13.* Where you cannot, install Miniforge"
+    needs = r"this is Python .*needs 3.11, 3.12 or 3.13.* If you cannot, install Miniforge"
     with pytest.raises(start.Stop, match=needs):
         start.main([])
     (tmp_path / "python3.99").symlink_to(sys.executable)

@@ -1,4 +1,4 @@
-"""Withheld tools: what uses one is not counted, and what may be a way around one is listed."""
+"""Withheld tools: what uses one is not counted, and what may be a trick around one is listed."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ from dataclasses import replace
 
 import pytest
 from handmade import QUICK, add, put, raw
-from ways import WAYS, Way
+from tricks import TRICKS, Trick
 
 from labkit.course.authoring.bundle import Bundle
 from labkit.course.verdict import Outcome
@@ -15,7 +15,7 @@ from labkit.grader.feedback.page import page
 from labkit.grader.grading.grade import grade
 from labkit.grader.marks.table import mark_of
 
-pytestmark = pytest.mark.slow  # a sandbox for each way
+pytestmark = pytest.mark.slow  # a sandbox for each trick
 
 
 @pytest.fixture(scope="module")
@@ -36,27 +36,27 @@ def graded(one, sandbox, blank):
     return graded
 
 
-@pytest.mark.parametrize("name", WAYS)
-def test_every_known_way_is_told(graded, name):
+@pytest.mark.parametrize("name", TRICKS)
+def test_every_known_trick_is_reported(graded, name):
     """Each earns nothing but for a few, and these are listed for the instructor."""
-    way = WAYS[name]
-    result = graded(way.answer, way.cell)
+    trick = TRICKS[name]
+    result = graded(trick.answer, trick.cell)
     (question,) = result.questions
-    assert (question.verdict.earned > 0) == way.counted, question
+    assert (question.verdict.earned > 0) == trick.counted, question
     assert question.verdict.withheld == ("labkit.BangBang",) or result.tricks
     if question.verdict.withheld:
         assert question.verdict.outcome is Outcome.NOT_COUNTED
-    assert bool(result.cells) == way.fails, result.cells
+    assert bool(result.cells) == trick.fails, result.cells
 
 
 def test_the_class_report_lists_both(graded):
     """Who used a tool, and what in whose cells needs a look; of the honest it says nothing."""
     results = [
-        replace(graded(way.answer, way.cell), student=name)
-        for name, way in [
-            ("ada", WAYS["by name"]),
-            ("cleo", Way("return t, 0, 0")),
-            ("bob", WAYS["loading under another name"]),
+        replace(graded(trick.answer, trick.cell), student=name)
+        for name, trick in [
+            ("ada", TRICKS["by name"]),
+            ("cleo", Trick("return t, 0, 0")),
+            ("bob", TRICKS["loading under another name"]),
         ]
     ]
     text = report("01_paths", list(map(mark_of, results)), {}, str.upper)
@@ -71,7 +71,7 @@ def test_the_class_report_lists_both(graded):
 
 def test_what_is_not_counted_says_why(graded):
     """The result names the tool, and the page that is made of it says the sentence."""
-    result = graded(WAYS["by name"].answer)
+    result = graded(TRICKS["by name"].answer)
     (question,) = result.questions
     sentence = "it uses lk.BangBang, which this question asks you to write"
     assert question.notes[0] == sentence

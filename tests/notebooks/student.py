@@ -1,4 +1,4 @@
-"""A student for the tests: fills in some stubs, runs every cell, and keeps what was printed."""
+"""A student for tests, who fills in some stubs, runs every cell and keeps the printed text."""
 
 import json
 import shutil
@@ -22,20 +22,20 @@ matplotlib.use("Agg")
 COURSE = Course.here(Path(__file__))
 
 STUB = ""
-"""As it was released."""
+"""The stub as it was released."""
 BROKEN = "def {name}(*args, **kwargs):\n    return 1 / 0\n"
 FORGETS = "def {name}(*args, **kwargs):\n    pass\n"
-"""What else an unsolved part may look like."""
+"""Other unsolved forms of a part."""
 
 
 @dataclass
 class Sheet:
-    """What came of running a notebook.
+    """The results of running a notebook.
 
     Attributes:
-        printed: Everything on stdout.
-        earned: Points by question.
-        used: Questions whose function the notebook uses further down.
+        printed: The whole text on stdout.
+        earned: The points of each question.
+        used: The questions whose function the notebook uses in later cells.
     """
 
     printed: str = ""
@@ -43,7 +43,7 @@ class Sheet:
     used: tuple[str, ...] = ()
 
     def badges(self, name: str) -> bool:
-        """Whether the notebook said that a stand-in takes a part's place."""
+        """Whether the notebook said that a stand-in replaces a part."""
         return f"[stand-in] {name}:" in self.printed
 
 
@@ -53,7 +53,7 @@ def questions(name):
 
 
 def fill(name, parts: Mapping[str, str]):
-    """The released notebook with each part's cell as given; "" leaves the stub."""
+    """The released notebook with the given cells for its parts; "" keeps the stub."""
     notebook = nbformat.read(COURSE.release / name / f"{name}.ipynb", as_version=4)
     for cell in notebook.cells:
         grade_id = cell.metadata.get("nbgrader", {}).get("grade_id")
@@ -63,23 +63,23 @@ def fill(name, parts: Mapping[str, str]):
 
 
 def solved(name):
-    """Every part with the answer's own source, and every value written down."""
+    """The source of the answer for every part, and every value for the predictions."""
     sources = {p.name: inlined(p) for p in COURSE.problems(name)}
     sources |= {p.name: p.solved() for p in COURSE.predictions(name)}
     return {q: source.replace("{", "{{").replace("}", "}}") for q, source in sources.items()}
 
 
 def run_here(name, parts, folder, monkeypatch, *, shortest=0.1):
-    """Run a notebook cell by cell in this process, simulations cut short, closed loops unmarked.
+    """Run a notebook's cells in this process with short simulations and unmarked closed loops.
 
-    Runs with chosen gains are marked all the same: the question has nothing else.
+    Runs with chosen gains are still marked, because their question has no other tests.
 
     Args:
         name: The assignment.
-        parts: As for `fill`.
-        folder: An empty one.
-        monkeypatch: pytest's.
-        shortest: How long a simulation may last, in [s].
+        parts: The cells, as for `fill`.
+        folder: An empty folder.
+        monkeypatch: The fixture of pytest.
+        shortest: The longest duration of a simulation, in [s].
     """
     checks = json.loads((COURSE.release / name / FILE).read_text(encoding="utf-8"))
     for question in checks["questions"]:
@@ -99,7 +99,7 @@ def run_here(name, parts, folder, monkeypatch, *, shortest=0.1):
 
     monkeypatch.setattr(labkit, "run", short_run)
     notebook, out, names = fill(name, parts), StringIO(), {"__name__": "__main__"}
-    nbformat.write(notebook, folder / f"{name}.ipynb")  # which its last cell looks at
+    nbformat.write(notebook, folder / f"{name}.ipynb")  # its last cell reads it
     with redirect_stdout(out):
         for cell in notebook.cells:
             if cell.cell_type == "code":
@@ -118,26 +118,26 @@ def run_here(name, parts, folder, monkeypatch, *, shortest=0.1):
 
 
 def run_kernel(name, parts, folder):
-    """Run a notebook in a real kernel; returns it executed, and its memory [MB]."""
+    """Run a notebook in a real kernel; return the executed notebook and its memory [MB]."""
     from nbclient import NotebookClient
     from traitlets.config import Config
 
     shutil.copy(COURSE.release / name / FILE, folder)
     notebook = fill(name, parts)
-    nbformat.write(notebook, folder / f"{name}.ipynb")  # which its last cell looks at
+    nbformat.write(notebook, folder / f"{name}.ipynb")  # its last cell reads it
     notebook.cells.append(
         nbformat.v4.new_code_cell(
-            # getrusage would count the memory of this process, from which the kernel is forked.
+            # getrusage would include the memory of this process, from which the kernel is forked.
             "print(next(x.split()[1] for x in open('/proc/self/status') if 'VmHWM' in x))"
         )
     )
     place = {"metadata": {"path": str(folder)}}
     with TemporaryDirectory() as sockets:
-        # Files, for two kernels that start at once may be given the same free port.
+        # Sockets are files, because two kernels that start together may get the same free port.
         files = {"transport": "ipc", "ip": f"{sockets}/kernel"}
         NotebookClient(
             notebook,
-            timeout=600,  # a guard against hanging only; how long it takes, `make bench` says
+            timeout=600,  # only so that no test hangs; `make bench` measures the time
             kernel_name="python3",
             resources=place,
             config=Config({"KernelManager": files}),

@@ -1,4 +1,4 @@
-"""Tools of the replay tests: node on the viewer's sources."""
+"""Tools of the replay tests, which run the viewer's sources in node."""
 
 import json
 import shutil
@@ -13,7 +13,7 @@ SOURCES = ROOT / "labkit/replay/viewer"
 
 @pytest.fixture(scope="session")
 def node():
-    """Call with an expression and an input: evaluates it on the viewer's modules, `x` the input."""
+    """A function that evaluates an expression with the viewer's modules and an input `x`."""
     assert shutil.which("node"), "node is missing: apt-get install nodejs (version 20 or newer)"
 
     def evaluate(expression: str, x=None):

@@ -11,7 +11,7 @@ STARTS = {"left": [0.66, 0.80, 0.08], "right": [0.66, -0.80, 0.08]}
 def swing(
     seconds: float = 10.0, side: str = "left", ghosts: int = 2, rate: float = 200.0
 ) -> Motion:
-    """An arm that swings about its neutral pose after a target on a circle."""
+    """The motion of an arm that swings about its neutral pose, with a target on a circle."""
     t = np.arange(0.0, seconds + 1e-9, 1 / rate)
     w = 2 * np.pi / 5
     shape = np.array([0.5, 0.25, 0.3, -0.3, 0.4, 0.25, 0.5])

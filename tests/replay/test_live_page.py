@@ -349,7 +349,7 @@ def test_force_and_sentence_are_shown_and_said(page, data):
     assert first["state"] == "ready"
 
 
-GONE = "The kernel was restarted or shut down, and this arm is gone with it: run the notebook"
+GONE = "The kernel was restarted or shut down, and this arm ended with it: run the notebook"
 
 
 def test_the_box_tells_the_truth_where_the_page_takes_the_arm_in_late(page, data):

@@ -1,4 +1,4 @@
-"""Classes in which a few are honest and all others hand in something hostile."""
+"""Classes with a few honest students, in which all others hand in something hostile."""
 
 from __future__ import annotations
 
@@ -24,10 +24,10 @@ NAME = "01_paths"
 SECRET = 1000
 """Moodle's number of the first hostile participant."""
 HONEST = ("ada", "kim", "zoe", "carl")
-"""Whose folders are called as they are; carl comes through the exchange.
+"""Honest students whose folders have their names; carl hands in through the exchange.
 
 Mia Wong comes from Moodle as participant 101 and Ada Lovelace from Canvas as user 7; how their
-folders are called is the collector's affair.
+folders are called is decided by the collector.
 """
 HEAD = """import numpy as np
 import labkit as lk
@@ -69,8 +69,8 @@ class Kind:
     """One hostile thing.
 
     Attributes:
-        table: The table of `hostile` that it stands in.
-        name: Its name there.
+        table: The table of `hostile` that contains the thing.
+        name: The name of the thing in that table.
     """
 
     table: str
@@ -78,12 +78,12 @@ class Kind:
 
     @property
     def thing(self) -> Any:
-        """What the table says."""
+        """The value in the table."""
         return getattr(hostile, self.table)[self.name]
 
     @cached_property
     def folder(self) -> str:
-        """Whose folder it lies in, below ``submitted/``."""
+        """The student whose folder in ``submitted/`` contains the thing."""
         if self.table == "PEOPLE":
             thing = self.thing
             return os.fsdecode(thing) if isinstance(thing, bytes) else thing
@@ -94,18 +94,18 @@ class Kind:
 
 
 def kinds(*tables: str) -> list[Kind]:
-    """All kinds of some tables."""
+    """All kinds in some tables."""
     return [Kind(table, name) for table in tables for name in getattr(hostile, table)]
 
 
 def copied(course: Path, root: Path) -> Path:
-    """A copy of a course, to write to."""
+    """A copy of a course to which a test may write."""
     shutil.copytree(course, root, symlinks=True)
     return root
 
 
 def notebook(course: Path, which: str, name: str = NAME) -> hostile.Notebook:
-    """A notebook: "solved" in all its code, or "blank" as it was handed out."""
+    """A notebook, either "solved" in all its code or "blank" as students receive it."""
     work = {"solved": solved_code, "blank": handed_out}[which](Course(course), name)
     for cell in work["cells"]:
         cell["source"] = "".join(cell["source"])
@@ -113,7 +113,7 @@ def notebook(course: Path, which: str, name: str = NAME) -> hostile.Notebook:
 
 
 def hand_in_honest(course: Path, name: str = NAME) -> None:
-    """What three honest people put there: two solved it, one did a third of it, and some wrong."""
+    """Hand in the work of three honest students: two solved it, one solved only a part."""
     solved, half = notebook(course, "solved", name), notebook(course, "blank", name)
     right = {who: cell["source"] for who, cell in _answers(solved).items()}
     for number, (question, cell) in enumerate(_answers(half).items()):
@@ -127,12 +127,12 @@ def hand_in_honest(course: Path, name: str = NAME) -> None:
 
 
 def hand_in(course: Path, kind: Kind, name: str = NAME) -> None:
-    """Put a kind's submission where a person would have put it."""
+    """Put the submission of a kind where a person would have put it."""
     put(kind, course, course / "submitted" / kind.folder / name, name)
 
 
 def put(kind: Kind, course: Path, folder: Path, name: str = NAME) -> Path:
-    """Write a kind's notebook into a folder; returns its file."""
+    """Write the notebook of a kind into a folder and return its file."""
     work = notebook(course, "solved", name)
     path = folder / f"{name}.ipynb"
     if kind.table == "FILE_NAMES":
@@ -147,10 +147,10 @@ def put(kind: Kind, course: Path, folder: Path, name: str = NAME) -> Path:
 
 
 def write_downloads(course: Path, hostiles: Sequence[Kind]) -> None:
-    """Write what Moodle, Canvas and the exchange give, with one honest student in each.
+    """Write downloads of Moodle and Canvas, and an exchange, with an honest student in each.
 
-    People with odd names are honest too; what `hostile.ENTRIES` brings is worth 0, so that it shows
-    in whose place it stands.
+    Students with odd names are honest too; the entries of `hostile.ENTRIES` are worth 0, so that a
+    mark shows if one of them has replaced an honest notebook.
     """
     solved = json.dumps(notebook(course, "solved"))
     folder = course / "downloads"
@@ -173,14 +173,14 @@ def write_downloads(course: Path, hostiles: Sequence[Kind]) -> None:
     when = "2026-03-01 10:00:00 UTC"
     names = ["carl", *(k.folder for k in hostiles if k.table == "PEOPLE" and "+" not in k.folder)]
     for who in names:
-        if len(os.fsencode(who)) < 200:  # with the rest it is no name of a file any more
+        if len(os.fsencode(who)) < 200:  # the whole name of a longer one is too long for a file
             path = folder / "inbound" / f"{who}+{NAME}+{when}" / f"{NAME}.ipynb"
             _put(path, json.loads(solved))
             written_at(path.parent, when)
 
 
 def _plain(name: str | bytes) -> str:
-    """A name as a zip can hold it."""
+    """A name in a form that a zip can contain."""
     return name.decode("cp437") if isinstance(name, bytes) else name
 
 
@@ -190,7 +190,7 @@ def _put(path: Path, work: hostile.Notebook) -> None:
 
 
 def _answers(work: hostile.Notebook) -> dict[str, dict[str, Any]]:
-    """The cells of a notebook that answer questions, by the question's name."""
+    """The cells of a notebook that answer questions, by the names of the questions."""
     return {
         cell["metadata"]["nbgrader"]["grade_id"]: cell
         for cell in work["cells"]
@@ -204,7 +204,7 @@ def _code(key: str, source: str) -> dict[str, Any]:
 
 
 def _wrapped(question: str, source: str, number: str) -> str:
-    """A right answer with other numbers."""
+    """The source of a right answer with other numbers."""
     return (
         f"{source}\n\n_right_{question} = {question}\n\n\ndef {question}(*args, **kwargs):\n"
         f"    return tainted(_right_{question}(*args, **kwargs), lambda x, k: {number})"
@@ -239,7 +239,7 @@ def _source(text: str, work: hostile.Notebook) -> None:
 
 
 def _each_answer(write: Callable[[str, str], str]) -> Callable[[Any, hostile.Notebook], None]:
-    """Every answer becomes what ``write`` makes of the thing, the question and the right answer."""
+    """Replace every answer by what ``write`` makes of the thing, question and right answer."""
 
     def change(thing: str, work: hostile.Notebook) -> None:
         for question, cell in _answers(work).items():

@@ -1,7 +1,7 @@
-"""The commands as they are typed, each in a process of its own, and what they said.
+"""Runs typed commands, each in a separate process, and keeps their output.
 
-The processes are forked from one that has loaded everything, and what they grade is graded by one
-worker that outlives them, whose sandbox is there already: both save seconds each.
+The processes are forked from one that has loaded everything, and a worker that outlives them, with
+its sandbox, does their grading; each of the two saves seconds for each command.
 """
 
 from __future__ import annotations
@@ -30,23 +30,23 @@ from labkit.grader.grading import batch
 from labkit.grader.grading.executor import LocalExecutor
 
 IDLE = 60.0
-"""Seconds in which a command, what it started and the worker compute next to nothing, and none of
-them waits for a processor: it hangs, on a machine as busy as any."""
+"""A command hangs if for this many seconds it, its children and the worker hardly compute and none
+of them waits for a processor; this holds on a busy machine too."""
 _AT_WORK = (psutil.STATUS_RUNNING, psutil.STATUS_DISK_SLEEP)
 MOST_MEMORY = 4 * 2**30
 MOST_COMPUTING = 900
-"""Bytes and seconds of a processor for each process: guards against what never ends."""
+"""Limits of bytes and of processor seconds for each process, in case it never ends."""
 
 
 @dataclass(frozen=True)
 class Ended:
-    """How a command ended.
+    """The end of a command.
 
     Attributes:
-        words: What was typed.
-        code: The exit code; None where it hung and was ended.
-        out: What it wrote to stdout.
-        err: What it wrote to stderr.
+        words: The typed words.
+        code: The exit code; None if the command hung and was killed.
+        out: The output on stdout.
+        err: The output on stderr.
     """
 
     words: tuple[str, ...]
@@ -56,12 +56,12 @@ class Ended:
 
     @property
     def text(self) -> str:
-        """Both streams; what is no UTF-8 stays as it is."""
+        """Both streams; bytes that are not UTF-8 stay as they are."""
         return (self.out + self.err).decode("utf-8", "surrogateescape")
 
 
 def typed(folder: Path, *words: str) -> Ended:
-    """Type a command of labkit's or nbgrader's in a folder."""
+    """Run a command of labkit or of nbgrader in a folder, as if it were typed."""
     context = get_context("forkserver")
     context.set_forkserver_preload(_modules())
     with tempfile.TemporaryDirectory() as aside:
@@ -85,7 +85,7 @@ def worker() -> LocalExecutor:
 
 
 def _grade_for(command: Connection) -> None:
-    """Have the worker do what a command asks for, until the command ends."""
+    """Let the worker do what a command requests until the command ends."""
     with command, suppress(EOFError, OSError):
         while True:
             function, args = command.recv()
@@ -94,7 +94,7 @@ def _grade_for(command: Connection) -> None:
 
 
 class _Kept(ThreadPoolExecutor):
-    """Has the calls done by the worker that is kept, at the other end of a line."""
+    """Sends calls through a connection to the worker that is kept."""
 
     def __init__(self, line: Connection) -> None:
         super().__init__(1)
@@ -137,7 +137,7 @@ def _run(words: tuple[str, ...], folder: str, out: str, err: str, line: Connecti
 
 
 def _wait(process) -> bool:
-    """Wait for its end; False where it had to be ended, for it hung."""
+    """Wait for the end of a process; return False if it hung and was killed."""
     spent, since = -1.0, time.monotonic()
     while True:
         process.join(1.0)

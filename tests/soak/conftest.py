@@ -1,4 +1,4 @@
-"""What the soak tests share: a course released once, and a worker that outlives a test."""
+"""Tools of all soak tests: a course released once, and a worker that outlives a test."""
 
 from __future__ import annotations
 
@@ -15,19 +15,19 @@ from labkit.grader.grading import batch
 
 @pytest.fixture(scope="session")
 def released(tmp_path_factory):
-    """A course with the assignment released, to be copied, never written to."""
+    """A course with the assignment released, which tests copy and do not write to."""
     return release_into(tmp_path_factory.mktemp("released") / "course")
 
 
 @pytest.fixture(scope="module")
 def place_of_copy(tmp_path_factory):
-    """One place for a module's copies: a worker keeps its sandbox while its course is the same."""
+    """A fixed place for a module's copies, so that a worker keeps its sandbox for the course."""
     return tmp_path_factory.mktemp("copy") / "course"
 
 
 @pytest.fixture
 def course(released, place_of_copy):
-    """A copy of the released course, to write to."""
+    """A copy of the released course to which a test may write."""
     shutil.copytree(released.root, place_of_copy, symlinks=True)
     yield Course(place_of_copy)
     shutil.rmtree(place_of_copy)
@@ -41,7 +41,7 @@ def _worker():
 
 @pytest.fixture(scope="module")
 def kept_worker():
-    """What is graded in this process shares one worker, whose sandbox takes seconds to start."""
+    """Let all grading in this process share one worker, whose sandbox takes seconds to start."""
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(batch, "executor", lambda *_: nullcontext(worker()))
         yield

@@ -1,7 +1,7 @@
-"""A class put through every command, and whose doing it is where a law breaks.
+"""Runs a class through every command, and finds the hostile kind that breaks a law.
 
-Where what is said, or the file, names a kind, that is it; otherwise the class is halved until one
-is left.  Then the rest of the class goes through without those.
+If the output or the file names a kind, it is that one; otherwise the class is halved until one kind
+is left.  Then the commands are run for the rest of the class without these kinds.
 """
 
 from __future__ import annotations
@@ -24,17 +24,17 @@ AT_ONCE = 100
 """Hostile kinds in one class.  `test_hostile_class` has a larger one."""
 
 Told = dict[Kind | None, list[str]]
-"""What breaks a law, by kind; None where it is nobody's."""
+"""The broken laws by kind; the kind is None if none is responsible."""
 
 
 @dataclass(frozen=True)
 class Step:
-    """One command that a class goes through.
+    """One command to run for a class.
 
     Attributes:
-        line: What is typed, the assignment left out.
-        codes: Exit codes that it may end with.
-        needed: Whether later commands need what it makes.
+        line: The typed line, without the assignment.
+        codes: The allowed exit codes.
+        needed: Whether later commands need its files.
     """
 
     line: str
@@ -66,20 +66,20 @@ LABKIT = (
     EXPORTS[0],
 )
 BRIEFLY = (*LABKIT[:4], LABKIT[5], EXPORTS[0], REPORT)
-"""What the gate's sample goes through."""
+"""The commands for the sample of the gate."""
 NBGRADER = (
     Step("autograde --create", needed=True),
     Step("generate_feedback"),
     EXPORTS[0],
 )
 OTHERS = (GRADE, FEEDBACK, EXPORTS[0], REPORT)
-"""For assignments other than the first."""
+"""The commands for assignments other than the first."""
 
 
 def guilty(kinds: Sequence[Kind], breaks: Callable[[Sequence[Kind]], list[str]]) -> Told:
-    """Of kinds that break a law together, those who do so without the others, and what they break.
+    """Find the kinds that break a law without the others, and the laws that they break.
 
-    It is empty where one alone breaks nothing.
+    The result is empty if a single kind breaks nothing.
     """
     found: Told = {}
     half = len(kinds) // 2
@@ -94,14 +94,14 @@ def guilty(kinds: Sequence[Kind], breaks: Callable[[Sequence[Kind]], list[str]])
 
 @dataclass
 class Examined:
-    """Classes of one course, put through commands.
+    """Classes of one course for which commands are run.
 
     Attributes:
-        released: The course, in which nothing was handed in yet.
-        folder: Where classes are made.
+        released: The course, in which nothing has been handed in.
+        folder: The folder in which classes are made.
         steps: The commands.
         name: The assignment.
-        clean: What the honest have after each step where there is nobody else.
+        clean: The files of the honest after each step in a class of only the honest.
     """
 
     released: Path
@@ -119,7 +119,7 @@ class Examined:
             self.clean.append(laws.seen(course, ended, self.name))
 
     def of(self, kinds: Sequence[Kind]) -> Told:
-        """What the kinds break, so many at once that halving them is quick."""
+        """The laws that the kinds break, in classes small enough for halving them quickly."""
         told: Told = {}
         for first in range(0, len(kinds), AT_ONCE):
             for kind, says in self._of_class(kinds[first : first + AT_ONCE]).items():
@@ -127,7 +127,7 @@ class Examined:
         return told
 
     def _of_class(self, kinds: Sequence[Kind]) -> Told:
-        """What the kinds of one class break."""
+        """The laws that the kinds of one class break."""
         told: Told = {}
         left, graded = list(kinds), None
         while True:
@@ -145,7 +145,7 @@ class Examined:
             left = [kind for kind in left if kind not in culprits]
 
     def _course(self, kinds: Sequence[Kind]) -> Path:
-        """A class, where the one before was: the worker keeps its sandbox."""
+        """A class in the folder of the one before, so that the worker keeps its sandbox."""
         course = self.folder / "course"
         shutil.rmtree(course, ignore_errors=True)
         copied(self.released, course)
@@ -167,7 +167,7 @@ class Examined:
     def _through(
         self, course: Path, kinds: Sequence[Kind], told: Told, graded: Path | None
     ) -> tuple[int, list[str]]:
-        """Put a class through all steps, up to the first that breaks a law namelessly."""
+        """Run all steps for a class, up to the first that breaks a law without naming a kind."""
         for number, step in enumerate(self.steps):
             if step is GRADE and graded is not None:
                 self._as_before(course, graded)
@@ -179,7 +179,7 @@ class Examined:
         return len(self.steps), []
 
     def _alone(self, kinds: Sequence[Kind], number: int, graded: Path) -> list[str]:
-        """What a part of a class that is graded breaks at a step."""
+        """The laws that a part of a graded class breaks at a step."""
         course = self._course(kinds)
         for step in self.steps[: number + 1]:
             if step is GRADE:
@@ -190,7 +190,7 @@ class Examined:
         return faults
 
     def _as_before(self, course: Path, graded: Path) -> None:
-        """Give a class the results that it had before, for grading takes long."""
+        """Give a class the results that it had before, because grading takes long."""
         folder = course / "results" / self.name
         folder.mkdir(parents=True)
         for student in os.listdir(course / "submitted"):
@@ -199,7 +199,7 @@ class Examined:
                 shutil.copy(result, folder)
 
     def _do(self, course: Path, number: int, kinds: Sequence[Kind]) -> tuple[Told, list[str]]:
-        """Type a step: what breaks a law, by kind, and what is not known to be one kind's."""
+        """Run a step; return the broken laws by kind, and those without a known kind."""
         step, since = self.steps[number], time.time()
         ended = typed(course, *step.words(self.name))
         mine: Told = {}
@@ -230,7 +230,7 @@ class Examined:
     def _marks(
         self, course: Path, kinds: Sequence[Kind], ended: Ended
     ) -> Iterator[tuple[Kind, str]]:
-        """Who has neither a result nor a line, and whose mark is not what it should be."""
+        """The kinds without a result and without a line, and those with a wrong mark."""
         results = laws.results(course, self.name)
         full = results["ada"]["points"]
         lines = [set(re.findall(r"\w+", line)) for line in ended.text.split("\n")]
@@ -249,6 +249,6 @@ class Examined:
 
 
 _LEAST = {"TEXTS": 0.85, "MAGICS": 1.0, "PEOPLE": 1.0, "FILE_NAMES": 1.0}
-"""The share of the points that right work in odd clothes must earn."""
+"""The share of the points that right work in an odd form must earn."""
 _REFUSED = ("FILE_NAMES",)
-"""Where it may be refused instead, with a reason."""
+"""The tables whose kinds may be refused instead, with a reason."""

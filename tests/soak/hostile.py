@@ -1,8 +1,8 @@
-"""Hostile things, by kinds: one line is one kind.  `classes` says how each table is handed in.
+"""Hostile things by kinds, with a line for each kind.  `classes` says how each table is handed in.
 
-Texts stand wherever a text can stand in a solved notebook, numbers in place of those of a right
-answer, names where people and files are named, and so on.  A comment says why a line is there.
-To add a kind, add a line; its test is called by its table and its name.
+Texts are put wherever a text can be in a solved notebook, numbers replace those of a right answer,
+names are used for people and files, and so on.  A comment says why a line is there.  To add a kind,
+add a line; its test has the name of the table and of the kind.
 """
 
 from __future__ import annotations
@@ -18,7 +18,7 @@ from typing import Any
 Notebook = dict[str, Any]
 
 TEXTS = {
-    "lone surrogate": "\ud800",  # JSON can hold it, UTF-8 cannot
+    "lone surrogate": "\ud800",  # JSON can contain it, UTF-8 cannot
     "surrogates turned round": "\udc00\ud800",
     "NUL": "a\0b",  # ends a text in C, and in some databases
     "terminal's escape": "\x1b[2J\x1b]0;owned\x07",  # clears the screen, renames the window
@@ -26,7 +26,7 @@ TEXTS = {
     "backspaces": "0 of 20\b\b\b\b\b\b\b20 of 20",
     "carriage return": "x\r[1/1] zoe: 0 of 20",  # overwrites the line of another student
     "forged lines": "x\n[1/1] zoe: 0 of 20\nnot graded: zoe",
-    "bidi override": "\u202e02 fo 02\u202c",  # is read from right to left
+    "bidi override": "\u202e02 fo 02\u202c",  # reverses the order of reading
     "bidi isolate": "\u2067zoe\u2069\u200f",
     "byte order mark": "\ufeffx",
     "line separators": "a\u2028b\u2029c\x85d\x0be\x0cf",  # lines for str.splitlines, not for others
@@ -41,36 +41,36 @@ TEXTS = {
     "javascript link": "[x](javascript:hostile()) <a href='javascript:hostile()'>x</a>",
     "formula": "=cmd|' /C calc'!A0",
     "format string": "{0.__class__} {result} {} %s %n %(x)s ${HOME}",
-    "template": "{{ 7 * 7 }}{% raw %}{# #}",  # nbconvert's pages are Jinja's
+    "template": "{{ 7 * 7 }}{% raw %}{# #}",  # nbconvert's pages are Jinja templates
     "Markdown": "```\n# zoe: 0 of 20\n| a | b |\n---\n<!--",
     "nbgrader's words": "### BEGIN HIDDEN TESTS\n### BEGIN SOLUTION\n### AUTOTEST x",
     "SQL": "'); DROP TABLE grade; --",
     "path": "../../../../etc/passwd",
     "magic": "%%bash\n!exit 1\n?",
-    "digits of others": "٢٠ 𝟚𝟘 ²⁰",  # true for str.isdigit, some no number for int
-    "emoji": "👩‍🚀" * 20_000,  # each is 36 characters in JSON that is ASCII
+    "digits of others": "٢٠ 𝟚𝟘 ²⁰",  # true for str.isdigit, but int rejects some
+    "emoji": "👩‍🚀" * 20_000,  # 36 characters each in ASCII JSON
 }
-"""Planted in a comment, an exception, a Markdown cell, ids, metadata, outputs; the answers stay
-right, so it costs nothing."""
+"""Put into a comment, an exception, a Markdown cell, ids, metadata and outputs; the answers stay
+right, so no points are lost."""
 
 MAGICS = {
-    "time": "%%time\n{answer}",  # in a notebook the answer is defined all the same
+    "time": "%%time\n{answer}",  # in a notebook the answer is still defined
     "capture": "%%capture out\n{answer}",
     "lines of magic": "%matplotlib inline\n!true\n{answer}",
     "question mark": "{answer}\n\nlen?",
     "another name for it": "{answer}\n\nNAME = NAME",
-    "declared coding": "# -*- coding: rot13 -*-\n{answer}",  # for files, no matter in a text
+    "declared coding": "# -*- coding: rot13 -*-\n{answer}",  # matters in files, not in a text
     "form feed": "\x0c\n{answer}",
     "Windows' line ends": "{crlf}",
 }
-"""Around a right answer, which stays right; NAME stands for the function's name."""
+"""Put around a right answer, which stays right; NAME is replaced by the function's name."""
 
 SOURCES = {
     "writefile": "%%writefile x.py\n{answer}",
     "shell": "%%bash\n{answer}",
     "unknown magic": "%%nothing\n{answer}",
     "deep brackets": "{answer}\nx = " + "(" * 5000 + ")" * 5000,  # Python's parser gives up
-    "many signs": "{answer}\nx = " + "-" * 100_000 + "1",  # its recursion, too
+    "many signs": "{answer}\nx = " + "-" * 100_000 + "1",  # too deep for the parser's recursion
     "many dots": "{answer}\nx = len" + ".a" * 20_000,
     "many branches": "{answer}\nx = " + "1 if 1 else " * 5_000 + "1",
     "long number": "{answer}\nx = " + "9" * 10_000,  # more digits than int reads
@@ -80,13 +80,13 @@ SOURCES = {
     "only a comment": "# ",
     "empty": "",
     "two megabytes": "{answer}\n# " + "x" * 1_990_000,
-    "emoji": "{answer}\n# " + "🐍" * 300_000,  # 12 bytes each in JSON that is ASCII
+    "emoji": "{answer}\n# " + "🐍" * 300_000,  # 12 bytes each in ASCII JSON
 }
-"""In place of an answer; what it earns is its own affair."""
+"""Replaces an answer; it may earn any points."""
 
 NUMBERS = {
     "largest": "1e308",
-    "largest of both signs": "1.7e308 if k % 2 else -1.7e308",  # their distance is no float
+    "largest of both signs": "1.7e308 if k % 2 else -1.7e308",  # their difference is infinite
     "largest, once": "1e308 if k == 0 else x",
     "smallest": "5e-324",
     "smallest of both signs": "5e-324 if k % 2 else -5e-324",
@@ -96,7 +96,7 @@ NUMBERS = {
     "nan": "float('nan')",
     "nan, once": "float('nan') if k == 0 else x",
     "minus zero": "-0.0",
-    "huge int": "10**400",  # no float
+    "huge int": "10**400",  # too large for a float
     "longest int": "10**5000",  # more digits than Python writes
     "int beyond floats": "2**53 + 1",
     "complex": "1j",
@@ -116,7 +116,7 @@ NUMBERS = {
     "nested": "[[[x]]]",
     "large": "1e16 * x + 1e16",
 }
-"""In place of each number x of a right answer, the k-th of it; shapes stay as they are."""
+"""Replaces each number x of a right answer, of which it is the k-th; shapes stay the same."""
 
 OBJECTS = {
     "empty list": "[]",
@@ -162,7 +162,7 @@ OBJECTS = {
     "raising getattr": "Odd('__getattribute__')",
     "exits when shown": "Odd('__repr__', SystemExit)",
 }
-"""What every function gives back.  `Odd` raises from one of its methods."""
+"""Returned by every function.  `Odd` raises an exception in one of its methods."""
 
 LOADS = {
     "larger than memory": "np.broadcast_to(0.0, (10**6, 10**6))",
@@ -174,7 +174,7 @@ LOADS = {
     "range": "range(10**12)",
     "no rows, many columns": "np.zeros((0, 10**9))",
 }
-"""What one function gives back, for each costs seconds."""
+"""Returned by only one function, because each case takes seconds."""
 
 COEFFICIENTS = {
     "no coefficients": "Ratio((), ())",
@@ -184,7 +184,7 @@ COEFFICIENTS = {
     "many coefficients": "Ratio((1.0,) * 2000, (1.0,) * 2000)",
     "more coefficients": "Ratio((1.0,) * 100_000, (1.0,) * 100_000)",
 }
-"""Transfer functions, which only some questions ask for."""
+"""Transfer functions, returned only where a question asks for one."""
 
 RAISES = {
     "script": "raise ValueError('<script>hostile()</script>')",
@@ -212,7 +212,7 @@ RAISES = {
     "prints": "print('\\x1b[2J\\ud800' * 10**5); return 1.0",
     "prints to the end": "import os; os.write(1, b'\\x1b[2J'); os.write(2, b'\\xff'); return 1.0",
 }
-"""What every function does."""
+"""Done by every function."""
 
 REPLIES = {
     "8 MB of empty lists": "b'{\"is\":[' + b'[],' * 2_790_000 + b'[]]}\\n'",
@@ -249,7 +249,7 @@ REPLIES = {
     "method": 'b\'{"is": {"$": "method", "of": 1, "name": "__class__"}}\\n\'',
     "pickle": "__import__('pickle').dumps({'is': 1.0}) + b'\\n'",
 }
-"""What a student's process writes to the grader's own socket: in a cell, and before an answer."""
+"""Written by a student's process to the grader's socket, in a cell and before an answer."""
 
 PEOPLE = {
     "leading dash": "-rf",
@@ -298,14 +298,14 @@ PEOPLE = {
     "emoji": "👩‍🚀",
     "home": "~",
 }
-"""Folders below ``submitted/``, and people of a download where a name may stand there."""
+"""Names of folders in ``submitted/``, and of people in a download if it can contain the name."""
 
 ENTRIES = {
     "number in a file's name": "Eve_{n}{m}x_101{m}(9).ipynb",
     "number in a folder's name": "Eve_{n}{m}/_101{m}/x.ipynb",
     "namesake": "Mia Wong_{n}{m}/01_paths.ipynb",
     "another's folder": "zoe_{n}{m}/01_paths.ipynb",
-    "wide digits": "Eve_１０１{m}/01_paths.ipynb",  # \d takes them
+    "wide digits": "Eve_１０１{m}/01_paths.ipynb",  # \d matches them
     "leading zeros": "Eve_000101{m}/01_paths.ipynb",
     "huge number": "Eve_" + "9" * 5000 + "{m}/01_paths.ipynb",
     "no name": "_{n}{m}/01_paths.ipynb",
@@ -323,8 +323,8 @@ ENTRIES = {
     "folder called as a notebook": "Eve_{n}{m}/01_paths.ipynb/x",
     "another assignment": "Eve_{n}{m}/02_model.ipynb",
 }
-"""Files in Moodle's download, beside Mia Wong, who is participant 101; n is a number of its own, m
-Moodle's mark."""
+"""Files in Moodle's download, beside those of participant 101, Mia Wong.  n is a unique number,
+and m is Moodle's mark."""
 
 
 def _emptied(path: Path) -> None:
@@ -333,7 +333,7 @@ def _emptied(path: Path) -> None:
 
 
 def _locked(path: Path) -> None:
-    """Says of its file that a password is needed."""
+    """Mark the file in the zip as one that needs a password."""
     data = path.read_bytes()
     start = data.index(b"PK\x01\x02")
     path.write_bytes(data[: start + 8] + b"\x01" + data[start + 9 :])
@@ -377,7 +377,7 @@ DOWNLOADS = {
     "link to itself": lambda path: _link(path, path.name),
     "link to a device": lambda path: _link(path, "/dev/zero"),
 }
-"""Done to a whole download of Moodle's; nobody's earlier work may change."""
+"""Done to a whole download of Moodle; earlier work of students must not change."""
 
 FILE_NAMES = {
     "numbered": "01_paths (1).ipynb",
@@ -397,7 +397,7 @@ FILE_NAMES = {
     "Windows": "CON.ipynb",
     "blank": " .ipynb",
 }
-"""What a solved notebook is called that was handed in."""
+"""File names of a solved notebook that was handed in."""
 
 
 def _link(path: Path, to: str) -> None:
@@ -455,7 +455,7 @@ FILES = {
     "empty": _bytes(b""),
     "one blank": _bytes(b" \n"),
     "folder": _folder,
-    "pipe": _pipe,  # who opens it waits for ever
+    "pipe": _pipe,  # a program that opens it waits for ever
     "link to passwords": lambda path: _link(path, "/etc/passwd"),
     "link to itself": lambda path: _link(path, path.name),
     "link to nothing": lambda path: _link(path, "nothing"),
@@ -477,7 +477,7 @@ FILES = {
     "null": _bytes(b"null"),
     "no UTF-8 at all": _bytes(bytes(range(256))),
     "NUL": _bytes(b"\0" * 5000),
-    "page": _bytes(b"<!doctype html><title>Log in</title>"),  # what a platform gives a stranger
+    "page": _bytes(b"<!doctype html><title>Log in</title>"),  # a platform's page for strangers
     "unreadable": lambda path: path.chmod(0),
     "time of no time": _beside("timestamp.txt", b"\x1b[2J yesterday \xff"),
     "time far off": _beside("timestamp.txt", b"99999-13-45 99:99:99 +99:99"),
@@ -498,7 +498,7 @@ FILES = {
 
 
 def _each(**fields: Any) -> Any:
-    """Every cell with other fields."""
+    """Change fields of every cell."""
 
     def change(notebook: Notebook) -> None:
         for cell in notebook["cells"]:
@@ -508,7 +508,7 @@ def _each(**fields: Any) -> Any:
 
 
 def _without(*fields: str) -> Any:
-    """Every cell without some fields."""
+    """Remove fields from every cell."""
 
     def change(notebook: Notebook) -> None:
         for cell in notebook["cells"]:
@@ -519,7 +519,7 @@ def _without(*fields: str) -> Any:
 
 
 def _lab(**fields: Any) -> Any:
-    """Nbgrader's metadata of every cell with other fields."""
+    """Change fields of nbgrader's metadata in every cell."""
 
     def change(notebook: Notebook) -> None:
         for cell in notebook["cells"]:
@@ -533,7 +533,7 @@ def _top(**fields: Any) -> Any:
 
 
 def _deep(depth: int) -> Any:
-    """A table in a table, and so on."""
+    """Tables nested in one another."""
     inner: dict[str, Any] = {}
     for _ in range(depth):
         inner = {"x": inner}
@@ -550,7 +550,7 @@ def _twice(notebook: Notebook) -> None:
 
 
 def _cells(count: int, source: str) -> Any:
-    """So many more cells of the student's own."""
+    """Add a number of cells of the student."""
     cell = {"cell_type": "code", "metadata": {}, "outputs": [], "execution_count": None}
 
     def change(notebook: Notebook) -> None:
@@ -627,7 +627,7 @@ NOTEBOOKS = {
     "minor format is none": _top(nbformat_minor=None),
     "minor format is negative": _top(nbformat_minor=-1),
     "sources are nested": _each(source=[["x = 1"], {"x": 1}]),
-    "sources of halves": _each(source=["\ud83d", "\ude00"]),  # together a character
+    "sources of halves": _each(source=["\ud83d", "\ude00"]),  # two halves of a character
     "outputs of huge numbers": _each(outputs=[{"output_type": "execute_result", "metadata": {},
         "execution_count": 10**400, "data": {"application/json": {"x": float("nan")}}}]),
     "a verdict that is a list": _each(outputs=[
@@ -677,7 +677,7 @@ def _as_folder(name: str) -> Any:
 
 
 def _json(name: str, **fields: Any) -> Any:
-    """A file of JSON with other fields."""
+    """Change fields in a JSON file."""
 
     def change(root: Path) -> None:
         data = json.loads((root / name).read_text("utf-8"))
@@ -747,7 +747,7 @@ STATES = {
     "config: raises": _write("nbgrader_config.py", b"1 / 0\n"),
     "config: no UTF-8": _write("nbgrader_config.py", b"# \xff\n"),
 }
-"""Done to a course in which the class is graded already."""
+"""Done to a course whose class has been graded."""
 
 _HEAD, _SHEET = b"name,login\n", b"Identifier,Full name,Last modified (submission)\n"
 
@@ -780,7 +780,7 @@ LISTS = {
     "time of no zone": _SHEET + b"Participant 101,Mia Wong,2026-03-01 12:00 XYZ\n",
     "formula as a time": _SHEET + b"Participant 101,Mia Wong,=1+1\n",
 }
-"""Imported as a list of students, or as the worksheet of a class that is graded already."""
+"""Imported as a list of students, or as the worksheet of a class that has been graded."""
 
 _DUE = b"[assignments.01_paths]\n"
 _LONGER = _DUE + b"due = 2090-11-02T23:59:00\n[[extensions]]\nstudent = 'kim'\ndays = "
@@ -807,7 +807,7 @@ RULES = {
     "odd extension": b'[[extensions]]\nstudent = "\\u001b[2J"\ndays = 1',
     "odd assignment": b'[assignments."\\u001b[2J"]\nweight = 1',
 }
-"""The course's rules, where a class is graded already and nobody is late."""
+"""The rules of a course whose class has been graded and in which nobody is late."""
 
 ANSWERS = {
     "gone": lambda path: path.unlink(),
@@ -825,7 +825,7 @@ ANSWERS = {
     "text": lambda path: path.write_bytes(b"MISTAKES = {'joint_error': 'abs'}"),
     "no functions": lambda path: path.write_bytes(b"MISTAKES = {'joint_error': [1, None]}"),
 }
-"""Done to the file of wrong answers that the report card is given."""
+"""Done to the file of wrong answers for the report card."""
 
 SAMPLE = frozenset(
     {

@@ -1,4 +1,4 @@
-"""What must hold after every command, whatever anybody handed in."""
+"""The laws that must hold after every command, whatever students handed in."""
 
 from __future__ import annotations
 
@@ -19,9 +19,9 @@ from .classes import HONEST, NAME
 from .commands import Ended
 
 LARGEST = 2_000_000
-"""Bytes of a result file."""
+"""The largest size of a result file, in bytes."""
 _UNSAFE = re.compile("[\x00-\x08\x0b-\x1f\x7f-\x9f\u2028-\u202e\u2066-\u2069\ufeff\ud800-\udfff]")
-"""What a terminal obeys, what turns the direction of writing, what is no UTF-8."""
+"""Characters that a terminal obeys, that reverse the writing direction, or that are not UTF-8."""
 _TRACEBACK = "Traceback (most recent call last)"
 _CHAINED = re.compile(r"exception (occurred|was the direct cause of the following exception):\s*$")
 _REFUSAL = re.compile(
@@ -29,9 +29,9 @@ _REFUSAL = re.compile(
     r"|^\s*UnicodeEncodeError: .*surrogates|NbGraderException: |^\s*labkit\.[\w.]+: \w",
     re.MULTILINE,
 )
-"""In nbgrader's traceback over one submission, after which it goes on, for it has no other way to
-say why: the file is no notebook, its time is no time, its name is no text, or nbgrader or labkit
-refuses it in a sentence."""
+"""Allowed in nbgrader's traceback about a submission, because nbgrader has no other form for the
+reason: the file is not a notebook, its time is not a time, its name is not text, or nbgrader or
+labkit refuses it in a sentence."""
 _WARNING = re.compile(r"^\S+\.py:\d+: \w*Warning", re.MULTILINE)
 _VOID = frozenset(
     ["area", "base", "br", "col", "embed", "hr", "img", "input", "link", "meta", "source", "wbr"]
@@ -41,12 +41,12 @@ _WRITTEN = ("results", "feedback", "autograded", "course_private", "aside")
 
 
 def said(ended: Ended, codes: Sequence[int] = (0, 1)) -> Iterator[str]:
-    """What is wrong with how a command ended and with what it said."""
+    """The faults in the exit code and in the output of a command."""
     yield from (says for _, says in told(ended, codes))
 
 
 def told(ended: Ended, codes: Sequence[int] = (0, 1)) -> Iterator[tuple[str, str]]:
-    """The same, each with the line that may say whose doing it is."""
+    """These faults, each with the line that may name the responsible student."""
     typed = " ".join(ended.words[:2])
     if ended.code is None:
         yield "", f"{typed}: hung and had to be ended"
@@ -73,7 +73,7 @@ def told(ended: Ended, codes: Sequence[int] = (0, 1)) -> Iterator[tuple[str, str
 
 
 def _blamed(before: str) -> str:
-    """The line in which nbgrader says at whose work it was when it failed."""
+    """The line in which nbgrader names the student whose work made it fail."""
     said = [x for x in before.split("\n")[-3:] if "There was an error processing" in x]
     return said[-1] if said else ""
 
@@ -84,14 +84,14 @@ def _last(text: bytes) -> str:
 
 
 def _raised(text: str) -> str:
-    """The line of a traceback that says what was raised."""
+    """The line of a traceback that names the exception."""
     lines = text.split("\n")[1:]
     ends = [line for line in lines if re.match(r"\s*[\w.]+(Error|Exception|Exit)\b", line)]
     return ascii((ends or lines or [""])[0][:300])[1:-1]
 
 
 def written(course: Path, since: float, name: str = NAME) -> Iterator[tuple[Path, str]]:
-    """What is wrong with the files that commands have written; each with its path."""
+    """The faults in the files that commands have written, each with its path."""
     for place in (course, course.parent):
         yield from ((path, "was written outside") for path in place.glob("owned*"))
     for top in _WRITTEN:
@@ -99,14 +99,14 @@ def written(course: Path, since: float, name: str = NAME) -> Iterator[tuple[Path
             if path.is_symlink() or not path.is_file() or path.stat().st_mtime < since:
                 continue
             if top == "autograded" and path.name != f"{name}.ipynb":
-                continue  # nbgrader copies what else was handed in
+                continue  # nbgrader copies all other files of a submission
             if top == "results" and path.stat().st_size > LARGEST:
                 yield path, f"a result of {path.stat().st_size / 1e6:.1f} MB"
             yield from ((path, says) for says in look_at(path))
 
 
 def look_at(path: Path) -> Iterator[str]:
-    """What is wrong with one file, if it is of a kind that can be read."""
+    """The faults in a file, if its kind can be read."""
     if path.suffix not in _LOOKS:
         return
     try:
@@ -145,7 +145,7 @@ def _plain(text: str) -> Iterator[str]:
 
 
 def _page(text: str) -> Iterator[str]:
-    yield from _plain(text.translate({ord("\r"): "\n", ord("\f"): "\n"}))  # blanks in HTML
+    yield from _plain(text.translate({ord("\r"): "\n", ord("\f"): "\n"}))  # white space in HTML
     page = _Page()
     page.feed(text)
     page.close()
@@ -155,7 +155,7 @@ def _page(text: str) -> Iterator[str]:
 
 
 class _Page(HTMLParser):
-    """Elements in order, and none that somebody else wrote."""
+    """Checks that elements are nested correctly and that students have written none of them."""
 
     def __init__(self) -> None:
         super().__init__()
@@ -195,21 +195,21 @@ _LOOKS = {
 
 
 def table(ended: Ended) -> Iterator[str]:
-    """What is wrong with an exported table."""
+    """The faults in an exported table."""
     rows = list(csv.reader(io.StringIO(ended.out.decode("utf-8", "replace"), newline="")))
     if len({len(row) for row in rows}) > 1:
         yield "export: rows of different lengths"
     cells = (pair for row in rows for pair in zip(rows[0], row, strict=False))
     for head, cell in cells:
         number = re.fullmatch(r"-?[\d.]+(e[+-]\d+)?", cell)
-        name = head in IDENTITIES and re.fullmatch(r"[\w.@+-]*", cell)  # the platform's, as it is
+        name = head in IDENTITIES and re.fullmatch(r"[\w.@+-]*", cell)  # the platform's own
         if cell[:1] in set("=+-@\t\r") and not number and not name:
             yield f"export: a formula: {cell[:60]!a}"
             break
 
 
 def seen(course: Path, ended: Ended, name: str = NAME) -> dict[str, Any]:
-    """All that concerns the honest, as it stands after a command."""
+    """All data about the honest after a command."""
     found: dict[str, Any] = {}
     for path in (course / "results" / name).glob("*.json"):
         data = _result(path)
@@ -229,12 +229,12 @@ def seen(course: Path, ended: Ended, name: str = NAME) -> dict[str, Any]:
 
 
 _KEYS = {"questions": 0, "nbgrader": 3, "canvas": 1, "moodle": 3, "moodle-worksheet": 0}
-"""The column that says whose a row is."""
+"""The columns that name the student of a row."""
 _OURS = {*HONEST, "Participant 101", "7"}
 
 
 def rows_of(ended: Ended, layout: str) -> dict[str, list[list[str]]]:
-    """The rows of the honest, each student's that are there; one is right."""
+    """All rows of each honest student; there should be one."""
     found: dict[str, list[list[str]]] = {}
     for row in csv.reader(io.StringIO(ended.out.decode("utf-8", "replace"), newline="")):
         key = row[_KEYS[layout]] if len(row) > _KEYS[layout] else ""
@@ -253,7 +253,7 @@ def _result(path: Path) -> dict[str, Any]:
 
 
 def changed(clean: Mapping[str, Any], now: Mapping[str, Any]) -> Iterator[str]:
-    """What is not as in a class of the honest alone."""
+    """The differences from a class of only the honest."""
     for key, value in clean.items():
         if key not in now:
             yield f"{key} is missing"
@@ -263,7 +263,7 @@ def changed(clean: Mapping[str, Any], now: Mapping[str, Any]) -> Iterator[str]:
 
 
 def made_up(clean: Mapping[str, Any], now: Mapping[str, Any]) -> Iterator[str]:
-    """Rows of tables with a number that is not right; an empty cell or a word is no number."""
+    """Rows with a wrong number in a table; an empty cell or a word does not count."""
     for key, rows in now.items():
         right = clean.get(key, rows)
         if "'s row of " in key and any(

@@ -1,6 +1,6 @@
-"""A synthetic class: submissions of every kind that comes in, and the marks that they deserve.
+"""A synthetic class: submissions of every typical kind, and the marks that they deserve.
 
-`python -m tests.synthetic 01_paths --count 14` writes one into the course around you.
+`python -m tests.synthetic 01_paths --count 14` writes one into the course of the present folder.
 """
 
 from __future__ import annotations
@@ -34,19 +34,19 @@ Random = np.random.Generator
 
 @dataclass
 class Draft:
-    """A submission in the making.
+    """A submission that is being made.
 
     Attributes:
-        assignment: Which.
-        problems: By name.
-        foretold: The notebook's predictions.
-        questions: The same as questions, hidden cases included.
-        random: Where chance is needed.
-        cells: The notebook's, as JSON data.
+        assignment: The name of the assignment.
+        problems: The problems, by name.
+        foretold: The predictions of the notebook.
+        questions: The questions with their hidden cases.
+        random: The source of random choices.
+        cells: The cells of the notebook, as JSON data.
         expected: The points that each question deserves.
-        rejected: Whether it cannot be graded at all.
-        data: The file's bytes, where they are no notebook.
-        name: The file's name.
+        rejected: Whether the submission cannot be graded at all.
+        data: The bytes of the file, if it is not a notebook.
+        name: The name of the file.
     """
 
     assignment: str
@@ -61,24 +61,24 @@ class Draft:
     name: str = ""
 
     def place(self, question: str) -> int:
-        """Where a question's answer stands."""
+        """The cell of the answer to a question."""
         for k, cell in enumerate(self.cells):
             if grade_id(cell) == question:
                 return k
         raise LabkitError(f"no cell for {question}")
 
     def answer(self, question: str, source: str, points: float) -> None:
-        """Answer a question with a cell's text."""
+        """Answer a question with the text of a cell."""
         self.cells[self.place(question)]["source"] = source
         self.expected[question] = points
 
     def answer_with(self, question: str, function: Callable[..., Any]) -> None:
-        """Answer a question as a function of the course does."""
+        """Answer a question with the source of a function of the course."""
         earned = mark(self.questions[question], function).earned
         self.answer(question, inline(function, question), earned)
 
     def solve(self) -> None:
-        """Answer everything right."""
+        """Give right answers to all questions."""
         for name, problem in self.problems.items():
             self.answer_with(name, problem.answer)
         self.commit()
@@ -89,7 +89,7 @@ class Draft:
             self.answer(prediction.name, prediction.solved(), prediction.points)
 
     def anyhow(self) -> None:
-        """Answer as people do: most right, some otherwise right, some wrong, some not at all."""
+        """Answer like people: most right, some right in other forms, some wrong, some missing."""
         for name, problem in self.problems.items():
             luck = self.random.uniform()
             wrong = [w.function for w in problem.wrong]
@@ -117,7 +117,7 @@ class Draft:
         self.cells.insert(2, cell)
 
     def bytes(self) -> bytes:
-        """The file."""
+        """Write the file."""
         if self.data is not None:
             return self.data
         notebook = {"cells": self.cells, "metadata": {}, "nbformat": 4, "nbformat_minor": 5}
@@ -125,16 +125,16 @@ class Draft:
 
 
 def make_class(course: Course, assignment: str, seed: int, count: int = 40) -> dict[str, Any]:
-    """Write a class's submissions into the course, and what they deserve beside them.
+    """Write the submissions of a class into the course, and the marks that they deserve.
 
     Args:
         course: The course; the assignment must be released.
-        assignment: Which.
-        seed: Draws names, order and chances.
-        count: How many; those past the special kinds answer as people do.
+        assignment: The name of the assignment.
+        seed: The seed for names, order and random choices.
+        count: The number of submissions; those after the special kinds answer like people.
 
     Returns:
-        By student: kind, points of each question, score; also in ``build/class/``.
+        The kind, the points of each question and the score, by student; also in ``build/class/``.
     """
     random = np.random.default_rng(seed)
     bundle = Bundle.of(course, assignment)
@@ -169,12 +169,12 @@ def make_class(course: Course, assignment: str, seed: int, count: int = 40) -> d
 
 
 def expected_file(course: Course, assignment: str) -> Path:
-    """Where the marks are that a class deserves."""
+    """The file with the marks that a class deserves."""
     return course.build.parent / "class" / f"{assignment}.json"
 
 
 def differences(course: Course, assignment: str) -> Iterator[str]:
-    """Where the results differ from what the class deserves; a sentence each."""
+    """The differences of the results from what the class deserves, a sentence for each."""
     results = Results(course, assignment)
     for student, deserved in json.loads(expected_file(course, assignment).read_text()).items():
         result = results.get(student)

@@ -1,4 +1,4 @@
-"""Write a synthetic class into a course, or take it through a whole term in a folder of its own."""
+"""Write a synthetic class into a course, or run a whole term with it in a separate folder."""
 
 import argparse
 import os
@@ -16,7 +16,7 @@ from .rehearsal import rehearse
 
 
 def main() -> int:
-    """Run it; the exit code is 1 if a step failed for somebody."""
+    """Run the command line; the exit code is 1 if a step failed for somebody."""
     parser = argparse.ArgumentParser(prog="python -m tests.synthetic", description=__doc__)
     parser.add_argument("assignment", help="such as 01_paths")
     parser.add_argument("--seed", type=int, default=PUBLIC_SEED, help="of the class")

@@ -1,4 +1,4 @@
-"""A function of the course as text that stands alone, as a student would have typed it."""
+"""Writes a function of the course as a self-contained text, as if a student had typed it."""
 
 from __future__ import annotations
 
@@ -14,11 +14,11 @@ from typing import Any
 
 LAMBDA = "<lambda>"
 Key = tuple[str, str]
-"""A definition, its module and its name there."""
+"""A definition, given by its module and its name in the module."""
 
 
 def names_defined(node: ast.stmt) -> list[str]:
-    """The names that a statement of a module gives a meaning to."""
+    """The names that a statement of a module defines."""
     if isinstance(node, ast.FunctionDef | ast.ClassDef):
         return [node.name]
     if isinstance(node, ast.ImportFrom) and node.module == "__future__":
@@ -33,12 +33,12 @@ def names_defined(node: ast.stmt) -> list[str]:
 
 @dataclass
 class _Part:
-    """A definition that is taken along, and what its names mean.
+    """A definition that becomes a part of the text, and the meanings of its names.
 
     Attributes:
         node: The definition.
-        means: Names in it that are definitions of the course, or imports.
-        attributes: The same for attributes of the course's modules, such as ``right.msd``.
+        means: Names in the definition that are definitions of the course, or imports.
+        attributes: Attributes of the course's modules in it, such as ``right.msd``, likewise.
     """
 
     node: ast.stmt
@@ -47,11 +47,11 @@ class _Part:
 
 
 def inline(function: Callable[..., Any], name: str) -> str:
-    """The source of a function and of all that it needs from its package, under a name.
+    """The source of a function, under a new name, and of all that it needs from its package.
 
     Args:
         function: A function, or an instance of a class with ``__call__``.
-        name: What the text is to define.
+        name: The name that the text is to define.
     """
     package = (function if inspect.isfunction(function) else type(function)).__module__
     package = package.partition(".")[0]
@@ -63,7 +63,7 @@ def inline(function: Callable[..., Any], name: str) -> str:
             heads.append(ast.unparse(part.node))
             names[key] = key[1]
         else:
-            plain = key[1].lstrip("_")  # a class would hide a name with two of them
+            plain = key[1].lstrip("_")  # classes change names with two underscores
             twins = sum(plain == other.lstrip("_") for _, other in names)
             names[key] = f"_{plain}" + (f"_{twins + 1}" if twins else "")
     bodies = []
@@ -80,24 +80,24 @@ def inline(function: Callable[..., Any], name: str) -> str:
 
 
 def _definition(value: Any, package: str) -> Any:
-    """The function or class of a package that a value is, or is made from; else None."""
+    """The function or class of a package that is the value or that made it; else None."""
     thing = value if inspect.isfunction(value) else type(value)
     return thing if thing.__module__.partition(".")[0] == package else None
 
 
 def _elsewhere(value: Any) -> str:
-    """The module of a function that is not of the course, such as numpy's; else ""."""
+    """The module of a function from outside the course, such as numpy's; else ""."""
     return value.__module__ if callable(value) and hasattr(value, "__name__") else ""
 
 
 def _made_with(value: Any) -> dict[str, Any]:
-    """What an instance was made with: its attributes that are parameters of its class."""
+    """The arguments of an instance: its attributes that are parameters of its class."""
     parameters = {} if inspect.isfunction(value) else inspect.signature(type(value)).parameters
     return {name: vars(value)[name] for name in parameters if name in vars(value)}
 
 
 def _take_value(value: Any, package: str, parts: dict[Key, _Part]) -> None:
-    """Collect what it takes to write a value, and what it was made with."""
+    """Collect the definitions for writing a value, and those for its arguments."""
     thing = _definition(value, package)
     if thing is not None:
         module = inspect.getmodule(thing)
@@ -126,7 +126,7 @@ def _written(value: Any, package: str, names: Mapping[Key, str]) -> str:
 
 
 def _take(name: str, module: ModuleType, parts: dict[Key, _Part]) -> Key | None:
-    """Collect what a name means in a module, what that needs first; None for Python's own names."""
+    """Collect the definition of a module's name after those it needs; None for Python's names."""
     node = next((x for x in _tree(module).body if name in names_defined(x)), None)
     if node is None:
         return None
@@ -140,9 +140,9 @@ def _take(name: str, module: ModuleType, parts: dict[Key, _Part]) -> Key | None:
 
 
 def _take_node(key: Key, node: ast.stmt, module: ModuleType, parts: dict[Key, _Part]) -> None:
-    """Collect a definition, what it needs first."""
+    """Collect a definition after those that it needs."""
     name = key[1]
-    part = parts[key] = _Part(node)  # before its needs: a function may call itself
+    part = parts[key] = _Part(node)  # first, because a function may call itself
     if isinstance(node, ast.Import | ast.ImportFrom):
         return
     inner = [x for x in ast.walk(node) if isinstance(x, ast.ImportFrom) and _home(x, module)]
@@ -162,13 +162,13 @@ def _take_node(key: Key, node: ast.stmt, module: ModuleType, parts: dict[Key, _P
 
 
 def _key(thing: Any) -> Key:
-    """A definition's module and name; a function without a name is called after its line."""
+    """The module and the name of a definition; a lambda is named after its line."""
     line = f"lambda_{thing.__code__.co_firstlineno}" if thing.__name__ == LAMBDA else ""
     return thing.__module__, line or thing.__name__
 
 
 def _lambda(function: Any) -> ast.Lambda:
-    """The text of a function without a name: of those on its line, the one with its parameters."""
+    """The source of a lambda, which is the one on its line with the same parameters."""
     code, module = function.__code__, inspect.getmodule(function)
     assert module is not None
     (found,) = (
@@ -187,14 +187,14 @@ def _tree(module: ModuleType) -> ast.Module:
 
 
 def _attributes(node: ast.AST, name: str) -> Iterator[str]:
-    """What is asked of ``name``, as in ``name.something``."""
+    """The attributes of ``name`` that are used, as in ``name.something``."""
     for x in ast.walk(node):
         if isinstance(x, ast.Attribute) and isinstance(x.value, ast.Name) and x.value.id == name:
             yield x.attr
 
 
 def _called_there(node: ast.stmt, name: str) -> str:
-    """What an import's source calls that which it brings as ``name``."""
+    """The original name of what an import binds to ``name``."""
     assert isinstance(node, ast.ImportFrom)
     return next(alias.name for alias in node.names if name == (alias.asname or alias.name))
 
@@ -210,7 +210,7 @@ def _whole(name: str, module: ModuleType) -> ModuleType | None:
 
 
 def _used(node: ast.AST, bound: frozenset[str] = frozenset()) -> Iterator[str]:
-    """Names from outside: no annotations, which nobody evaluates, and no parameters."""
+    """Names from outside, without annotations, which are not evaluated, and without parameters."""
     if isinstance(node, ast.Name) and node.id not in bound:
         yield node.id
     inside = bound | _parameters(node)
@@ -229,7 +229,7 @@ def _parameters(node: ast.AST) -> frozenset[str]:
 
 
 def _home(node: ast.stmt, module: ModuleType) -> ModuleType | None:
-    """The module of the same package that an import takes from, or None."""
+    """The module of the same package from which an import takes names, or None."""
     if not isinstance(node, ast.ImportFrom):
         return None
     full = node.module or ""
@@ -242,23 +242,23 @@ def _home(node: ast.stmt, module: ModuleType) -> ModuleType | None:
 
 
 class _Renamed(ast.NodeTransformer):
-    """Calls what came along by its new name, which is no question's."""
+    """Renames the collected definitions, so that none has the name of a question."""
 
     def __init__(self, names: dict[str, str], attributes: dict[tuple[str, str], str]) -> None:
         self.names, self.attributes = names, attributes
 
     def within(self, node: ast.FunctionDef | ast.Lambda) -> _Renamed:
-        """The same inside a function, whose parameters keep their names."""
+        """Rename inside a function, whose parameters keep their names."""
         bound = _parameters(node)
         names = {old: new for old, new in self.names.items() if old not in bound}
         return _Renamed(names, self.attributes)
 
     def visit_Name(self, node: ast.Name) -> ast.AST:
-        """A name that is used."""
+        """Rename a name that is used."""
         return ast.Name(self.names.get(node.id, node.id), node.ctx)
 
     def visit_Attribute(self, node: ast.Attribute) -> ast.AST:
-        """Something of a module of the course."""
+        """Rename an attribute of a module of the course."""
         if isinstance(node.value, ast.Name):
             new = self.attributes.get((node.value.id, node.attr))
             if new is not None:
@@ -267,7 +267,7 @@ class _Renamed(ast.NodeTransformer):
         return node
 
     def visit_FunctionDef(self, node: ast.FunctionDef) -> ast.AST:
-        """A function, without its docstring."""
+        """Rename within a function, and remove its docstring."""
         if ast.get_docstring(node) is not None:
             node.body = node.body[1:] or [ast.Pass()]
         inside = self.within(node)
@@ -278,13 +278,13 @@ class _Renamed(ast.NodeTransformer):
         return node
 
     def visit_Lambda(self, node: ast.Lambda) -> ast.AST:
-        """A function without a name."""
+        """Rename within a lambda."""
         node.body = self.within(node).visit(node.body)
         node.args = self.visit(node.args)
         return node
 
     def visit_ClassDef(self, node: ast.ClassDef) -> ast.AST:
-        """A class, without its docstring."""
+        """Rename within a class, and remove its docstring."""
         if ast.get_docstring(node) is not None:
             node.body = node.body[1:] or [ast.Pass()]
         self.generic_visit(node)
@@ -292,6 +292,6 @@ class _Renamed(ast.NodeTransformer):
         return node
 
     def visit_ImportFrom(self, node: ast.ImportFrom) -> ast.AST:
-        """An import from the course itself: what it brings stands above."""
+        """Remove an import from the course, because its definitions are above."""
         inside = node.level or (node.module or "").partition(".")[0] == "solutions"
         return ast.Pass() if inside else node

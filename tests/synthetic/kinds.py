@@ -1,4 +1,4 @@
-"""The special kinds of submission in a synthetic class: what goes wrong, and what is tried."""
+"""The special kinds of submissions in a synthetic class, with typical faults and attacks."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ def _variant(number: int) -> Kind:
 
 
 def _pictures(draft: Draft) -> None:
-    """Right, with 12 MB of pictures in it."""
+    """All right, with 12 MB of pictures."""
     draft.solve()
     for cell in draft.cells:
         if cell["cell_type"] == "code" and kind(cell) == "walk":
@@ -42,7 +42,7 @@ def _pictures(draft: Draft) -> None:
 
 
 def _blank(draft: Draft) -> None:
-    """As it was handed out."""
+    """The notebook as students receive it."""
 
 
 def _emptied(draft: Draft) -> None:
@@ -51,7 +51,7 @@ def _emptied(draft: Draft) -> None:
 
 
 def _mistaken(number: int) -> Kind:
-    """Everything wrong, each in the n-th of its ways."""
+    """Everything wrong, each question with its n-th mistake."""
 
     def make(draft: Draft) -> None:
         for name, problem in draft.problems.items():
@@ -62,7 +62,7 @@ def _mistaken(number: int) -> Kind:
 
 
 def _warns(draft: Draft) -> None:
-    """Right, and talks on every channel."""
+    """All right, with output on every channel."""
     draft.solve()
     for name in draft.problems:
         cell = draft.cells[draft.place(name)]
@@ -74,13 +74,13 @@ def _warns(draft: Draft) -> None:
 
 
 def _reordered(draft: Draft) -> None:
-    """Right, with all cells upside down."""
+    """All right, with the cells in reverse order."""
     draft.solve()
     draft.cells.reverse()
 
 
 def _duplicated(draft: Draft) -> None:
-    """Right, with every answer there twice under the same name."""
+    """All right, with every answer twice under the same name."""
     draft.solve()
     for name in draft.problems:
         place = draft.place(name)
@@ -88,7 +88,7 @@ def _duplicated(draft: Draft) -> None:
 
 
 def _copied_stub(draft: Draft) -> None:
-    """Right, with the empty stub pasted below one answer."""
+    """All right, with the empty stub pasted below one answer."""
     name = next(iter(draft.problems))
     stub = dict(draft.cells[draft.place(name)])
     draft.solve()
@@ -96,7 +96,7 @@ def _copied_stub(draft: Draft) -> None:
 
 
 def _deleted(draft: Draft) -> None:
-    """Right, but the first answer and all checks are gone."""
+    """All right, but without the first answer and without the checks."""
     draft.solve()
     name = next(iter(draft.problems))
     del draft.cells[draft.place(name)]
@@ -105,13 +105,13 @@ def _deleted(draft: Draft) -> None:
 
 
 def _renamed(draft: Draft) -> None:
-    """Right, under a name that a browser made."""
+    """All right, under a file name made by a browser."""
     draft.solve()
     draft.name = f"{draft.assignment}(3).ipynb"
 
 
 def _no_metadata(draft: Draft) -> None:
-    """Right, but a converter ate all metadata and ids."""
+    """All right, but a converter removed the metadata and the ids."""
     draft.solve()
     for cell in draft.cells:
         cell["metadata"] = {}
@@ -119,7 +119,7 @@ def _no_metadata(draft: Draft) -> None:
 
 
 def _relabelled(draft: Draft) -> None:
-    """Right, with roles and points rewritten by hand."""
+    """All right, with roles and points changed by hand."""
     draft.solve()
     for cell in draft.cells:
         if "nbgrader" in cell["metadata"]:
@@ -138,7 +138,7 @@ def _nothing(draft: Draft) -> None:
 
 
 def _first_becomes(source: str) -> Kind:
-    """Right but for the first question, whose function is this."""
+    """All right except for the first question, whose function is given."""
 
     def make(draft: Draft) -> None:
         draft.solve()
@@ -149,7 +149,7 @@ def _first_becomes(source: str) -> Kind:
 
 
 def _right_and(source: str) -> Kind:
-    """Right, with a cell at the start that does this."""
+    """All right, with a given cell at the start."""
 
     def make(draft: Draft) -> None:
         draft.solve()
@@ -159,7 +159,7 @@ def _right_and(source: str) -> Kind:
 
 
 def _wrong_and(source: str) -> Kind:
-    """Nothing written, with a cell at the start that tries this."""
+    """Nothing answered, with a cell at the start that tries an attack."""
 
     def make(draft: Draft) -> None:
         draft.add(source)
@@ -258,4 +258,4 @@ KINDS: dict[str, Kind] = {
         "def NAME(*args, **kwargs):\n    raise ValueError('<script>alert(1)</script>')"
     ),
 }
-"""By name, what each does to a fresh copy of the assignment."""
+"""The kinds by name, as functions that change a fresh copy of the assignment."""

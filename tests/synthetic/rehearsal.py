@@ -1,4 +1,4 @@
-"""A rehearsal: the term of one assignment, from the download to the marks, with a made-up class."""
+"""A rehearsal of a term with one assignment and a made-up class, from the download to the marks."""
 
 from __future__ import annotations
 
@@ -35,20 +35,20 @@ LAYOUTS_TO_TRY = ("questions", "moodle-worksheet", "canvas")
 def rehearse(
     course: Course, name: str, to: Path, count: int, options: GradeOptions
 ) -> Iterator[str | Failure]:
-    """Play a term through in a folder of its own; what is done already is not done again.
+    """Run a whole term in a separate folder; finished steps are not repeated.
 
     Args:
-        course: Where the sources are; nothing is written there.
+        course: The course with the sources; nothing is written there.
         name: The assignment.
-        to: The folder; a course is made in it.
-        count: How many students.
-        options: How to grade.
+        to: The folder in which a course is made.
+        count: The number of students.
+        options: The options for grading.
 
     Yields:
-        What was done, a sentence each, with its time; and what failed for somebody.
+        A sentence for each step, with its time, and for each failure.
 
     Raises:
-        LabkitError: The folder holds something else, or a mark is not what the submission deserves.
+        LabkitError: The folder has other contents, or a mark is not what the submission deserves.
     """
     stage = Course(to.resolve())
     clock = _Clock()
@@ -93,10 +93,10 @@ def rehearse(
 
 
 def _set_up(stage: Course, course: Course) -> None:
-    """A course that borrows its sources; in a true one this class would take the true one's place.
+    """A course that uses the sources of another one, whose true class stays untouched.
 
     Raises:
-        LabkitError: Something else lies there.
+        LabkitError: The folder has other contents.
     """
     sources = stage.root / "solutions"
     if not sources.is_symlink():
@@ -108,7 +108,7 @@ def _set_up(stage: Course, course: Course) -> None:
 
 
 class _Clock:
-    """How long each step took."""
+    """Yield sentences with the time that each step took."""
 
     def __init__(self) -> None:
         self.last = time.perf_counter()
@@ -121,7 +121,7 @@ class _Clock:
 
 
 def _hand_in(stage: Course, name: str, count: int, download: Path) -> None:
-    """Let a class that is in the roster hand in on Moodle: one zip, as it is downloaded."""
+    """Let the class in the roster hand in on Moodle, and return the downloaded zip."""
     make_class(stage, name, PUBLIC_SEED, count)
     listed = tuple(Student(who, last_name=who) for who in students(stage, name))
     save_roster(stage, Roster(listed))

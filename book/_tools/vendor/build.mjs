@@ -1,5 +1,5 @@
 // Bundles the viewer and copies what the book needs from npm; writes the manifest of hashes.
-// Run by book/_tools/vendor.sh, which brings the packages: 
+// book/_tools/vendor.sh installs the packages and runs this:
 // node build.mjs <node_modules> <anywidget's index.js> <the licences of anywidget, ipywidgets, mujoco>
 import { createHash } from "node:crypto";
 import { createRequire } from "node:module";
@@ -31,8 +31,8 @@ for (const [name, more] of [
 cpSync(join(source, "widget.js"), join(viewer, "widget.js"));
 cpSync(join(modules, "three/LICENSE"), join(viewer, "LICENSE-three"));
 
-// The live arm of the book.  Its scripts are classic ones, for file://; MuJoCo's WebAssembly lies here
-// packed, and build_book.py writes it into a script.
+// The live arm of the book.  Its scripts are classic ones, which work on file://.  MuJoCo's WebAssembly
+// is compressed here, and build_book.py writes it into a script.
 const live = join(root, "book/live"), bundle = join(live, "bundle");
 rmSync(bundle, { recursive: true, force: true });
 mkdirSync(bundle, { recursive: true });
@@ -44,7 +44,7 @@ await esbuild.build({ ...script, outfile: join(bundle, "mujoco.js"), banner: { j
 await esbuild.build({ ...common, entryPoints: [join(live, "page.js")], outfile: join(bundle, "live.js") });
 await esbuild.build({ ...common, entryPoints: [join(live, "boot.js")], outfile: join(bundle, "boot.js") });
 writeFileSync(join(bundle, "mujoco.wasm.gz"), gzipSync(readFileSync(join(modules, "@mujoco/mujoco/mujoco.wasm")), { level: 9 }));
-cpSync(mujocoLicence, join(bundle, "LICENSE-mujoco")); // its package brings none; the wheel of the same source does
+cpSync(mujocoLicence, join(bundle, "LICENSE-mujoco")); // the npm package has no licence; the wheel from the same source has it
 cpSync(join(dirname(mujocoLicence), "LICENSES_THIRD_PARTY.md"), join(bundle, "NOTICE-mujoco.md"));
 
 rmSync(vendor, { recursive: true, force: true });
@@ -62,7 +62,7 @@ for (const name of readdirSync(join(manager, "dist")).filter((n) => /\.(woff2?|t
 take(anywidget, "npm/anywidget.js");
 for (const name of ["mathjax-config.js", "require-config.js"]) take(join(here, name), name);
 take(join(modules, "mathjax/LICENSE"), "LICENSE-mathjax");
-take(join(here, "LICENSE-requirejs"), "LICENSE-requirejs"); // the npm packages carry none
+take(join(here, "LICENSE-requirejs"), "LICENSE-requirejs"); // the npm package has no licence
 take(ipywidgetsLicence, "LICENSE-html-manager");
 take(join(manager, "dist/embed.js.LICENSE.txt"), "LICENSE-html-manager-parts");
 take(join(modules, "@fortawesome/fontawesome-free/LICENSE.txt"), "LICENSE-fontawesome");
@@ -74,7 +74,7 @@ const walk = (folder) => readdirSync(folder, { withFileTypes: true, recursive: t
   .filter((e) => e.isFile()).map((e) => join(e.parentPath, e.name)).sort();
 const sha = (file) => createHash("sha256").update(readFileSync(file)).digest("hex");
 const hashes = (files) => Object.fromEntries(files.map((f) => [relative(root, f).replaceAll("\\", "/"), sha(f)]));
-const built = walk(viewer).filter((f) => basename(f) !== "robot.js"); // that one is make_robot.py's
+const built = walk(viewer).filter((f) => basename(f) !== "robot.js"); // make_robot.py makes that one
 writeFileSync(join(vendor, "MANIFEST.json"), `${JSON.stringify({
   made_by: "sh book/_tools/vendor.sh", packages: wanted,
   files: hashes([...walk(vendor), ...built, ...walk(bundle), ...walk(tests)]),

@@ -1,5 +1,5 @@
 /* MathJax 3 settings of the book, and the one call of MathJax 2 that ipywidgets still makes.
-   MyST-NB assigns window.MathJax too, before or after this file: every assignment is completed. */
+   MyST-NB also assigns window.MathJax, before or after this file, so every assigned value is completed. */
 (function () {
   var macros = { SE: "\\mathrm{SE}", SO: "\\mathrm{SO}", R: "\\mathbb{R}" };
   var classes = "tex2jax_process|mathjax_process|math|output_area";

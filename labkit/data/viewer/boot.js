@@ -52,7 +52,7 @@ html[data-theme="dark"] .cell_output .text_html:has(.lk-embed) { /* the theme ma
 .lk-icon { min-width: 2rem; padding: 0.1rem 0.3rem; }
 .lk-gap { flex: 0 0 0.6rem; }
 .lk-say { margin: 0; padding: 0.45rem 0.75rem; border-bottom: 1px solid var(--lk-edge); color: var(--lk-text); }
-.lk-beside .lk-say { min-height: 2.8em; } /* of two lines: a sentence that comes or goes must not move the buttons */
+.lk-beside .lk-say { min-height: 2.8em; } /* two lines, so that the buttons do not move when a sentence appears */
 .lk-beside .lk-say[hidden] { display: block; visibility: hidden; }
 .lk-say[hidden], .lk-dials[hidden] { display: none; }
 .lk-say.lk-alarm { border-left: 5px solid var(--lk-trace); font-weight: 600; }
@@ -119,10 +119,10 @@ fieldset .lk-dial label { flex-basis: 2.6rem; }
   .lk-word { display: none; }
   .lk-gap { flex-basis: 100%; height: 0; } /* views in one row, moves in the next */
   .lk-bar .lk-number { width: 4.6rem !important; }
-  .lk-speed label { position: absolute; width: 1px; height: 1px; overflow: hidden; clip-path: inset(50%); } /* still its name */
+  .lk-speed label { position: absolute; width: 1px; height: 1px; overflow: hidden; clip-path: inset(50%); } /* a screen reader still reads the name */
   .lk-table :is(th, td) { padding-inline: 0.3rem; }
 }
-@media print { /* the last frame and the plots print; what was never loaded prints its picture or words */
+@media print { /* the last frame and the plots are printed; what was never loaded is printed as its picture or text */
   .lk-bar, .lk-load, .lk-dial { display: none !important; }
   .lk-player, .lk-demo { break-inside: avoid; }
 }

@@ -1,5 +1,5 @@
-// The notebook's front end (anywidget).  Viewer and robot are asked from the kernel once per page,
-// so a saved notebook holds the motion alone.  In the built book there is no kernel: boot.js has them.
+// The notebook's front end (anywidget).  A page requests the viewer and the robot from the kernel once,
+// so a saved notebook contains only the motion.  The built book has no kernel, so boot.js loads them.
 
 function viewer(model) {
   if (globalThis.labkitLoad) return globalThis.labkitLoad();
@@ -23,16 +23,16 @@ async function render({ model, el }) {
   const alt = document.createElement("p");
   alt.textContent = data().alt ?? "";
   el.append(alt, host);
-  host.tabIndex = -1; // a click beside a button leaves the keys here too
+  host.tabIndex = -1; // after a click beside a button, keys still come here
   host.style.outline = "none";
-  el.addEventListener("keydown", (event) => { // d d would delete the cell; Ctrl+S saves
+  el.addEventListener("keydown", (event) => { // the keys d d would delete the cell; Ctrl+S still saves
     if (!(event.ctrlKey || event.metaKey) || event.key.toLowerCase() !== "s") event.stopPropagation();
   });
   const { mount } = await viewer(model);
   alt.remove();
   const hear = [];
   const heard = (message) => hear.forEach((f) => f(message));
-  // JupyterLab keeps the widget when its kernel is shut down (then it has none) or is restarted.
+  // JupyterLab keeps the widget if its kernel is restarted or is shut down, after which it has no kernel.
   let gone = false;
   const cut = () => {
     const { kernel } = model.widget_manager ?? {};

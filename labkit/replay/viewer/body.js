@@ -1,4 +1,4 @@
-// A robot as three.js objects: a group per joint; Baxter's geometries are made once for the page.
+// A robot as three.js objects, with a group for each joint; a page makes Baxter's geometries only once.
 import * as THREE from "three";
 import { frames, posture } from "./kinematics.js";
 
@@ -29,7 +29,7 @@ function parts(robot) {
   return shared;
 }
 
-/** How long an arm without meshes is, stretched, in metres. */
+/** The length of a stretched arm without meshes, in metres. */
 export const span = (robot) => [...robot.joints, ...Object.values(robot.tips)]
   .reduce((sum, { position }) => sum + Math.hypot(...position), 0);
 
@@ -46,7 +46,7 @@ function capsules(robot) {
   });
 }
 
-/** Baxter's pieces, or with a side those of one arm. */
+/** Baxter's pieces; with a side, only those of one arm. */
 function pieces(robot, side) {
   const { geometries, materials } = parts(robot);
   return robot.pieces.filter(({ parent }) => !side || parent.startsWith(side)).map((piece) => {
@@ -57,14 +57,14 @@ function pieces(robot, side) {
   });
 }
 
-/** The whole robot, or with `ghost` {side, colour} one see-through arm. */
+/** The whole robot; with `ghost` {side, colour}, one see-through arm. */
 export class Body {
   constructor(robot, ghost) {
     this.robot = robot;
     this.root = new THREE.Group();
     this.groups = { base: new THREE.Group() };
     for (const joint of robot.joints) this.groups[joint.name] = new THREE.Group();
-    this.own = ghost && new THREE.MeshStandardMaterial({ // set back a few mm: the arm itself stays red
+    this.own = ghost && new THREE.MeshStandardMaterial({ // drawn as if a few mm behind, so that the arm itself stays red
       color: ghost.colour, transparent: true, opacity: 0.38, roughness: 0.8, depthWrite: false,
       polygonOffset: true, polygonOffsetFactor: 1, polygonOffsetUnits: 400 });
     if (robot.arm) this.own ??= new THREE.MeshStandardMaterial({ color: 0x8a9099, roughness: 0.5 });
@@ -87,7 +87,7 @@ export class Body {
     }
   }
 
-  /** Show only one arm, without body, head and the other arm; or all again. */
+  /** Show only one arm, without body, head and the other arm, or show everything again. */
   alone(side, on) {
     if (this.robot.arm) return;
     for (const [name, group] of Object.entries(this.groups)) group.visible = !on || name.startsWith(side);

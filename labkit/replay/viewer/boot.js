@@ -1,11 +1,11 @@
-// In every page that embeds something: loads the viewer and the robot when they are about to be seen.
+// Runs in every page that embeds something: loads the viewer and the robot just before they are seen.
 import { dress } from "./style.js";
 
 const base = document.currentScript.src.split("?")[0].replace(/[^/]*$/, "");
 const phone = matchMedia("(max-width: 500px)");
 const asked = {}; // scripts by address
 
-/** A classic script, once: works from a file, where fetch does not. */
+/** Loads a classic script once; this works in pages opened from disk, where fetch does not. */
 function script(url) {
   return (asked[url] ??= new Promise((done, failed) => {
     const element = document.createElement("script");
@@ -16,14 +16,14 @@ function script(url) {
   }));
 }
 
-/** A recorded run of the explorer; its script leaves the motion in labkitRuns. */
+/** Loads a recorded run of the explorer; its script puts the motion into labkitRuns. */
 async function run(key, url) {
   const address = new URL(url, document.baseURI).href;
   await script(address);
   return globalThis.labkitRuns[url.replace(/^.*\//, "").replace(/\.js$/, "")];
 }
 
-/** The viewer, loaded once; the notebook's widget asks for it too where a page has no kernel. */
+/** Loads the viewer once; the notebook's widget also uses this in pages without a kernel. */
 const load = (globalThis.labkitLoad = async () => {
   await Promise.all([script(`${base}viewer.js`), script(`${base}robot.js`)]);
   return globalThis.labkitViewer;

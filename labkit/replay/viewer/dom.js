@@ -1,11 +1,11 @@
-// Small makers of elements.
+// Functions that make elements.
 
 /** An element: h("button", {class: "x", onclick: f}, "text", child, ...). */
 export function h(tag, attributes = {}, ...children) {
   return fill(document.createElement(tag), attributes, children);
 }
 
-/** The same for SVG. */
+/** An element of SVG, made in the same form. */
 export function svg(tag, attributes = {}, ...children) {
   return fill(document.createElementNS("http://www.w3.org/2000/svg", tag), attributes, children);
 }
@@ -14,7 +14,7 @@ function fill(element, attributes, children) {
   for (const [name, value] of Object.entries(attributes)) {
     if (value === undefined || value === null || value === false) continue;
     if (name.startsWith("on")) element.addEventListener(name.slice(2), value);
-    else if (name === "style") element.style.cssText = value; // through the CSSOM: no inline styles
+    else if (name === "style") element.style.cssText = value; // set through the CSSOM, not as an inline style
     else element.setAttribute(name, value === true ? "" : value);
   }
   element.append(...children.flat().filter((c) => c !== null && c !== undefined));
@@ -22,8 +22,8 @@ function fill(element, attributes, children) {
 }
 
 /**
- * Tells of a force [N] once it has been held for a second, and again once another is held: called
- * with each that comes, it is true when there is something to say.
+ * Makes a function to call with each new force [N].  It returns true when a force has been held for a
+ * second, and again when another force has been held; then there is something to say.
  */
 export function steady() {
   let held = 0, since = 0, said = true;
@@ -41,17 +41,17 @@ export const unique = (stem) => `lk-${stem}-${++count}`;
 
 export const reducedMotion = () => matchMedia("(prefers-reduced-motion: reduce)").matches;
 
-/** Call `apply` when a box is changed or left with another number than `known()`, and at each Enter. */
+/** Call `apply` when a box changes, when it is left with a number other than `known()`, and on Enter. */
 export function entered(box, apply, known) {
   const changed = () => { if (box.value !== known()) apply(); };
   box.addEventListener("change", changed);
-  box.addEventListener("blur", changed); // a number typed back is no change to a browser
+  box.addEventListener("blur", changed); // retyping the old number is not a change for a browser
   box.addEventListener("keydown", (event) => { if (event.key === "Enter") apply(); });
 }
 
 /**
- * A slider with a typed number beside it; `stops` holds the only values it can take.
- * `oninput` gets the value, and what was typed if it was typed; `ends` shows how far it goes.
+ * A slider with a box for a number beside it; `stops` are the only values allowed, if given.
+ * `oninput` receives the value and the number that was typed, if any; `ends` shows the limits.
  */
 export function dial({ label, unit = "", ends = false, stops, min, max, step, value, digits = 3, oninput }) {
   const id = unique("dial");
@@ -84,10 +84,10 @@ export function dial({ label, unit = "", ends = false, stops, min, max, step, va
   return { element, get, set, index: () => +range.value };
 }
 
-/** A number with three decimals, never "-0.000". */
+/** A number with three decimals, without "-0.000". */
 export const fixed = (x) => (Math.round(1000 * x) / 1000 + 0).toFixed(3);
 
-/** A labelled list to choose one of. */
+/** A labelled list from which one value is chosen. */
 export function choice({ label, values, value, onchange }) {
   const id = unique("choice");
   const select = h("select", { id, onchange: () => onchange?.(select.value) },

@@ -1,4 +1,4 @@
-// Chooses among runs that were recorded on a grid of gains and shows the one that was chosen.
+// Shows the chosen one of the runs that were recorded on a grid of gains.
 import { Player } from "./player.js";
 import { choice, dial, h } from "./dom.js";
 import { nearest } from "./grid.js";
@@ -9,12 +9,12 @@ export class Explorer {
   /** index: {dials: [{name, label, unit, values}], runs: {"0-1-2": url or motion}, facts: {key: text}} */
   constructor(host, index, robot, load) {
     Object.assign(this, { host, index, robot, load });
-    this.asked = ""; // what was just typed beside the grid, said with what is shown
+    this.asked = ""; // the sentence about a typed number that is not on the grid
     this.controls = index.dials.map((d) => (isWords(d)
       ? choice({ label: d.label, values: d.values, value: d.value, onchange: () => this.change() })
       : dial({ label: d.label, unit: d.unit, stops: d.values, value: d.value, digits: 4, oninput: (value, typed = value) => {
         this.change(Math.abs(typed - value) > 1e-9
-          ? `Nothing was recorded at ${d.label} ${typed}; shown is the nearest, ${value}. ` : "");
+          ? `No run was recorded at ${d.label} ${typed}; the nearest, ${value}, is shown. ` : "");
       } })));
     this.note = h("p", { class: "lk-recorded", role: "status" });
     this.element = h("div", { class: "lk-demo lk-explorer", role: "group", "aria-label": index.title },
@@ -23,7 +23,7 @@ export class Explorer {
     this.change();
   }
 
-  change(asked = "") { // sliders fire quickly: load when they rest
+  change(asked = "") { // sliders send many events, so a run is loaded only when they rest
     this.asked = asked;
     clearTimeout(this.due);
     this.due = setTimeout(() => this.show(), this.player ? 120 : 0);
@@ -40,12 +40,12 @@ export class Explorer {
       this.note.textContent = `The recorded run ${run} is missing beside this page.`;
       return;
     }
-    if (wanted.some((k, i) => k !== this.controls[i].index())) return; // moved on meanwhile
+    if (wanted.some((k, i) => k !== this.controls[i].index())) return; // the reader has moved a slider since
     const words = key.split("-").map((k, i) => {
       const { label, unit, values } = this.index.dials[i];
       return typeof values[k] === "string" ? values[k] : `${label} ${values[k]}${unit ? ` ${unit}` : ""}`;
     }).join(", ");
-    const exact = key === wanted.join("-") ? "" : "This point was not recorded; shown is the nearest that was. ";
+    const exact = key === wanted.join("-") ? "" : "This point was not recorded; the nearest recorded point is shown. ";
     this.note.replaceChildren(h("span", { class: "lk-badge" }, "recorded"), ` ${this.asked}${exact}${words}. ${this.index.facts?.[key] ?? ""}`);
     this.host.dataset.run = key;
     if (this.player) this.player.show(motion);

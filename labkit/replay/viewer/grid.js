@@ -1,8 +1,8 @@
-// The grid of recorded runs, keys like "0-3-1": the indices on its axes.
+// The grid of recorded runs.  Their keys, such as "0-3-1", are the indices on its axes.
 
 /**
- * The recorded key nearest to the wanted indices, by steps on the grid.
- * `words` says which axes are lists of names: those give way last.
+ * The recorded key nearest to the wanted indices, measured in steps on the grid.
+ * `words` says which axes are lists of names, whose values are kept if possible.
  */
 export function nearest(keys, wanted, words) {
   const far = (key) => key.split("-").reduce((sum, k, i) =>

@@ -1,4 +1,4 @@
-// Live demo of the Jacobian: seven joint sliders, the tip's pose, the columns as arrows and numbers.
+// Live demo of the Jacobian: seven joint sliders, the tip's pose, and the columns as arrows and numbers.
 import { Body } from "./body.js";
 import { ARM, NEUTRAL, bodyJacobian, frames, manipulability, posture, tip, tipJacobian } from "./kinematics.js";
 import { arrow, axes } from "./marks.js";
@@ -7,7 +7,7 @@ import { choice, dial, fixed, h } from "./dom.js";
 import { toEuler } from "./so3.js";
 
 const ROWS = ["vx", "vy", "vz", "ωx", "ωy", "ωz"];
-const SEEN = 0.25; // metres of arrow per m/s, and per rad/s
+const SEEN = 0.25; // length of an arrow in metres for 1 m/s or 1 rad/s
 
 export class JacobianDemo {
   constructor(host, { side = "left" }, robot) {
@@ -40,7 +40,7 @@ export class JacobianDemo {
       this.stage.rig.use("Front");
       this.stage.drawn = () => { host.dataset.ready = "1"; };
     } else {
-      this.stagebox.append(h("p", { class: "lk-note" }, "This browser draws no 3-D (WebGL is missing). The numbers below still follow the sliders."));
+      this.stagebox.append(h("p", { class: "lk-note" }, "This browser cannot draw in 3-D (WebGL is missing). The numbers below still follow the sliders."));
       host.dataset.ready = "1";
     }
     this.draw();

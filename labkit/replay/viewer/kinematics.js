@@ -1,13 +1,13 @@
-// Forward kinematics and Jacobian of the robot's tree of joints, each turning about its own z.
+// Forward kinematics and Jacobian of the robot's tree of joints, each of which turns about its z axis.
 import { IDENTITY, aboutZ, add, apply, cross, fromQuaternion, multiply, subtract, transpose } from "./so3.js";
 
 export const ARM = ["s0", "s1", "e0", "e1", "w0", "w1", "w2"];
 export const NEUTRAL = [0, -0.55, 0, 0.75, 0, 1.26, 0];
 
-/** Names of the joints that q belongs to: one of Baxter's sides, or a reader's own arm. */
+/** The names of the joints in q, which are those of one of Baxter's arms or of a reader's own arm. */
 export const joints = (robot, side) => robot.arm ?? ARM.map((joint) => `${side}_${joint}`);
 
-/** Joint angles by name: one arm at q, Baxter's other at rest, the head straight. */
+/** Joint angles by name, with one arm at q, Baxter's other arm at rest and its head straight. */
 export function posture(robot, side, q) {
   const angles = {};
   const put = (arm, values) => joints(robot, arm).forEach((joint, i) => { angles[joint] = values[i]; });
@@ -19,7 +19,7 @@ export function posture(robot, side, q) {
 const compose = (A, B) => ({ R: multiply(A.R, B.R), p: add(A.p, apply(A.R, B.p)) });
 const placed = (x) => ({ R: fromQuaternion(x.quaternion), p: x.position });
 
-/** Frames {R, p} in the base of every joint, by name. */
+/** The frames {R, p} of all joints in the base frame, by name. */
 export function frames(robot, angles) {
   const found = { base: { R: IDENTITY, p: [0, 0, 0] } };
   for (const joint of robot.joints) {
@@ -29,13 +29,13 @@ export function frames(robot, angles) {
   return found;
 }
 
-/** The tool's pose {R, p} in the base. */
+/** The tool's pose {R, p} in the base frame. */
 export function tip(robot, side, q) {
   const tool = robot.tips[side];
   return compose(frames(robot, posture(robot, side, q))[tool.parent], placed(tool));
 }
 
-/** A column (v, w) for each joint: the tip's twist per unit joint speed, at the tip, in the base's axes. */
+/** A column (v, w) for each joint: the tip's twist per unit of joint speed, in base axes at the tip. */
 export function tipJacobian(robot, side, q) {
   const all = frames(robot, posture(robot, side, q));
   const end = compose(all[robot.tips[side].parent], placed(robot.tips[side]));
@@ -52,12 +52,12 @@ export function bodyJacobian(robot, side, q) {
   return tipJacobian(robot, side, q).map((c) => [...apply(turn, c.slice(0, 3)), ...apply(turn, c.slice(3))]);
 }
 
-/** Yoshikawa's measure, sqrt(det(J J^T)); the same in base and body axes. */
+/** Yoshikawa's measure, sqrt(det(J J^T)), which is the same in base and body axes. */
 export function manipulability(columns) {
   const A = [...Array(6)].map((_, i) => [...Array(6)].map((_, j) =>
     columns.reduce((sum, c) => sum + c[i] * c[j], 0)));
   let det = 1;
-  for (let k = 0; k < 6; k++) { // Gauss with pivots
+  for (let k = 0; k < 6; k++) { // Gaussian elimination with pivots
     let best = k;
     for (let i = k + 1; i < 6; i++) if (Math.abs(A[i][k]) > Math.abs(A[best][k])) best = i;
     if (best !== k) { [A[k], A[best]] = [A[best], A[k]]; det = -det; }

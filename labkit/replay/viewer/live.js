@@ -1,28 +1,28 @@
-// The live arm of the notebook: the kernel simulates and tells where the arm is, 30 times a second;
-// this side draws it and says what pointer, keys and dials want.
+// The live arm of the notebook.  The kernel simulates it and sends its position 30 times a second;
+// this script draws it and sends the input of the pointer, the keys and the dials.
 import { Picture } from "./picture.js";
 import { Plot } from "./plots.js";
 import { choice, dial, entered, h, steady } from "./dom.js";
 import { line } from "./marks.js";
 import { sight } from "./sight.js";
 
-const NEWTON = 0.006; // metres of arrow
+const NEWTON = 0.006; // length of an arrow for 1 N, in metres
 const BEAT = 60; // ms between two messages while something is held
-const SLOW = 100; // ms without a turn for the timers, from which on the kernel is told to be patient
+const SLOW = 100; // ms between two runs of a timer, above which the kernel is asked to wait longer for the hand
 const AXES = [["+x", [1, 0, 0]], ["−x", [-1, 0, 0]], ["+y", [0, 1, 0]], ["−y", [0, -1, 0]], ["+z", [0, 0, 1]], ["−z", [0, 0, -1]]];
-const STALE = 400; // ms without a force in a hand that holds, from which on the page says why
-const TOLD = 3; // s of the arm's time for which the page says that a run was kept
-const MOST = 60; // N, of a push and a pull
+const STALE = 400; // ms that a hand holds without a force before the page says why
+const TOLD = 3; // s of the arm's time during which the page says that a run was kept
+const MOST = 60; // N, the limit of a push or a pull
 const SHOWN = 10; // seconds of the curves
-const LOOK = 2000; // ms between two looks whether there still is a kernel
-const QUIET = 5000; // ms without a word from a kernel whose arm runs, from which on the page says so
+const LOOK = 2000; // ms between two checks that the kernel still exists
+const QUIET = 5000; // ms without a message from a kernel whose arm runs before the page says so
 const AGAIN = "run the notebook again from its first cell to this one.";
 
-/** A link in a sentence. */
+/** The name of a link in a sentence. */
 const spoken = (link) => (/^(tip|elbow)/.test(link) ? `the ${link}` : `joint ${link}`);
 
 export class LiveArm {
-  /** link: {send(message), hear(f), cut()}, the line to the kernel; without it the picture stands still. */
+  /** link: {send(message), hear(f), cut()}, the connection to the kernel; without it the picture does not move. */
   constructor(host, data, robot, link) {
     Object.assign(this, { host, data, link, robot: data.robot ?? robot, held: null, moves: 0, rows: [], frames: 0, beaten: 0, slow: 0, felt: steady() });
     this.element = h("div", { class: "lk-player lk-live", role: "group", "aria-label": data.title });
@@ -30,7 +30,7 @@ export class LiveArm {
     this.note = h("p", { class: "lk-say", hidden: true });
     this.readout = h("p", { class: "lk-readout" });
     this.status = h("p", { class: "lk-hidden", role: "status" });
-    this.picture = new Picture(this.stagebox, `${data.title}. Drag the arm or a thing to pull at it, elsewhere to turn the view`);
+    this.picture = new Picture(this.stagebox, `${data.title}. Drag the arm or a thing to pull it, or drag elsewhere to turn the view`);
     this.times = 1; // the error is drawn this many times as large
     this.sight = sight(this.picture, { whole: !this.robot.arm, camera: !!data.first.things.camera,
       magnify: (k) => { this.times = k; this.draw(this.frame); } });
@@ -42,7 +42,7 @@ export class LiveArm {
     host.append(this.element);
     if (this.picture.works) this.furnish();
     else {
-      this.stagebox.append(h("p", { class: "lk-note" }, "This browser draws no 3-D (WebGL is missing). Buttons, numbers and curve work all the same."));
+      this.stagebox.append(h("p", { class: "lk-note" }, "This browser cannot draw in 3-D (WebGL is missing). The buttons, the numbers and the curve still work."));
       this.sight.element.hidden = true;
       host.dataset.ready = "1";
     }
@@ -59,10 +59,10 @@ export class LiveArm {
   }
 
   send(message) {
-    try { this.link?.send(message); } catch { this.lost(); } // nobody is at the other end
+    try { this.link?.send(message); } catch { this.lost(); } // the connection is closed
   }
 
-  /** Whether the kernel is still there: a cut line is certain, silence is not. */
+  /** Check that the kernel still exists: a closed connection is certain, silence is not. */
   look() {
     if (this.link.cut?.()) this.lost();
     else if (this.state === "running" && performance.now() - this.came > QUIET) {
@@ -70,7 +70,7 @@ export class LiveArm {
     }
   }
 
-  /** The kernel is gone. */
+  /** Say that the kernel has ended, and disable what needs it. */
   lost() {
     if (!this.link) return;
     this.link = null;
@@ -80,7 +80,7 @@ export class LiveArm {
     for (const control of this.element.querySelectorAll("button, input, select")) {
       control.disabled ||= !this.sight.element.contains(control);
     }
-    this.say(`The kernel was restarted or shut down, and this arm is gone with it: ${AGAIN}`, true);
+    this.say(`The kernel was restarted or shut down, and this arm ended with it: ${AGAIN}`, true);
     this.speak(this.note.textContent, 0);
   }
 
@@ -93,12 +93,12 @@ export class LiveArm {
     const laws = this.data.laws.length < 2 ? [] : [choice({ label: "Controller", values: this.data.laws,
       onchange: (name) => this.send({ kind: "law", name }) }).element];
     return h("div", { class: "lk-bar" }, this.start, button("Step", "step", "Advance by 0.05 s"),
-      button("Reset", "reset", "Back to where the arm began", release),
-      button("Keep this run", "keep", "The present run becomes view.log. A run begins with Start, Reset, a choice of controller or a turn of a dial, and ends after 120 s; then the next begins"),
-      button("Stop", "close", "End it, and free the arm for other cells", release), laws);
+      button("Reset", "reset", "Put the arm back to its start", release),
+      button("Keep this run", "keep", "Store the present run as view.log. A run begins with Start, Reset, another controller or another value of a dial, and ends after 120 s; then the next one begins"),
+      button("Stop", "close", "End this view, and free the arm for other cells", release), laws);
   }
 
-  /** What the pointer does, for keys: choose a link and a force, switch it on along an axis. */
+  /** Controls that replace the pointer: choose a link and a force, and switch it on along an axis. */
   hand() {
     const { joints } = this.data;
     this.links = [...joints.map((j) => (j === "e1" ? "elbow (e1)" : j)), "tip"];
@@ -107,13 +107,13 @@ export class LiveArm {
     this.size = 10;
     entered(this.newtons, () => (this.pushing ?? this.bounded)(), () => String(this.size));
     this.pushes = AXES.map(([name, axis]) => h("button", { type: "button", class: "lk-icon", "aria-pressed": "false", disabled: !this.link,
-      "aria-label": `Push along ${name.replace("−", "minus ").replace("+", "plus ")}`, title: "Push until it is pressed again",
+      "aria-label": `Push along ${name.replace("−", "minus ").replace("+", "plus ")}`, title: "Push until this button is pressed again",
       onclick: (e) => this.push(e.currentTarget, axis) }, name));
     return h("div", { class: "lk-bar", role: "group", "aria-label": "Push with keys" }, this.where.element,
       this.newtons, h("span", { class: "lk-unit" }, `N (0 to ${MOST}) along`), this.pushes, h("span", { class: "lk-unit" }, "(press again to let go)"));
   }
 
-  /** The force in the box, brought within its limits, in the box too. */
+  /** The force in the box, limited to the allowed range; the box shows the limited force. */
   bounded = () => {
     const asked = this.newtons.valueAsNumber || 0;
     this.newtons.value = this.size = Math.min(MOST, Math.max(0, asked));
@@ -130,14 +130,14 @@ export class LiveArm {
     if (!on) return;
     button.setAttribute("aria-pressed", "true");
     const where = this.where.get(), link = this.links.indexOf(where);
-    this.pushing = () => { // again when another force is typed
+    this.pushing = () => { // called again when another force is typed
       const size = this.bounded();
       this.take({ link, local: [0, 0, 0], force: axis.map((x) => size * x) });
     };
     this.pushing();
   }
 
-  /** Hold on to the arm until `release`: the kernel lets go of a hand of which it hears nothing. */
+  /** Hold the arm until `release`, with repeated messages, because the kernel drops a silent hand. */
   take(hand) {
     this.held = hand;
     this.beaten = performance.now();
@@ -147,7 +147,7 @@ export class LiveArm {
     this.beating = setInterval(() => this.beat(), BEAT);
   }
 
-  /** Say that the hand still holds, and, where the page is slow, how late the next word may come. */
+  /** Send that the hand still holds and, in a slow page, how late the next message may come. */
   beat() {
     const now = performance.now();
     this.slow = Math.max(now - this.beaten, 0.99 * this.slow);
@@ -171,7 +171,7 @@ export class LiveArm {
     return h("div", { class: "lk-dials lk-livedials", hidden: !made.length }, made);
   }
 
-  /** Tell the kernel a dial's value, at most ten times a second, the last one always. */
+  /** Send a dial's value to the kernel, at most ten times a second, but always the last one. */
   turn(name, value) {
     this.turned = { ...this.turned, [name]: value };
     this.turning ??= setTimeout(() => {
@@ -197,7 +197,7 @@ export class LiveArm {
     picture.stage.drawn = () => {
       this.host.dataset.ready = "1";
       this.frames++;
-      if (this.held && performance.now() - this.beaten > BEAT) this.beat(); // drawing keeps timers from their turn
+      if (this.held && performance.now() - this.beaten > BEAT) this.beat(); // timers are late while the page draws
     };
     this.sight.alone(true);
     if (this.link) picture.grab((picked, event) => this.grip(picked, event), ({ thing }) => !this.things[thing]?.fixed);
@@ -219,7 +219,7 @@ export class LiveArm {
     this.release();
     this.take({ link: picked.link, local: picked.local, to: at });
     const move = (e) => {
-      if (!this.held?.to) return; // Reset and Stop let go too
+      if (!this.held?.to) return; // Reset and Stop also let go
       this.held = { ...this.held, to: picture.dragged(e, at), move: (this.moves += 1) };
       this.beat();
       picture.stage.hold();
@@ -227,7 +227,7 @@ export class LiveArm {
     return { move, end: () => this.release() };
   }
 
-  /** A picture in numbers came from the kernel. */
+  /** Show a frame from the kernel, which has the numbers for one picture. */
   show(frame) {
     const before = this.state, told = this.frame?.note;
     if (frame.kept.length > this.frame?.kept.length) {
@@ -237,7 +237,7 @@ export class LiveArm {
     if (before !== frame.state && frame.state === "running") this.kept = null;
     const kept = frame.t < this.kept?.t + TOLD ? this.kept.words : "";
     if (before !== frame.state && ["stopped", "closed"].includes(frame.state)) this.release();
-    if (frame.state === "running" && performance.now() - (this.here ?? -1e9) > 1e4) { // somebody looks on
+    if (frame.state === "running" && performance.now() - (this.here ?? -1e9) > 1e4) { // if somebody is watching
       this.here = performance.now();
       this.send({ kind: "here" });
     }
@@ -252,20 +252,20 @@ export class LiveArm {
     this.readout.textContent = this.numbers();
     const stale = this.held && frame.state === "running" && !frame.force && this.old();
     const busy = this.slow > STALE ? "This page is busy" : "The kernel is busy with another cell";
-    this.say(frame.note || (stale ? `${busy}: what you pull arrives later, and until then there is no force.` : kept),
+    this.say(frame.note || (stale ? `${busy}: your pull arrives later, and there is no force until then.` : kept),
       frame.state === "stopped");
     if (before !== frame.state || frame.note && frame.note !== told) this.speak(frame.note || { running: "Running.", paused: "Paused.", ready: "Ready.", closed: "Ended." }[frame.state] || "", 0);
     if (this.felt(frame.force ? Math.hypot(...frame.force) : 0)) this.speak(this.forced(frame), 0);
     this.plotted ??= setTimeout(() => { this.plotted = null; const c = this.curve(); this.plot.set(c.series, c.x); this.plot.time(c.x.at(-1)); }, 200);
   }
 
-  /** The hand's force in a sentence. */
+  /** A sentence about the force of the hand. */
   forced({ force, link, error }) {
     const away = error === null ? "" : `; the tip is ${(1000 * error).toFixed(0)} mm from its target`;
     return `${this.pushing ? "Pushing" : "Pulling"} ${spoken(this.links[link])} with ${Math.hypot(...force).toFixed(1)} N${away}.`;
   }
 
-  /** Whether the hand has been held for longer than a message should take. */
+  /** Whether the hand has held for longer than a message should need. */
   old() {
     if (this.since !== this.held) { this.since = this.held; this.taken ??= performance.now(); }
     return performance.now() - this.taken > STALE;
@@ -312,7 +312,7 @@ export class LiveArm {
     this.note.classList.toggle("lk-alarm", alarm);
   }
 
-  /** Politely, and only the last of what there is to say. */
+  /** Let a screen reader say a sentence without interrupting; only the last one is said. */
   speak(words, after = 300) {
     clearTimeout(this.spoken);
     this.spoken = setTimeout(() => { this.status.textContent = typeof words === "function" ? words() : words; }, after);

@@ -1,10 +1,10 @@
-// Things drawn beside the robot: lines, frames, arrows, the tag's board.
+// Marks drawn beside the robot: lines, frames, arrows and the tag's board.
 import * as THREE from "three";
 import { Line2 } from "three/examples/jsm/lines/Line2.js";
 import { LineGeometry } from "three/examples/jsm/lines/LineGeometry.js";
 import { LineMaterial } from "three/examples/jsm/lines/LineMaterial.js";
 
-/** A line through rows (K, 3); `dash` and `gap` in metres. */
+/** A line through the points in rows (K, 3); `dash` and `gap` are in metres. */
 export function line(rows, { colour, width = 3, dash, gap, opacity = 1 }) {
   const shape = new LineGeometry();
   shape.setPositions(rows.flat());
@@ -16,7 +16,7 @@ export function line(rows, { colour, width = 3, dash, gap, opacity = 1 }) {
   return made;
 }
 
-/** Three axes x, y, z: one, two and three rings, so that they differ without colour. */
+/** The axes x, y, z with one, two and three rings, so that they can be told apart without colour. */
 export function axes(length = 0.09) {
   const group = new THREE.Group();
   const turn = [[0, 0, -Math.PI / 2], [0, 0, 0], [Math.PI / 2, 0, 0]];
@@ -39,7 +39,7 @@ export function axes(length = 0.09) {
   return group;
 }
 
-/** An arrow that can be laid between a point and a vector. */
+/** An arrow that can be moved to a point and set to a vector. */
 export function arrow(colour) {
   const made = new THREE.ArrowHelper(new THREE.Vector3(1, 0, 0), new THREE.Vector3(), 0.1, colour, 0.035, 0.022);
   made.lay = (origin, vector) => {
@@ -54,7 +54,7 @@ export function arrow(colour) {
   return made;
 }
 
-/** A square board that stands for the tag: white rim, black face, white cell. */
+/** A square board that represents the tag: white rim, black face, white cell. */
 export function board(size = 0.12) {
   const group = new THREE.Group();
   [[1, 0xf5f5f5, 0], [0.8, 0x111111, 0.001], [0.26, 0xf5f5f5, 0.002]].forEach(([scale, colour, z]) => {
@@ -66,7 +66,7 @@ export function board(size = 0.12) {
   return group;
 }
 
-/** Free what a mark holds on the graphics card. */
+/** Free the memory of a mark on the graphics card. */
 export function dispose(mark) {
   mark.traverse((part) => { part.geometry?.dispose(); part.material?.dispose?.(); });
 }

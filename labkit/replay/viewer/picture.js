@@ -1,5 +1,5 @@
-// A robot and what is around it, drawn: the part of the viewer that knows neither time nor kernel.
-// The replay, the live arm of the notebook and the live arm of the book all draw with it.
+// The drawing of a robot and its surroundings, which does not depend on time or on a kernel.
+// The replay, the live arm of the notebook and the live arm of the book all use it.
 import * as THREE from "three";
 import { Body, span } from "./body.js";
 import { frames, joints, posture, tip } from "./kinematics.js";
@@ -8,12 +8,12 @@ import { Stage } from "./stage.js";
 import { place, thing } from "./things.js";
 import { apply, subtract, transpose } from "./so3.js";
 
-const REACH = 0.25; // metres within which an arrow is moved out of the arm
-const NEAR = 0.035; // metres from the tip within which a pointer means the tip
-const LOOK = 80; // ms between two looks at what lies under a pointer that holds nothing
+const REACH = 0.25; // the largest distance in metres by which an arrow is moved out of the arm
+const NEAR = 0.035; // distance from the tip in metres within which a pointer selects the tip
+const LOOK = 80; // ms between two checks of what is under a pointer that holds nothing
 
 export class Picture {
-  /** A picture inside `host`; `this.works` is false without WebGL, and then nothing else may be asked. */
+  /** A picture inside `host`; if `this.works` is false, WebGL is missing and nothing else may be called. */
   constructor(host, label) {
     this.stage = new Stage(host, label);
     this.works = this.stage.works;
@@ -34,7 +34,7 @@ export class Picture {
     this.stage.rig.size = robot.arm ? Math.min(1, 0.5 * span(robot)) : 1;
   }
 
-  /** Put the arm's joints, n numbers in rad, where they are now. */
+  /** Set the arm's present joint angles, n numbers in rad. */
   pose(side, q) {
     if (side !== this.side) this.body.alone(side, this.lone);
     Object.assign(this, { side, q });
@@ -61,8 +61,8 @@ export class Picture {
   }
 
   /**
-   * Lay the arrow `name` from a point along a vector, both in metres, with a text at its end; a
-   * vector of no length hides it.
+   * Draw the arrow `name` from a point along a vector, both in metres, with a text at its end; a
+   * zero vector hides it.
    */
   arrow(name, origin, vector, text = "", colour = 0xc77700) {
     this.arrows[name] ??= this.made(name, colour);
@@ -82,13 +82,13 @@ export class Picture {
     return made;
   }
 
-  /** The tip's velocity [m/s] as an arrow, half a second long, while `this.quick` asks for it. */
+  /** Draw the tip's velocity [m/s] as an arrow, as long as half a second of motion, if `this.quick` is set. */
   velocity(v) {
     const shown = this.quick ? v : [0, 0, 0];
     this.arrow("velocity", this.tip.p, shown.map((x) => 0.5 * x), `${Math.hypot(...shown).toFixed(2)} m/s`, 0x1a7f4b);
   }
 
-  /** The same, from where the tip was at the time [s] before; a stopped arm keeps its arrow. */
+  /** Draw the velocity from the tip's position at the previous time [s]; a stopped arm keeps its arrow. */
   moved(t) {
     const { p } = this.tip, [before, from] = this.was ?? [t, p];
     if (t !== before) this.v = t > before && t < before + 0.5 ? p.map((x, k) => (x - from[k]) / (t - before)) : null;
@@ -96,7 +96,7 @@ export class Picture {
     this.velocity(this.v ?? [0, 0, 0]);
   }
 
-  /** What the camera among the things sees, for `stage.inset`: faces, tags and robot, no marks. */
+  /** The camera's view for `stage.inset`, which shows faces, tags and the robot, but no marks. */
   seen() {
     const { position, quaternion, field, ratio } = this.given.camera;
     const turn = new THREE.Quaternion(...quaternion), way = (v) => new THREE.Vector3(...v).applyQuaternion(turn).toArray();
@@ -106,8 +106,8 @@ export class Picture {
   }
 
   /**
-   * Draw what stands around the arm: {name: {kind, position, quaternion, size, colour, to}}, with
-   * the kinds of things.js.  What is left out goes; what only moved is moved.
+   * Draw the things around the arm, {name: {kind, position, quaternion, size, colour, to}}, with
+   * the kinds of things.js.  Things that are left out are removed; things that only moved are moved.
    */
   furnish(given) {
     this.given = given;
@@ -134,10 +134,10 @@ export class Picture {
   }
 
   /**
-   * What a pointer points at: {thing, at}, or {link, local, at}, where `link` is the joint's number
-   * that the link turns with, `local` the point in the link's frame, `at` the point in the base; or
-   * null.  The tip is a link of its own, with the number n; who points near it means the tip, also
-   * between its fingers, and whatever of target, band and wall is drawn in front of it.
+   * What a pointer points at: {thing, at}, {link, local, at} or null.  `link` is the number of the
+   * joint that moves the link, `local` the point in the link's frame, `at` the point in the base frame.
+   * The tip is a separate link with the number n.  Pointing near the tip selects it, even between its
+   * fingers, and even if the target, a band or a wall is drawn in front of it.
    */
   pick(event) {
     const caster = this.stage.ray(event);
@@ -155,13 +155,13 @@ export class Picture {
     return { link, local: this.inLink(link, at), at };
   }
 
-  /** The tip, as `pick` gives it. */
+  /** The tip in the form that `pick` returns. */
   atTip() { return { link: joints(this.robot, this.side).length, local: [0, 0, 0], at: this.tip.p }; }
 
-  /** The middle of a joint, as `pick` gives it: for keys. */
+  /** The middle of a joint in the form that `pick` returns, for input by keys. */
   atJoint(link) { return { link, local: [0, 0, 0], at: this.where(link, [0, 0, 0]) }; }
 
-  /** Where, seen from a point in the arm, its surface ends along a vector: there an arrow can be seen. */
+  /** The point where a vector from inside the arm leaves its surface, so that an arrow there is visible. */
   outside(at, along) {
     const way = new THREE.Vector3(...along).normalize(), far = new THREE.Vector3(...at).addScaledVector(way, REACH);
     const parts = joints(this.robot, this.side).map((name) => this.body.groups[name]);
@@ -176,7 +176,7 @@ export class Picture {
     return apply(transpose(R), subtract(at, p));
   }
 
-  /** Where a point of a link, in the link's frame, is now, in the base. */
+  /** The present position, in the base frame, of a point in a link's frame. */
   where(link, local) {
     const { R, p } = this.frame(link);
     return apply(R, local).map((x, k) => x + p[k]);
@@ -191,8 +191,8 @@ export class Picture {
   }
 
   /**
-   * Give pointers on what `free(picked)` says can be moved to `take(picked, event)`, which returns
-   * {move, end}; elsewhere they turn the view.  The cursor tells the two apart.
+   * If `free(picked)` says that a thing can be moved, pass the pointer to `take(picked, event)`, which
+   * returns {move, end}; elsewhere pointers turn the view.  The shape of the cursor shows which.
    */
   grab(take, free) {
     const { canvas, rig } = this.stage;
@@ -200,7 +200,7 @@ export class Picture {
       const picked = this.pick(event);
       return picked && free(picked) ? picked : null;
     };
-    canvas.classList.add("lk-grab"); // a finger on it no longer scrolls the page
+    canvas.classList.add("lk-grab"); // a finger on the canvas no longer scrolls the page
     rig.grab = (event) => {
       const picked = event.button ? null : under(event);
       return picked && take(picked, event);
@@ -215,7 +215,7 @@ export class Picture {
     });
   }
 
-  /** A frame with x, y and z marked by one, two and three rings, where {R, p} or [x, y, z] is. */
+  /** Draw a frame at {R, p} or [x, y, z], with one, two and three rings on x, y and z. */
   axes(length) {
     const mark = axes(length);
     this.stage.scene.add(mark);
@@ -228,7 +228,7 @@ export class Picture {
   }
 }
 
-/** The number of the joint that an object turns with; -1 for none of this arm's. */
+/** The number of the joint that moves an object, or -1 if it is not a joint of this arm. */
 function linkOf(object, body, names) {
   for (let part = object; part; part = part.parent) {
     const k = names.findIndex((name) => body.groups[name] === part);

@@ -1,4 +1,4 @@
-// The replay of one motion: the robot, its controls, and plots that share one time cursor.
+// The replay of one motion: the robot, its controls, and plots that share a time cursor.
 import { frames, joints, posture, tip } from "./kinematics.js";
 import { dispose, line } from "./marks.js";
 import { Picture } from "./picture.js";
@@ -9,7 +9,7 @@ import { h, reducedMotion, unique } from "./dom.js";
 
 const GHOSTS = [0x1f77d0, 0xc77700, 0x2a9d66, 0x9a5bc4];
 const hex = (k) => `#${GHOSTS[k % GHOSTS.length].toString(16).padStart(6, "0")}`;
-const NEWTON = 0.01; // metres of arrow
+const NEWTON = 0.01; // length of an arrow for 1 N, in metres
 const SPEEDS = [0.1, 0.25, 0.5, 1, 2];
 
 export class Player {
@@ -28,7 +28,7 @@ export class Player {
     this.element.append(this.stagebox, this.timebar(), this.sight.element, this.legend, this.readout, this.status, this.plotbox);
     host.append(this.element);
     if (this.stage.works) this.furnish();
-    else this.stagebox.append(h("p", { class: "lk-note" }, "This browser draws no 3-D (WebGL is missing), so the picture stands still. The plots and the numbers follow the time slider."));
+    else this.stagebox.append(h("p", { class: "lk-note" }, "This browser cannot draw in 3-D (WebGL is missing), so the picture does not move. The plots and the numbers follow the time slider."));
     this.show(json);
   }
 
@@ -55,7 +55,7 @@ export class Player {
       h("span", { class: "lk-speed" }, h("label", { for: id }, "Speed"), speed));
   }
 
-  /** What does not depend on the motion. */
+  /** Make the parts that do not depend on the motion. */
   furnish() {
     this.stage.drawn = () => { this.host.dataset.ready = "1"; };
     this.stage.themed = () => { this.dress(); this.arrange(); };
@@ -88,12 +88,12 @@ export class Player {
     if (!this.stage.works) this.host.dataset.ready = "1";
   }
 
-  /** What plots and sentences call the joints. */
+  /** The names of the joints in plots and sentences. */
   names() {
     return joints(this.robot, this.motion.side).map((name) => name.replace(`${this.motion.side}_`, ""));
   }
 
-  /** Lines and ghosts of this motion. */
+  /** Draw the lines and the see-through arms of this motion. */
   dress() {
     const { motion, stage } = this;
     this.marks?.forEach((mark) => { stage.scene.remove(mark); dispose(mark); });
@@ -112,7 +112,7 @@ export class Player {
     }
     stage.scene.add(...this.marks);
     const mirror = motion.side === "right" ? -1 : 1;
-    if (stage.rig.mirror !== mirror || !this.seen) { // else the reader's own view stays
+    if (stage.rig.mirror !== mirror || !this.seen) { // otherwise the reader's own view stays
       stage.rig.mirror = mirror;
       stage.rig.use(stage.rig.view);
     }
@@ -122,14 +122,14 @@ export class Player {
       ...this.ghosts.map(({ name, tips, k }) => stage.label(name, () => at(motion, tips, this.time), hex(k)))] : [];
   }
 
-  /** Where these tips would be if they were `times` as far from the target. */
+  /** The positions of these tips if they were `times` as far from the target. */
   magnified(tips) {
     const { motion, times } = this;
     if (times === 1 || !motion.target) return tips;
     return tips.map((p, i) => p.map((x, k) => motion.target[i][k] + times * (x - motion.target[i][k])));
   }
 
-  /** The key to lines and arms. */
+  /** The legend of lines and arms. */
   explain() {
     const { motion } = this;
     const swatch = (dash, colour) => {
@@ -145,7 +145,7 @@ export class Player {
     this.legend.replaceChildren(...rows.map(([dash, colour, text]) => h("li", {}, dash && swatch(dash, colour), text)));
   }
 
-  /** Series for the plots: error of every arm, torques of the first. */
+  /** Series for the plots: the error of every arm, and the torques of the first one. */
   curves() {
     const { motion } = this;
     const away = (q) => q.map((row, i) => {  // in millimetres
@@ -159,7 +159,7 @@ export class Player {
       if (motion.target) Object.entries(motion.ghosts).forEach(([name, q], k) => series.push({
         name, values: away(q), dash: DASHES[1 + k], colour: hex(k) }));
       this.error = series[0].values;
-      // At least 0.2 mm high: a perfect run shows as a flat line, not as its rounding.
+      // The axis spans at least 0.2 mm, so that a perfect run is a flat line and not rounding errors.
       found.push({ title: "Tip error [mm]", series, zero: Math.min(...main) >= 0, least: 0.2 });
     } else this.error = null;
     if (motion.tau) found.push({
@@ -179,7 +179,7 @@ export class Player {
     this.readout.textContent = this.numbers();
   }
 
-  /** Put arm, ghosts and marks where they are at this time. */
+  /** Move the arm, the see-through arms and the marks to their places at this time. */
   arrange() {
     const { motion } = this;
     const q = at(motion, motion.q, this.time);
@@ -219,13 +219,13 @@ export class Player {
     return words.join(" · ");
   }
 
-  /** Tell the numbers to a screen reader: when the reader stops, not at every frame. */
+  /** Let a screen reader say the numbers when the motion stops, not in every frame. */
   speak() {
     clearTimeout(this.spoken);
     this.spoken = setTimeout(() => { this.status.textContent = this.numbers(); }, 500);
   }
 
-  /** Joint positions in the base now, for tests. */
+  /** The present joint positions in the base frame, for tests. */
   joints() {
     return frames(this.robot, posture(this.robot, this.motion.side, at(this.motion, this.motion.q, this.time)));
   }
@@ -237,7 +237,7 @@ export class Player {
     if (!on) { cancelAnimationFrame(this.tick); this.speak(); return; }
     if (this.time >= this.motion.end) this.seek(this.motion.start);
     let last = performance.now();
-    // Reduced motion: play is the reader's own wish, but in still pictures, four a second.
+    // With reduced motion, a reader who chooses to play sees still pictures, four a second.
     let due = 0;
     const step = (now) => {
       if (!this.playing) return;

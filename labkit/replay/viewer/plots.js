@@ -1,4 +1,4 @@
-// Small line plots as SVG with a time cursor; lines differ by dash and carry their own name.
+// Small line plots in SVG with a time cursor; lines differ by their dashes and have their names beside them.
 import { h, svg, unique } from "./dom.js";
 
 export const DASHES = ["", "7 3", "2 3", "9 3 2 3", "12 4", "5 2 1 2 1 2", "1 4"];
@@ -14,7 +14,7 @@ export function ticks(low, high, wanted = 4) {
   return found;
 }
 
-/** Of the longest name beside the lines; one line alone carries none. */
+/** The width of the longest name beside the lines; a single line has no name. */
 export const letters = (series) => (series.length < 2 ? 0 : Math.max(...series.map((s) => s.name.length)));
 
 export class Plot {
@@ -24,7 +24,7 @@ export class Plot {
    * @param x      abscissae, one per value
    * @param scrub  called with an abscissa when the reader drags over the plot
    * @param zero   whether the axis starts at zero
-   * @param least  the least that the axis spans, however little the values do
+   * @param least  the smallest range of the axis, even if the values have a smaller one
    * @param beside letters to leave room for on the right, so that plots share one time axis
    */
   constructor({ title, series, x, xName = "time [s]", scrub, zero = false, least = 1e-12, beside = 0 }) {

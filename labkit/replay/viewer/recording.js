@@ -1,6 +1,6 @@
-// A motion as it comes from Python: whole numbers, differenced along time, unpacked here.
+// Unpacks a motion from Python, which consists of integers that are differences along time.
 
-/** Rows (N, k) of a channel {step, width, data}; null stays null. */
+/** The rows (N, k) of a channel {step, width, data}, or null if the channel is null. */
 export function unpack(channel) {
   if (!channel) return null;
   const { step, width, order, data } = channel;
@@ -31,7 +31,7 @@ export function read(json) {
   return motion;
 }
 
-/** The row at a time, linear between samples. */
+/** The row at a time, interpolated linearly between samples. */
 export function at(motion, rows, time) {
   const x = Math.min(Math.max((time - motion.start) / motion.period, 0), motion.count - 1);
   const i = Math.min(Math.floor(x), motion.count - 2);

@@ -1,9 +1,9 @@
-// The camera's stand: turns about a point by mouse, finger or keys; no inertia.
+// The camera's stand, which turns about a point by mouse, finger or keys, without inertia.
 import * as THREE from "three";
 
-export const FIELD = 35; // of view, upwards, in degrees
+export const FIELD = 35; // the vertical field of view, in degrees
 
-/** Where to look, and from how far, to see all of these points, with room for a hand around them. */
+/** The point to look at, and the distance, to see all these points with room for a hand around them. */
 export function framing(points) {
   const low = [0, 1, 2].map((k) => Math.min(...points.map((p) => p[k])));
   const high = [0, 1, 2].map((k) => Math.max(...points.map((p) => p[k])));
@@ -20,15 +20,15 @@ export const VIEWS = {
 };
 
 export class Rig {
-  // `grab(event)`, where somebody sets it, is asked first what a pointer takes hold of: it returns
-  // {move(event), end(event)}, or nothing, and then the pointer turns the view.
+  // If `grab(event)` is set, it is called first to find what a pointer takes hold of.  It returns
+  // {move(event), end(event)}, or nothing if the pointer is to turn the view.
   constructor(canvas, camera, changed) {
     Object.assign(this, { camera, changed, hand: [0.7, 0, 0.2], mirror: 1, size: 1, motion: VIEWS.Motion });
     this.use("Motion");
     this.listen(canvas);
   }
 
-  /** Go to a named view; for the right arm it is mirrored. */
+  /** Go to a named view, which is mirrored for the right arm. */
   use(name) {
     Object.assign(this, { follow: false }, name === "Motion" ? this.motion : VIEWS[name]);
     if (name !== "Top") this.azimuth *= this.mirror;
@@ -52,7 +52,7 @@ export class Rig {
     this.changed();
   }
 
-  /** Put the camera where it belongs for this frame. */
+  /** Put the camera in its place for this frame. */
   frame(aspect) {
     const c = Math.cos(this.elevation);
     const target = this.follow ? this.hand : this.target;
@@ -68,7 +68,7 @@ export class Rig {
 
   listen(canvas) {
     const held = new Map(); // pointers down, by id
-    let grip = null; // what `grab` gave for the pointer that took hold of something
+    let grip = null; // what `grab` returned for the pointer that took hold of something
     canvas.addEventListener("pointerdown", (e) => {
       canvas.setPointerCapture(e.pointerId);
       const taken = grip ? null : this.grab?.(e);
@@ -92,7 +92,7 @@ export class Rig {
         held.delete(e.pointerId);
       });
     }
-    canvas.addEventListener("wheel", (e) => { // only when chosen: the page keeps its own scroll
+    canvas.addEventListener("wheel", (e) => { // only if the canvas has the focus, so that the page still scrolls
       if (document.activeElement !== canvas) return;
       e.preventDefault();
       this.zoom(Math.exp(e.deltaY * 0.001));

@@ -34,7 +34,7 @@ export class RotationDemo {
     const found = errors(...["target", "actual"].map((n) => this.dials[n].map((d) => d.get())));
     const aligned = found.log.reduce((sum, x, i) => sum + x * found.euler[i], 0) / (norm(found.log) * norm(found.euler) || 1);
     const off = (Math.acos(Math.min(1, Math.max(-1, aligned))) * 180) / Math.PI;
-    this.words.textContent = `The orientations are ${found.angle.toFixed(3)} rad apart. Subtracting Euler angles says ${norm(found.euler).toFixed(3)} and pushes ${off.toFixed(0)}° away from the shortest way.`;
+    this.words.textContent = `The orientations are ${found.angle.toFixed(3)} rad apart. The difference of the Euler angles has length ${norm(found.euler).toFixed(3)}, and its direction is ${off.toFixed(0)}° away from the axis of the shortest rotation.`;
     const row = (name, v) => h("tr", {}, h("th", { scope: "row" }, name), v.map((x) => h("td", {}, fixed(x))), h("td", {}, norm(v).toFixed(3)));
     this.table.replaceChildren(
       h("caption", {}, "Error = target − actual, as a rotation vector in base axes [rad]"),

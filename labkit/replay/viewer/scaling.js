@@ -15,7 +15,7 @@ export function profile(name, duration, t) {
   return [s, ds / duration, dds / duration ** 2];
 }
 
-/** Duration of the trapezoid of a path of this length: a triangle where the way is short. */
+/** Duration of the trapezoid for a path of this length; on a short path it is a triangle. */
 export function trapezoidDuration(distance, speed, acceleration) {
   const top = Math.min(speed, Math.sqrt(distance * acceleration));
   return distance === 0 ? 0 : distance / top + top / acceleration;
@@ -34,7 +34,7 @@ export function trapezoid(distance, speed, acceleration, t) {
   return [1 - (a * (T - t) ** 2) / 2, a * (T - t), -a];
 }
 
-/** The acceleration with which a trapezoid of this length and top speed lasts this long. */
+/** The acceleration of the trapezoid with this length, top speed and duration. */
 export function trapezoidAcceleration(distance, speed, duration) {
   return speed / (duration - distance / speed);
 }

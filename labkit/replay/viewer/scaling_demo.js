@@ -1,4 +1,4 @@
-// Live demo of the time scalings: the same way in the same time, four shapes.
+// Live demo of the time scalings: four shapes cover the same distance in the same time.
 import { Plot } from "./plots.js";
 import { choice, dial, fixed, h } from "./dom.js";
 import { profile, trapezoid, trapezoidAcceleration } from "./scaling.js";
@@ -27,11 +27,11 @@ export class ScalingDemo {
     host.dataset.ready = "1";
   }
 
-  /** [s, ds, dds] of a named scaling now. */
+  /** [s, ds, dds] of a named scaling with the present settings. */
   sample(name, t) {
     const [d, T] = [this.length.get(), this.duration.get()];
     if (name !== "trapezoid") return profile(name, T, t);
-    const v = (2 * d) / (T * (1 + this.cruise.get())); // no cruising at all is bang-bang
+    const v = (2 * d) / (T * (1 + this.cruise.get())); // without cruising this is bang-bang
     return trapezoid(d, v, trapezoidAcceleration(d, v, T), t);
   }
 
@@ -52,7 +52,7 @@ export class ScalingDemo {
     this.plots.forEach((p) => p.time(t));
     const cells = (values) => values.map((v) => h("td", {}, fixed(v)));
     this.table.replaceChildren(
-      h("caption", {}, `At t = ${t.toFixed(2)} s, and the largest values on the way`),
+      h("caption", {}, `At t = ${t.toFixed(2)} s, and the largest values during the motion`),
       h("thead", {}, h("tr", {}, ["time scaling", "distance [m]", "speed [m/s]", "accel. [m/s²]", "peak speed [m/s]", "peak accel. [m/s²]"].map((n) => h("th", { scope: "col" }, n)))),
       h("tbody", {}, NAMES.map((name, i) => h("tr", {}, h("th", { scope: "row" }, name),
         cells(this.sample(name, t).map((v) => d * v)), cells(this.peaks[i])))));

@@ -1,8 +1,8 @@
-// How the picture is seen: named views, turns for the keyboard, the close-up, the magnified error.
+// Controls of the view: named views, buttons that turn it, the close-up and the magnified error.
 import { VIEWS } from "./rig.js";
 import { choice, h } from "./dom.js";
 
-const NEAR = 0.42; // metres from the hand to the close-up's eye
+const NEAR = 0.42; // distance from the hand to the camera of the close-up, in metres
 
 /** A check box with its name. */
 export function check(label, value, onchange) {
@@ -11,10 +11,10 @@ export function check(label, value, onchange) {
 }
 
 /**
- * The bar under a picture: {element, magnifier, alone(on)}, the last of which hides the rest of the robot.
- * @param magnify  called with 1, 10 or 50; without it there is no such choice
- * @param whole  whether the robot is more than its arm, which can then be shown alone
- * @param camera  whether a camera is among the things, whose picture can be shown
+ * The bar under a picture: {element, magnifier, alone(on)}; `alone(true)` hides the rest of the robot.
+ * @param magnify  called with 1, 10 or 50; if it is missing, the error cannot be magnified
+ * @param whole  whether the robot is more than its arm; then the arm can be shown alone
+ * @param camera  whether the things include a camera; then its picture can be shown
  */
 export function sight(picture, { magnify, camera, whole = true } = {}) {
   const { stage } = picture;
@@ -48,12 +48,12 @@ export function sight(picture, { magnify, camera, whole = true } = {}) {
   const element = h("div", { class: "lk-bar lk-views", role: "group", "aria-label": "View" },
     h("span", { class: "lk-word", "aria-hidden": "true" }, "View"), views, h("span", { class: "lk-gap" }), moves,
     h("span", { class: "lk-gap" }), boxes, magnifier);
-  // A click on a box that is not yet in the page would tick it and tell nobody.
+  // A click on a box that is not yet in the page would tick it without calling its handler.
   const alone = (on) => { arm.checked = on; picture.alone(on); };
   return { element, magnifier, alone };
 }
 
-/** Where the close-up looks from: beside the hand, as the picture's own camera is turned. */
+/** The view of the close-up: a camera near the hand, on the same side as the picture's own camera. */
 function closely({ stage, tip }) {
   const { camera } = stage;
   const away = camera.position.toArray().map((x, k) => x - tip.p[k]);

@@ -35,7 +35,7 @@ export function toEuler(R) {
   return [Math.atan2(R[7], R[8]), pitch, Math.atan2(R[3], R[0])];
 }
 
-/** The logarithm: axis times angle, of length at most pi. */
+/** The logarithm, which is axis times angle, with an angle of at most pi. */
 export function log(R) {
   const twice = [R[7] - R[5], R[2] - R[6], R[3] - R[1]]; // 2 sin(angle) axis
   const sine = norm(twice) / 2;
@@ -43,7 +43,7 @@ export function log(R) {
   const angle = Math.atan2(sine, cosine);
   if (angle < 1e-8) return twice.map((x) => x / 2);
   if (Math.PI - angle > 1e-4) return twice.map((x) => (x * angle) / (2 * sine));
-  // Near half a turn sin vanishes: the axis is the largest column of R + R^T - 2 cos I.
+  // Near half a turn the sine vanishes, and the axis is the largest column of R + R^T - 2 cos I.
   const S = IDENTITY.map((e, i) => R[i] + transpose(R)[i] - 2 * cosine * e);
   const k = [0, 1, 2].reduce((best, i) => (S[4 * i] > S[4 * best] ? i : best), 0);
   const column = [S[k], S[3 + k], S[6 + k]];

@@ -1,15 +1,15 @@
-// A 3-D view in the page.  All stages share one WebGL context: each frame is drawn by the one
-// renderer and copied to the stage's own 2-D canvas, so any number of viewers fits a page.
+// A 3-D view in the page.  All stages share one WebGL context: a single renderer draws each frame,
+// which is copied to the stage's own 2-D canvas, so a page can have any number of viewers.
 import * as THREE from "three";
 import { FIELD, Rig } from "./rig.js";
 import { h } from "./dom.js";
 
-const HURRY = 0.55; // of the size, while a picture moves that the processor has to draw
-const CALM = 400; // ms without another picture, after which it is drawn in full
-const LONG = 40; // ms of drawing without a card, after which all that is longer is left to the page's timers
-const ANSWER = 40; // ms that a picture waits for an answer, where drawing would keep the page from hearing it
+const HURRY = 0.55; // factor of the size while a picture moves and the processor has to draw it
+const CALM = 400; // ms without another picture before the last one is drawn at full size
+const LONG = 40; // ms of drawing without a card; longer drawing leaves the page's timers time to run
+const ANSWER = 40; // ms that a picture waits for an answer that the page cannot receive while it draws
 
-let renderer; // undefined: not tried, null: this browser has no WebGL
+let renderer; // undefined: not tried yet; null: this browser has no WebGL
 let card; // whether there is a graphics card
 const stages = new Set();
 
@@ -24,7 +24,7 @@ function context() {
   return (renderer = new THREE.WebGLRenderer({ canvas, context: gl }));
 }
 
-/** Smooth edges double the time of a frame where the processor has to draw: only with a card. */
+/** Smooth edges are used only with a card, because they double the time if the processor draws. */
 function hasCard() {
   const probe = document.createElement("canvas").getContext("webgl2");
   const info = probe?.getExtension("WEBGL_debug_renderer_info");
@@ -70,7 +70,7 @@ export class Stage {
     key.position.set(2.5, -1.5, 4);
     const rim = new THREE.DirectionalLight(0xdfe8ff, 2.6);
     rim.position.set(-3, 2, 2.5);
-    const side = new THREE.DirectionalLight(0xfff1e0, 1.2); // draws the edge of a dark arm before a dark body
+    const side = new THREE.DirectionalLight(0xfff1e0, 1.2); // makes the edge of a dark arm visible in front of a dark body
     side.position.set(1, 4, 0.5);
     this.floor = new THREE.GridHelper(4, 16);
     this.floor.material.vertexColors = false;
@@ -79,7 +79,7 @@ export class Stage {
     this.scene.add(new THREE.HemisphereLight(0xffffff, 0x9a9ca3, 2.4), key, rim, side, this.floor);
   }
 
-  /** A text that follows a point; `place()` gives [x, y, z], or nothing where there is none now. */
+  /** A text that follows a point; `place()` returns [x, y, z], or nothing while there is no point. */
   label(text, place, colour) {
     const element = h("span", { class: "lk-tag" }, text);
     if (colour) element.style.borderColor = colour;
@@ -89,15 +89,16 @@ export class Stage {
     return made;
   }
 
-  /** Take a text away. */
+  /** Remove a text. */
   unlabel(label) {
     label.element.remove();
     this.labels = this.labels.filter((other) => other !== label);
   }
 
   /**
-   * A second, smaller picture of the same scene from another place; `from()` gives {eye, at}, and for
-   * a camera {up, field, ratio, hidden}: its upright, angle of view, width over height, and what it does not see.
+   * A second, smaller picture of the same scene from another place.  `from()` returns {eye, at}; for a
+   * camera it also returns {up, field, ratio, hidden}: its upward direction, its angle of view, its width
+   * over its height, and what it does not see.
    */
   inset(from) {
     this.small = h("canvas", { class: "lk-inset", "aria-hidden": "true" });
@@ -106,7 +107,7 @@ export class Stage {
     this.near = new THREE.PerspectiveCamera(FIELD, 1, 0.02, 10);
   }
 
-  /** Ask for a frame; many calls make one. */
+  /** Request a frame; many calls lead to one frame. */
   draw() {
     if (!this.works || !this.visible || this.waiting) return;
     this.waiting = requestAnimationFrame((now) => {
@@ -116,10 +117,10 @@ export class Stage {
     });
   }
 
-  /** While the processor draws, the page hears nothing: let the next picture wait for an answer, but not long. */
+  /** Let the next picture wait a short time for an answer, which the page cannot receive while it draws. */
   hold() { if (!card) this.quiet ||= performance.now() + ANSWER; }
 
-  /** The answer has come: draw it now. */
+  /** Draw now, because the answer has come. */
   release() {
     if (!this.quiet || !this.waiting) return;
     cancelAnimationFrame(this.waiting);
@@ -156,7 +157,7 @@ export class Stage {
     this.drawn?.();
   }
 
-  /** Draw the inset, with the upper left corner of the one context. */
+  /** Draw the inset in the upper left corner of the shared context. */
   closeUp(fine) {
     const { eye, at, up = [0, 0, 1], field = FIELD, ratio = 1, hidden = [] } = this.closely();
     const side = Math.min(renderer.domElement.width, renderer.domElement.height, Math.round(this.small.clientWidth * fine));
@@ -181,17 +182,17 @@ export class Stage {
     this.small.getContext("2d").drawImage(renderer.domElement, 0, 0, side, tall, 0, 0, side, tall);
   }
 
-  /** The line of sight through a pointer's place in the page: a Raycaster. */
+  /** A Raycaster along the line of sight through a pointer's position in the page. */
   ray({ clientX, clientY }) {
     const box = this.canvas.getBoundingClientRect();
     const caster = new THREE.Raycaster();
-    caster.params.Line.threshold = 0.005; // three's own is a metre
+    caster.params.Line.threshold = 0.005; // three.js has a default of one metre
     caster.setFromCamera(new THREE.Vector2(
       2 * (clientX - box.left) / box.width - 1, 1 - 2 * (clientY - box.top) / box.height), this.camera);
     return caster;
   }
 
-  /** Lay the labels over their points, pushed apart where they would overlap. */
+  /** Put the labels over their points, and move labels apart that would overlap. */
   settle(width, height) {
     const spots = this.labels.map(({ element, place }) => {
       const at = place();

@@ -1,4 +1,4 @@
-// Adds the style sheet to the page once, as an adopted sheet: no inline style, no extra file.
+// Adds the style sheet to the page once, as an adopted sheet, without inline styles or another file.
 import text from "./style.css";
 
 export function dress() {

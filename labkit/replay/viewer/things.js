@@ -1,4 +1,4 @@
-// What can stand around an arm: faces, bands, tags, cameras and targets, as three.js objects.
+// The things around an arm as three.js objects: faces, bands, tags, cameras and targets.
 import * as THREE from "three";
 import { axes, board } from "./marks.js";
 
@@ -7,7 +7,7 @@ const look = (colour, opacity = 1) => new THREE.MeshStandardMaterial({
   transparent: opacity < 1, opacity, depthWrite: opacity >= 1 });
 
 const KINDS = {
-  /** A wall or a table top: a slab behind its face, which is the plane z = 0; `size` is [x, y]. */
+  /** A wall or a table top, which is a slab behind its face z = 0; `size` is [x, y]. */
   face: ({ size, colour = [0.75, 0.75, 0.8, 1] }) => {
     const group = new THREE.Group();
     const slab = new THREE.Mesh(new THREE.BoxGeometry(...size, 0.02), look(colour.slice(0, 3), Math.min(0.55, colour[3])));
@@ -24,13 +24,13 @@ const KINDS = {
     band.name = "band";
     return group.add(anchor, band);
   },
-  /** The target: a frame that can be taken hold of by the small ball in its middle. */
+  /** The target, which is a frame; a pointer can drag it by the small ball in its middle. */
   target: () => {
     const ball = new THREE.Mesh(new THREE.SphereGeometry(0.016, 20, 14), look([0.1, 0.1, 0.12], 0.6));
     return axes().add(ball);
   },
   tag: ({ size = 0.12 }) => board(size),
-  /** A camera: its box and the edges of what it sees. */
+  /** A camera, drawn as its box and the edges of its field of view. */
   camera: ({ field = 50, ratio = 4 / 3 }) => {
     const group = new THREE.Group(), z = 0.2;
     const y = z * Math.tan(field * Math.PI / 360), x = ratio * y;
@@ -43,10 +43,10 @@ const KINDS = {
   },
 };
 
-/** One thing by its `kind`. */
+/** Make a thing by its `kind`. */
 export const thing = (data) => KINDS[data.kind](data);
 
-/** Put a thing where it is: its `position`, its `quaternion` x y z w; a band's other end is at `tip`. */
+/** Move a thing to its `position` and its `quaternion` x y z w; the other end of a band is at `tip`. */
 export function place(mark, { position, quaternion }, tip) {
   mark.position.fromArray(position);
   if (quaternion) mark.quaternion.fromArray(quaternion).normalize();

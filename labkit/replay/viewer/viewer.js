@@ -1,4 +1,4 @@
-// The viewer: one classic script for page and notebook.  Leaves `labkitViewer` behind.
+// The viewer as one classic script for pages and notebooks.  It defines `labkitViewer`.
 import { Explorer } from "./explorer.js";
 import { LiveArm } from "./live.js";
 import { JacobianDemo } from "./jacobian_demo.js";
@@ -7,7 +7,7 @@ import { RotationDemo } from "./rotation_demo.js";
 import { ScalingDemo } from "./scaling_demo.js";
 import { dress } from "./style.js";
 
-// For pages that bring their own loop, such as the book's live arm.
+// For pages that have their own loop, such as the book's live arm.
 export { choice, dial, h, steady, svg, unique } from "./dom.js";
 export * as kinematics from "./kinematics.js";
 export { Picture } from "./picture.js";
@@ -27,8 +27,8 @@ const KINDS = {
 };
 
 /**
- * Builds what `data.kind` says inside `host`; the result can dispose().  `load` fetches recorded
- * runs, `link` is the way to a kernel.
+ * Builds the kind of view that `data.kind` names inside `host`; the result has dispose().  `load`
+ * fetches recorded runs, and `link` is the connection to a kernel.
  */
 export function mount(host, data, load, link) {
   dress();

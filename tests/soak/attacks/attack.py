@@ -1,7 +1,8 @@
-"""An attack as data: what a student hands in, what it deserves, and what it wins undefended.
+"""An attack as data: the submission, the points that it deserves, and its gain without defence.
 
-In its sources {root} is the course's folder, {loot} a folder and {port} a server of the test's own,
-{marker} a file that the test keeps open and locks.  Who has what they should not have says GOT.
+In its sources {root} is the course's folder; {loot} is a folder, {port} the port of a server and
+{marker} an open, locked file, all made by the test.  An attack that obtains something forbidden says
+GOT.
 """
 
 from __future__ import annotations
@@ -14,7 +15,7 @@ from typing import Any
 Notebook = dict[str, Any]
 QUESTION = "bang_bang"
 CANARY = "canary-5816534691"
-"""Stands in every file of a course that no student may read."""
+"""A word that is in every file of a course that no student may read."""
 
 RIGHT = """
 def right(t, T):
@@ -24,7 +25,7 @@ def right(t, T):
     return (a * t**2 / 2.0, a * t, a) if t < T / 2.0 else (1.0 - a * left**2 / 2.0, a * left, -a)
 """
 WORTH = 3.0
-"""What a right answer to the question earns."""
+"""The points for a right answer to the question."""
 
 
 @dataclass(frozen=True)
@@ -32,12 +33,12 @@ class Attack:
     """One attack.
 
     Attributes:
-        wins: What comes of it undefended, one of the names in `undefended.WINS`.
+        wins: The gain without defence, one of the names in `undefended.WINS`.
         cells: Cells above the answers.
-        answer: What the first question's function becomes; empty leaves the stub.
+        answer: The source that replaces the first question's function; "" keeps the stub.
         earns: The points that the notebook deserves.
         then: The cell of an accomplice who is graded next.
-        shape: What else is done to the notebook.
+        shape: A function that makes other changes to the notebook.
     """
 
     wins: str
@@ -48,7 +49,7 @@ class Attack:
     shape: Callable[[Notebook], Notebook] | None = None
 
     def filled(self, **words: object) -> Attack:
-        """With the test's own words in the braces."""
+        """The attack with values of the test in place of the words in braces."""
 
         def fill(source: str) -> str:
             for word, value in words.items():
@@ -69,13 +70,13 @@ class Attack:
         return notebook if self.shape is None else self.shape(notebook)
 
     def accomplice(self, notebook: Notebook) -> Notebook:
-        """The notebook of who is graded next."""
+        """The notebook of the accomplice who is graded next."""
         notebook["cells"].insert(0, code_cell(disguised(self.then), "own-0"))
         return notebook
 
 
 def disguised(source: str) -> str:
-    """GOT in a spelling of Python's, for whoever fails is shown the line that failed."""
+    """Spell GOT as an expression, because a traceback shows the line that failed."""
     return source.replace("GOT", r"G\x4fT")
 
 
@@ -89,12 +90,12 @@ def markdown_cell(source: str, name: str = "own-text") -> Notebook:
 
 
 def cells(wins: str, **sources: str) -> dict[str, Attack]:
-    """Attacks by a cell each."""
+    """Attacks with one cell each."""
     return {spelt(name): Attack(wins, (source,)) for name, source in sources.items()}
 
 
 def answers(wins: str, **bodies: str) -> dict[str, Attack]:
-    """Attacks from within the function, each given as its body."""
+    """Attacks from within the function, each given as the body of the function."""
     return {spelt(name): Attack(wins, answer=function(body)) for name, body in bodies.items()}
 
 

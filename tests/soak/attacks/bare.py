@@ -1,7 +1,7 @@
-"""The plainest grader that there is: one process runs a student's cells beside what is expected.
+"""The simplest possible grader: one process has the expected values and runs a student's cells.
 
-Run as process 1 of a sandbox that keeps the machine from harm, and nothing from the student:
-``bare.py JOBS OUT``.  Each job is a JSON object; what came of it is said in one.
+Run it with ``bare.py JOBS OUT`` as process 1 of a sandbox, which protects the machine but hides
+nothing from the student.  Each job and each result is a JSON object.
 """
 
 from __future__ import annotations
@@ -35,7 +35,7 @@ DEVICES = {
 }
 HIDDEN = (0.7, 5.816534)
 CALLS = [(0.5, 2.0), (0.25, 1.0), (1.5, 2.0), (3.0, 4.0), HIDDEN]
-MOST = 300_000  # bytes that are kept of what is said
+MOST = 300_000  # bytes of the output that are kept
 
 
 def right(t, T):
@@ -58,7 +58,7 @@ def as_data(value):
         return [list(map(float, part[0][0])) for part in (value.num, value.den)]
     if hasattr(value, "__iter__"):
         for k, _ in enumerate(value):
-            while k > 10**6:  # it would go on for ever
+            while k > 10**6:  # else it would take for ever
                 pass
         return list(value)
     return repr(value)
@@ -77,7 +77,7 @@ def say(error):
 
 
 def mark(function):
-    """How many are right, and how many bytes came back."""
+    """The number of right answers, and the number of bytes that came back."""
     points, size = 0, 0
     for t, duration in CALLS:
         expected = right(t, duration)
@@ -159,7 +159,7 @@ def verdict(text):
 
 
 def end_all():
-    """End what is left: this is process 1, which nobody's signal reaches."""
+    """End the remaining processes; this one survives, because it is process 1."""
     try:
         os.kill(-1, signal.SIGKILL)
     except ProcessLookupError:
@@ -172,7 +172,7 @@ def end_all():
 
 
 def own_devices():
-    """Devices of this place, as the times of the machine's would be seen by others."""
+    """Make new devices, because others would see changed times of the machine's devices."""
     libc = ctypes.CDLL(None)
     if libc.mount(b"tmpfs", b"/dev", b"tmpfs", 0, None):
         return

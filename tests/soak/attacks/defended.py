@@ -1,4 +1,4 @@
-"""The same attacks in this grader: a class of nothing but attackers, and a few honest students."""
+"""The attacks in this grader, by a class of attackers with a few honest students."""
 
 from __future__ import annotations
 
@@ -27,33 +27,33 @@ from labkit.grader.sandbox.limits import Limits
 
 LIMITS = Limits(cell=2.0, call=1.0, question=8.0, wall=40.0)
 HONEST = ("adam", "s0", VICTIM)
-"""Before, among and after the attackers in the alphabet; the last is the one whom some are after."""
+"""Honest students before, among and after the attackers; the last is a victim of some attacks."""
 MORE = {"feedback": ["--unmarked"], "class-report": ["--names"]}
-"""Options of the verbs; attacks leave text that nobody marks."""
+"""Options of the commands, because attacks leave texts that nobody marks."""
 MOST = 2_000_000
-"""Bytes of a result file."""
+"""The largest size of a result file, in bytes."""
 NOT_SAID = ("source", "own", "motion", "hashes")
-"""What of a result is not of the grader's making, or is no text."""
+"""Parts of a result that the grader did not make, or that are not text."""
 
 
 @dataclass
 class Class:
-    """What came of a class.
+    """The results of grading a class.
 
     Attributes:
-        attackers: Names of attacks by student.
-        accomplices: The same, of who was graded next.
-        results: By student, as the result file has it.
-        sizes: Of the result files.
-        pages: By student.
-        marks: By student, as they were exported.
-        failed: What the grader said of those whom it could not grade.
-        codes: How each verb ended.
-        printed: All that the verbs printed.
+        attackers: The name of each student's attack.
+        accomplices: The name of the attack of each accomplice, who was graded next.
+        results: The data of the result files, by student.
+        sizes: The sizes of the result files, by student.
+        pages: The feedback pages, by student.
+        marks: The exported marks, by student.
+        failed: The grader's messages about students whom it could not grade.
+        codes: The exit codes of the commands.
+        printed: The whole output of the commands.
         report: The class report, with names.
-        left: Processes that outlived the grader.
-        loot: What was taken out.
-        stolen: Whether something of the honest was changed.
+        left: The processes that outlived the grader.
+        loot: The data that was taken out.
+        stolen: Whether a file of an honest student was changed.
     """
 
     attackers: dict[str, str] = field(default_factory=dict)
@@ -72,7 +72,7 @@ class Class:
 
 
 def defended(attacks: Mapping[str, Attack], here: Place) -> Class:
-    """Grade a class of attackers, write their pages, export their marks, report."""
+    """Grade a class of attackers, write its pages, export its marks and write its report."""
     made = Class()
     solved = {who: _hand_in_solved(here, who) for who in HONEST}
     for number, (name, attack) in enumerate(attacks.items()):
@@ -115,7 +115,7 @@ def _grade(here: Place, students: list[str], jobs: int, made: Class) -> None:
 
 
 def _run(verb: str, here: Place, made: Class) -> None:
-    """One verb of the instructor's, with whatever comes of it."""
+    """Run one command of the instructor and note its results."""
     more = MORE.get(verb, [])
     out, err = io.StringIO(), io.StringIO()
     try:
@@ -134,7 +134,7 @@ def _run(verb: str, here: Place, made: Class) -> None:
 
 
 def read(course: Course, students: Iterable[str], made: Class) -> None:
-    """Take in results and pages of some students."""
+    """Read the results and pages of some students."""
     for student in students:
         with suppress(OSError, ValueError):
             text = (course.root / "results" / NAME / f"{student}.json").read_text()
@@ -145,7 +145,7 @@ def read(course: Course, students: Iterable[str], made: Class) -> None:
 
 
 def said(data: Any) -> Iterator[str]:
-    """All texts of a result that a student's code may have had a hand in."""
+    """All texts of a result that a student's code could have influenced."""
     if isinstance(data, str):
         yield data
     elif isinstance(data, Mapping):
@@ -158,13 +158,13 @@ def said(data: Any) -> Iterator[str]:
 
 
 def suspected(report: str) -> list[str]:
-    """The lines of a class report on withheld tools, and on ways around them."""
+    """The lines of a class report about withheld tools and tricks that circumvent them."""
     _, _, after = report.partition("## Withheld tools")
     return after.partition("\n## ")[0].splitlines()
 
 
 def told(made: Class, student: str) -> bool:
-    """Whether result and class report say that a withheld tool, or a way around it, was used."""
+    """Whether result and class report say that a withheld tool or such a trick was used."""
     result = made.results[student]
     verdicts = [question["verdict"] for question in result["questions"]]
     in_result = result["tricks"] or any(verdict["withheld"] for verdict in verdicts)
@@ -172,7 +172,7 @@ def told(made: Class, student: str) -> bool:
 
 
 def wins(name: str, attack: Attack, made: Class) -> Iterator[str]:
-    """What an attack has won all the same."""
+    """The gains of an attack in spite of the defence."""
     student = next(s for s, n in made.attackers.items() if n == name)
     for who in (student, *(s for s, n in made.accomplices.items() if n == name)):
         if who not in made.results:
@@ -189,7 +189,7 @@ def wins(name: str, attack: Attack, made: Class) -> Iterator[str]:
 
 
 def wins_of(course: Course, student: str, attack: Attack) -> Iterator[str]:
-    """The same for one student of a course that has been graded."""
+    """The gains of an attack by one student of a graded course."""
     made = Class()
     read(course, [student], made)
     if student not in made.results:
@@ -201,7 +201,7 @@ def wins_of(course: Course, student: str, attack: Attack) -> Iterator[str]:
 
 
 def spoken(result: Any, size: int, page: str | None) -> Iterator[str]:
-    """What a result and a page say that they should not."""
+    """The forbidden texts in a result and in a page."""
     words = [*said(result), page or ""]
     text = "\n".join(words)
     for secret in ("GOT", CANARY):

@@ -1,4 +1,4 @@
-"""Processes that descend from this one, whoever their parents were: nothing may be left of them."""
+"""All descendants of this process, of which none may be left."""
 
 from __future__ import annotations
 
@@ -15,14 +15,14 @@ from labkit.grader.sandbox.limits import slowness
 
 _ADOPTS = 36  # PR_SET_CHILD_SUBREAPER: orphans become this process's children, not init's
 PATIENT = 60.0
-"""A guard against waiting for ever, in [s] on a quick machine; nothing is measured by it."""
+"""The longest wait, in [s] on a fast machine; it only prevents waiting for ever."""
 
 
 class Family:
-    """What was started within a block; orphans stay in it.
+    """The processes that were started within a block, with orphans.
 
     Attributes:
-        before: Process ids and times of start of what ran already.
+        before: The ids and starting times of the processes that ran before the block.
     """
 
     def __enter__(self) -> Family:
@@ -39,14 +39,14 @@ class Family:
         ctypes.CDLL(None).prctl(_ADOPTS, 0, 0, 0, 0)
 
     def now(self) -> dict[tuple[int, int], str]:
-        """What runs now: ids and times of start, with the words they were started with.
+        """The running processes of the block: ids and starting times, with their commands.
 
-        What was there before may start more, as a browser does; that is not of this block.
+        A process from before the block, such as a browser, may start others, which are left out.
         """
         return descendants(before=self.before)
 
     def left(self) -> list[str]:
-        """What still runs once it had its time to end; dead children are buried."""
+        """The processes that still run after they had time to end; dead children are reaped."""
         until = time.monotonic() + PATIENT * slowness()
         while found := self.now():
             for pid, _ in found:
@@ -61,11 +61,11 @@ class Family:
 def descendants(
     of: int = 0, before: Collection[tuple[int, int]] = ()
 ) -> dict[tuple[int, int], str]:
-    """All that descend from a process, with the words they were started with.
+    """All descendants of a process, with their commands.
 
     Args:
-        of: Which process; by default this one.
-        before: Processes that are left out, with all that they started.
+        of: The number of the process; by default this one.
+        before: Processes that are left out, with their descendants.
     """
     of = of or os.getpid()
     parents: dict[int, tuple[int, int]] = {}
@@ -82,7 +82,7 @@ def descendants(
 
 
 def words(pid: int) -> str:
-    """How a process was started; empty for a dead one."""
+    """The command of a process; empty for a dead one."""
     with suppress(OSError):
         return (
             Path(f"/proc/{pid}/cmdline").read_bytes().replace(b"\0", b" ").decode(errors="replace")
@@ -91,7 +91,7 @@ def words(pid: int) -> str:
 
 
 def parent(pid: int) -> int:
-    """The process that started it; 0 if it is gone."""
+    """The parent of a process; 0 if the process has ended."""
     with suppress(OSError, ValueError):
         text = Path(f"/proc/{pid}/stat").read_text(errors="replace")
         return int(text.rpartition(")")[2].split()[1])

@@ -1,4 +1,4 @@
-"""Goal: the grader itself, its memory, disk, time and processes."""
+"""Attacks on the grader itself: its memory, disk, time and processes."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ MEMORY = cells(
     two_hundred_processes="import os, time\nfor _ in range(200):\n    if not os.fork():\n        time.sleep(20)\n        os._exit(0)\n"
     "raise Exception('GOT 200')",
     a_file_outside="open('{loot}/x', 'w').write('x')\nraise Exception('GOT write')",
-    a_folder_outside="import os\nos.makedirs('{loot}/y')\n"  # one of its own /tmp is not outside
+    a_folder_outside="import os\nos.makedirs('{loot}/y')\n"  # a folder in its own /tmp is not outside
     "if os.path.exists('{loot}/socket'): raise Exception('GOT write')",
 )  # fmt: skip
 
@@ -110,7 +110,7 @@ REPLIES["coefficients"] = Attack(
 
 
 def _printing(notebook):
-    """900 cells that print much and fail, as the student lifts the limit of their process."""
+    """900 cells that print much and fail, with a raised limit of their process."""
     lift = (
         "import gc\nfor x in gc.get_objects():\n"
         "    if hasattr(type(x), '__name__') and type(x).__name__ in ('Notebook', 'Session', 'Runner'):\n"
@@ -124,9 +124,9 @@ def _printing(notebook):
 
 
 def _emoji(notebook):
-    """One cell answers all questions, with a comment of a million emoji.
+    """One cell that answers all questions and has a comment of a million emoji.
 
-    Zero is wrong everywhere, but one prediction is a number, and committing to any earns its point.
+    Zero is wrong everywhere, but one prediction is a number, and any number earns its point.
     """
     names = [
         c["metadata"]["nbgrader"]["grade_id"]
@@ -144,14 +144,14 @@ def _own_text(notebook):
 
 
 def _failing(notebook):
-    """Cells that all fail with a name that nobody knows, each for long."""
+    """Cells that take long and all fail because of an unknown name."""
     source = "x = sum(range(10**6))\nnobody_knows"
     notebook["cells"] += [code_cell(f"{source}  # {k}", f"own-{k}") for k in range(900)]
     return notebook
 
 
 def _chained(notebook):
-    """900 cells that lean on one another, with 345 names each."""
+    """900 cells that depend on one another, with 345 names each."""
     for k in range(900):
         names = "=".join(f"{chr(97 + n % 26)}{n // 26}_{k}" for n in range(345))
         source = f"{names}=0\nlink{k}=1\ndef f{k}(): return link{k + 1}"
@@ -161,7 +161,7 @@ def _chained(notebook):
 
 
 def _magics(notebook):
-    """Lines that a notebook's own reader takes long for."""
+    """Lines for which IPython's own parser needs long."""
     notebook["cells"].append(code_cell("\n".join(["%x"] * 20_000), "own-0"))
     return notebook
 
@@ -188,7 +188,7 @@ def _metadata(notebook):
 
 
 def _names(notebook):
-    """A name of a cell as long as a book."""
+    """A cell with a name that is as long as a book."""
     for cell in notebook["cells"]:
         cell["id"] = "\U0001f600" * 20_000
         cell["metadata"].setdefault("nbgrader", {})["grade_id"] = "\U0001f600" * 20_000

@@ -1,7 +1,7 @@
-"""Goal: to be taken for somebody else.  What a download holds, and who is meant to be believed.
+"""Attacks in which a student pretends to be somebody else.
 
-Ada Lovelace is participant 42 (Canvas: user 42; exchange: `ada`), and what she handed in was collected
-before.  Eve is number 77.  In each of these Eve hands in a file.
+Ada Lovelace is participant 42 (Canvas: user 42; exchange: `ada`), and her work has been collected
+before.  Eve is participant 77 and hands in a file in each of these attacks.
 """
 
 from __future__ import annotations
@@ -20,14 +20,14 @@ _GREEDY = re.compile(r"^.*?(?P<who>[^/+]*_42_|Ada Lovelace|lovelaceada|ada\b|42)
 
 @dataclass(frozen=True)
 class Impostor:
-    """One way to be taken for somebody else.
+    """One method of pretending to be somebody else.
 
     Attributes:
-        names: Of the files in the second download, which all hold Eve's work.
+        names: The names of the files in the second download, which all contain Eve's work.
         system: "moodle", "canvas" or "exchange".
-        twin: Whether a second Ada Lovelace, participant 43, came with the first download.
-        put: How a file comes into the exchange, where not by being written.
-        quiet: Whether nobody else is meant: it is the terminal, or the folder, that must not suffer.
+        twin: Whether a second Ada Lovelace, participant 43, was in the first download.
+        put: How a file gets into the exchange, if it is not simply written there.
+        quiet: Whether the target is the terminal or the folder, and not another student.
     """
 
     names: tuple[str, ...]
@@ -37,7 +37,7 @@ class Impostor:
     quiet: bool = False
 
     def believed(self) -> bool:
-        """Whether a reader that believes the name, or writes where it says, would be led astray."""
+        """Whether a reader that trusts the name, or writes to its path, would be deceived."""
         return any(
             _GREEDY.match(name) or ".." in name or not name.isprintable() or len(name) > 255
             for name in self.names

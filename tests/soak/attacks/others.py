@@ -1,15 +1,15 @@
-"""Goal: the marks of others."""
+"""Attacks on the marks of other students."""
 
 from __future__ import annotations
 
 from soak.attacks.attack import RIGHT, WORTH, Attack, code_cell, function
 
 VICTIM = "zoe"
-"""Comes last in the alphabet, and has done nothing but their work."""
+"""An innocent student, who is the last one in the alphabet."""
 
 
 def _twice(notebook):
-    """An answer's cell stands there twice, under one name."""
+    """The cell of an answer is there twice under the same name."""
     place = next(
         k
         for k, c in enumerate(notebook["cells"])
@@ -74,7 +74,7 @@ FILES = {
 
 
 def left(plant: str, find: str) -> Attack:
-    """Something is left behind for an accomplice, who is graded next."""
+    """An attack that leaves something behind for an accomplice, who is graded next."""
     return Attack("passes on", (plant,), RIGHT + function("return right(t, duration)"), WORTH, find)
 
 
@@ -169,6 +169,6 @@ AFTER = {
         "overflows", answer=function("return 5e-324, -1.79e308, 1.79e308")
     ),
 }
-"""What breaks where results are written down, for everybody."""
+"""Attacks that break the writing of results for everybody."""
 
 OTHERS = {**BATCH, **FILES, **LEFT, **AFTER}

@@ -1,4 +1,4 @@
-"""A course in which everything that is secret bears a canary, and what attacks are told of it."""
+"""A course whose secrets all contain a canary, and the values that attacks receive about it."""
 
 from __future__ import annotations
 
@@ -26,17 +26,17 @@ NAME = "01_paths"
 ROOT = Path(__file__).parents[3]
 SEED = 7
 MARKER = numpy.__file__
-"""A file of the host that every sandbox shows."""
+"""A file of the host that is visible in every sandbox."""
 
 
 @dataclass(frozen=True)
 class Place:
-    """A course and what lies around it.
+    """A course and its surroundings.
 
     Attributes:
         course: The course.
-        loot: A folder that anybody may write to.
-        words: What stands for the words in braces in an attack.
+        loot: A folder to which everybody may write.
+        words: The values for the words in braces of an attack.
     """
 
     course: Course
@@ -44,11 +44,11 @@ class Place:
     words: dict[str, object]
 
     def filled(self, attack: Attack) -> Attack:
-        """An attack that knows this place."""
+        """The attack with the values of this place."""
         return attack.filled(**self.words)
 
     def notebook(self, *, solved: bool = False) -> Notebook:
-        """The assignment as it is handed out, or solved."""
+        """The assignment as students receive it, or solved."""
         return solved_code(self.course) if solved else handed_out(self.course)
 
     def hand_in(self, student: str, notebook: Notebook, assignment: str = NAME) -> None:
@@ -59,12 +59,12 @@ class Place:
 
 
 def handed_out(course: Course, assignment: str = NAME) -> Notebook:
-    """An assignment as students get it."""
+    """An assignment as students receive it."""
     return _read(course.release, assignment)
 
 
 def solved_code(course: Course, assignment: str = NAME) -> Notebook:
-    """An assignment with all code right and no text, which would wait for a person's mark."""
+    """An assignment with right code but no text, because a text would wait for a person's mark."""
     right = {grade_id(c): c["source"] for c in _read(course.solution, assignment)["cells"]}
     notebook = handed_out(course, assignment)
     for cell in notebook["cells"]:
@@ -74,7 +74,7 @@ def solved_code(course: Course, assignment: str = NAME) -> Notebook:
 
 
 def full_marks(course: Course) -> tuple[float, float]:
-    """What right code earns, and what there is to earn with the text that a person marks."""
+    """The points for right code, and the points including the text that a person marks."""
     cells = handed_out(course)["cells"]
     code, text = (
         sum(nbgrader_info(c)["points"] for c in cells if kind(c) == which)
@@ -115,20 +115,20 @@ def place(root: Path, of: Course) -> Iterator[Place]:
         _write(exchange / "inbound" / VICTIM / f"{NAME}.ipynb", CANARY)
         port = ends.enter_context(_servers(loot))
         marker = ends.enter_context(open(MARKER))
-        with suppress(BlockingIOError):  # another test of these holds it: as good
+        with suppress(BlockingIOError):  # a parallel test holds the lock, which has the same effect
             flock(marker, LOCK_EX | LOCK_NB)
         words = {"root": root, "loot": loot, "port": port, "exchange": exchange}
         yield Place(course, loot, words | {"marker": MARKER})
 
 
 def copied(here: Place, root: Path) -> Place:
-    """The same place, with a course of its own to spoil."""
+    """The same place with a separate course, which may be damaged."""
     shutil.copytree(here.course.root, root, symlinks=True)
     return Place(Course(root), here.loot, here.words | {"root": root})
 
 
 def _plant(course: Course) -> None:
-    """A canary in whatever nobody who hands in may read."""
+    """Put a canary into everything that students may not read."""
     root = course.root
     solutions = root / "solutions"
     target = solutions.resolve()
@@ -176,7 +176,7 @@ def _write(path: Path, text: str) -> None:
 
 @contextmanager
 def _servers(loot: Path) -> Iterator[int]:
-    """Servers outside the sandbox: of a port, of a name without a file, of a file."""
+    """Start servers outside the sandbox: on a port, on an abstract name and on a file."""
 
     def serve(end: socket.socket) -> None:
         with suppress(OSError):
@@ -194,7 +194,7 @@ def _servers(loot: Path) -> Iterator[int]:
         port = tcp.getsockname()[1]
         found = [tcp]
         here = os.getcwd()
-        os.chdir(loot)  # a socket's path has few characters
+        os.chdir(loot)  # the path of a socket must be short
         try:
             for name in (f"\0labkit-test-{port}", "socket"):
                 end = ends.enter_context(socket.socket(socket.AF_UNIX))

@@ -1,4 +1,4 @@
-"""Goal: points of one's own that nobody has earned."""
+"""Attacks that try to get points which the student has not earned."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ NOTHING = function("return 0.0, 0.0, 0.0")
 
 
 def patched(**sources: str) -> dict[str, Attack]:
-    """A cell that changes what tests are made of, above an answer that is wrong."""
+    """A cell that changes the functions used by tests, above a wrong answer."""
     return {
         name.replace("_", " "): Attack("points", (source,), NOTHING)
         for name, source in sources.items()
@@ -150,7 +150,7 @@ BOOKS = {
 
 
 def _claims(notebook):
-    """Outputs as if all checks had been passed."""
+    """Fake outputs of checks that have passed."""
     for cell in notebook["cells"]:
         if cell["metadata"].get("nbgrader", {}).get("grade"):
             cell["outputs"] = [
@@ -161,7 +161,7 @@ def _claims(notebook):
 
 
 def _rich(notebook):
-    """Every cell says of itself that it is graded, with a hundred points."""
+    """The metadata of every cell say that it is graded with a hundred points."""
     for cell in notebook["cells"]:
         about = cell["metadata"].get("nbgrader", {})
         cell["metadata"]["nbgrader"] = about | {"grade": True, "points": 100, "locked": False}
@@ -171,7 +171,7 @@ def _rich(notebook):
 
 
 def _own_test(notebook):
-    """The tests are gone; cells with their names hold a number."""
+    """Cells with a number replace the tests and have their names."""
     for cell in notebook["cells"]:
         if cell["metadata"].get("nbgrader", {}).get("grade"):
             cell["source"] = "3.0"
@@ -181,7 +181,7 @@ def _own_test(notebook):
 
 
 def _stolen_name(notebook):
-    """A cell of the student's own bears the name of a test, and says what it is worth."""
+    """A cell of the student has the name of a test and states its points."""
     about = {"grade": True, "grade_id": "bang_bang-check", "points": 3, "locked": False,
              "solution": False, "task": False, "schema_version": 3}  # fmt: skip
     cell = code_cell("3.0", "own-test")
@@ -210,7 +210,7 @@ _ENDS = (
 
 
 def lines(**data: str) -> dict[str, Attack]:
-    """Bytes on every line that is open, from a cell and from within the function."""
+    """Write bytes to every open connection, from a cell and from within the function."""
     made = {}
     for name, what in data.items():
         made[f"line: {name.replace('_', ' ')}"] = Attack(
@@ -253,6 +253,6 @@ _DESCRIPTORS = (
 LINES["line: descriptors"] = Attack(
     "forges", (_DESCRIPTORS + "shout()",), function("shout()\nreturn 0.0, 0.0, 0.0")
 )
-"""Whoever takes in what comes with the bytes has soon no descriptors left."""
+"""A reader that accepts the descriptors sent with the bytes soon has none left."""
 
 POINTS = {**PATCHES, **SHELL, **OBJECTS, **FRAMES, **BOOKS, **CLAIMS, **LINES}

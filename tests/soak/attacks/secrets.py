@@ -1,16 +1,16 @@
-"""Goal: what nobody who hands in may know."""
+"""Attacks on secrets that students may not know."""
 
 from __future__ import annotations
 
 from soak.attacks.attack import CANARY, RIGHT, WORTH, Attack, answers, cells, function
 
 _WORD = "(chr(99) + 'anary')"
-"""What is looked for, so that an attack's own text does not hold it."""
+"""The expression to search for, spelt so that the text of the attack does not contain it."""
 assert CANARY.startswith(eval(_WORD))
 
 
 def reads(**paths: str) -> dict[str, Attack]:
-    """Files, by what they are."""
+    """Attacks that read secret files, with the kind of file as name."""
     return {
         f"reads {name.replace('_', ' ')}": Attack(
             "reads",
@@ -156,7 +156,7 @@ KERNEL = {
 
 
 def leaks(how: str, before: str = "", cells: tuple[str, ...] = ()) -> Attack:
-    """A right answer, which tells what it was asked where a call is none of the public ones.
+    """A right answer that reveals the arguments of calls that are not public.
 
     `how` has the hidden duration in `x`, and its first digits in `digits`.
     """
@@ -211,10 +211,10 @@ FEEDBACK = {
 
 
 def restarts(tell: str, hear: str = "") -> Attack:
-    """A hidden call ends the whole process; the cells run again, and say what it has left.
+    """A hidden call ends the whole process; when the cells run again they reveal what it left.
 
-    The question's fork tells the process that ran the cells over a pipe; a thread there ends it.
-    When the cells ran is said by a cell, and by the public call of another question.
+    The fork for the question signals the process of the cells through a pipe, and a thread ends it.
+    A cell and the public call of another question say when the cells ran.
     """
     cell = (
         "import os, threading, time\nstarted = time.time()\nends = os.pipe()\n"
@@ -248,7 +248,7 @@ RESTARTS = {
         "os.utime('/dev/pts/ptmx')",
         "found = time.time() - os.stat('/dev/pts/ptmx').st_mtime if os.path.exists('/dev/pts/ptmx') else 99\n"
         f"if 0 < found < 20: {_GOT}"),
-    "after a restart, by the numbers of pipes": restarts(  # the kernel counts them for everybody
+    "after a restart, by the numbers of pipes": restarts(  # the kernel numbers them for all processes
         "kept = [os.pipe() for _ in range(5 * digits[1])]",
         "print('count', os.fstat(os.pipe()[0]).st_ino)"),
     "after a restart, by the clock on the wall": restarts(

@@ -1,4 +1,4 @@
-"""All attacks by their goal, and the sample of them that the gate runs."""
+"""All attacks by their goals, and the sample that the gate runs."""
 
 from __future__ import annotations
 
@@ -41,4 +41,4 @@ SAMPLE = {
         "withheld tools: its shape alone",
     )
 }
-"""A few of each goal, none that takes long."""
+"""A few attacks for each goal, without those that take long."""

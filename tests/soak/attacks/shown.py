@@ -1,4 +1,4 @@
-"""Goal: the instructor who looks at it, by a terminal's commands and by markup."""
+"""Attacks on the instructor who looks at the results, by terminal codes and by markup."""
 
 from __future__ import annotations
 
@@ -46,4 +46,4 @@ MARKUP = {
     "a table in markdown": "| a |\n|---|\n| <img src=x onerror=\"window.GOT=1\"> |",
     "code that ends": "```\n</code></pre><script>window.GOT=1</script>\n```\n</pre><script>window.GOT=1</script>",
 }  # fmt: skip
-"""Cells of text, of which each is live where it is shown as it stands."""
+"""Text cells, each of which runs code where it is shown without escaping."""

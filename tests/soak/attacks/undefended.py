@@ -1,7 +1,7 @@
-"""What an attack wins where nobody keeps it out: in nbgrader's own engine, or in one bare process.
+"""The gain of an attack without defence, in nbgrader's own engine or in one bare process.
 
-Both run in a sandbox that keeps the machine and the course of the tests from harm, and withholds
-nothing from an attack: all rights, all files, the network.
+Both run in a sandbox that protects the machine and the course of the tests, but leaves an attack all
+rights, all files and the network.
 """
 
 from __future__ import annotations
@@ -27,21 +27,21 @@ from labkit.grader.sandbox.limits import slowness
 
 BARE = Path(__file__).with_name("bare.py")
 HIDDEN = "got 5.816534"
-"""What the bare grader says of an answer that is what it asked."""
+"""The bare grader's text for a right answer."""
 HEAVY = 256_000
 FULL = 2_000_000  # bytes
 
 
 @dataclass
 class Won:
-    """What came of an attack.
+    """The results of an attack.
 
     Attributes:
-        score: In nbgrader's engine; None where it was not graded.
-        victim: What who came after it got there; None where they were not graded.
-        bare: What `bare.py` says of it.
-        changed: What of the victim's was changed.
-        notebook: As it was handed in.
+        score: The score in nbgrader's engine; None if the attack was not graded.
+        victim: The score of the next student; None if that student was not graded.
+        bare: The result of `bare.py`.
+        changed: The files of the victim that were changed.
+        notebook: The notebook as it was handed in.
     """
 
     notebook: Notebook
@@ -61,7 +61,7 @@ def _tells(won: Won) -> bool:
 
 
 def _claims(won: Won) -> bool:
-    """A grader that believes what stands in the file."""
+    """Whether a grader that trusts the content of the file gives points."""
     from nbgrader.utils import determine_grade
 
     cells = nbformat.reads(json.dumps(won.notebook), as_version=4).cells
@@ -88,7 +88,7 @@ def _overflows(won: Won) -> bool:
 COMMANDS = re.compile(
     r"[\x00-\x08\x0b-\x1f\x7f-\x9f\u2028-\u202e\u2066-\u2069]|^\[9/9\] everybody", re.M
 )
-"""What a terminal takes for more than text, or a reader for a line of the grader's."""
+"""Characters that a terminal obeys, and text that looks like a line of the grader."""
 
 WINS: dict[str, Callable[[Won], bool]] = {
     "points": lambda won: bool(won.score),
@@ -110,17 +110,17 @@ WINS: dict[str, Callable[[Won], bool]] = {
     "unwritable": _unwritable,
     "overflows": _overflows,
 }
-"""By what an attack is after, whether it got that."""
+"""For each goal of attacks, a function that says whether the attack reached it."""
 ALONE = {"stops", "labkit's points"}
 
 
 def started(text: str) -> set[str]:
-    """When the cells ran of which a text tells."""
+    """The times in a text at which the cells ran."""
     return set(re.findall(r"started (\d+\.\d+)", text))
 
 
 def undefended(attacks: Mapping[str, Attack], here: Place, scratch: Path) -> dict[str, Won]:
-    """What each attack wins."""
+    """Run or grade the attacks without defence, and return the results of each."""
     filled = {name: here.filled(attack) for name, attack in attacks.items()}
     won = {name: Won(attack.planted(_short(here))) for name, attack in filled.items()}
     one = {n for n, a in attacks.items() if a.wins in ALONE or (a.wins == "points" and _books(a))}
@@ -141,7 +141,7 @@ def _books(attack: Attack) -> bool:
 
 
 def _short(here: Place) -> Notebook:
-    """The assignment with only what is graded, so that it runs quickly."""
+    """The assignment with only its graded cells, so that it runs quickly."""
     notebook = here.notebook()
     kept = [c for c in notebook["cells"] if c["metadata"]["lab"] in ("answer", "check")]
     return notebook | {"cells": kept}
@@ -157,11 +157,11 @@ TESTS = (
     "import numpy as np\nassert np.allclose(bang_bang(3.0, 4.0), (0.875, 0.5, -0.25))",
     "### BEGIN HIDDEN TESTS\nassert bang_bang(0.25, 1.0) == (0.125, 1.0, 4.0)\n### END HIDDEN TESTS",
 )  # fmt: skip
-"""Tests as many are written, a point each."""
+"""Typical tests, with a point each."""
 
 
 def plainly(here: Place) -> Place:
-    """The same course with "plain": one question with tests as many are written."""
+    """A copy of the course with "plain", a notebook of one question with typical tests."""
     course = here.course
     with (course.root / "nbgrader_config.py").open("a") as file:
         file.write(
@@ -188,7 +188,7 @@ def plainly(here: Place) -> Place:
 
 
 def _points(here: Place, attacks: Mapping[str, Attack], won: dict[str, Won]) -> None:
-    """All in one run of nbgrader's."""
+    """Grade all attacks in one run of nbgrader."""
     blank = json.loads((here.course.release / "plain" / "plain.ipynb").read_text())
     students = {f"s{k:03d}": name for k, name in enumerate(attacks)}
     for student, name in students.items():
@@ -202,7 +202,7 @@ def _points(here: Place, attacks: Mapping[str, Attack], won: dict[str, Won]) -> 
 
 
 def _alone(here: Place, attack: Attack, won: Won) -> None:
-    """In a run of its own, before an honest student."""
+    """Grade an attack in a separate run, before an honest student."""
     name = NAME if attack.wins == "labkit's points" else "plain"
     blank = (
         _short(here)
@@ -212,7 +212,7 @@ def _alone(here: Place, attack: Attack, won: Won) -> None:
     planted = here.filled(attack).planted(json.loads(json.dumps(blank)))
     if name == NAME:
         setup = code_cell("from labkit.course import check", "setup")
-        planted["cells"].insert(len(attack.cells), setup)  # where the notebook has it too
+        planted["cells"].insert(len(attack.cells), setup)  # in the same place as in the notebook
     here.hand_in("eve", planted, name)
     here.hand_in(VICTIM, json.loads(json.dumps(blank)), name)
     nbgrader(here, "autograde", name, "--create")
@@ -221,7 +221,7 @@ def _alone(here: Place, attack: Attack, won: Won) -> None:
 
 
 def _bare(here: Place, attacks: Mapping[str, Attack], won: dict[str, Won], scratch: Path) -> None:
-    """Each in a process of its own, beside what is expected."""
+    """Run each attack in a separate process that has the expected values."""
     jobs = [
         _job(here, name, attack, won[name].notebook)
         for name, attack in attacks.items()
@@ -254,7 +254,7 @@ def _job(here: Place, name: str, attack: Attack, notebook: Notebook) -> dict[str
 
 
 def run_bare(here: Place, jobs: Iterable[Mapping[str, Any]], scratch: Path) -> dict[str, Any]:
-    """Run jobs as `bare.py` says."""
+    """Run jobs with `bare.py`."""
     scratch.mkdir(parents=True, exist_ok=True)
     asked, out = here.course.root / "jobs.json", here.course.root / "out.json"
     asked.write_text(json.dumps(list(jobs)))
@@ -290,7 +290,7 @@ def _spoils(here: Place, attack: Attack, won: Won, scratch: Path) -> None:
 
 
 def _state(here: Place) -> dict[str, object]:
-    """What belongs to the victim, and what everybody's mark hangs on."""
+    """The victim's files, and the files on which all marks depend."""
     root = here.course.root
     files = (
         f"submitted/{VICTIM}/{NAME}/{NAME}.ipynb",
@@ -309,9 +309,9 @@ def _state(here: Place) -> dict[str, object]:
 
 
 def marks(here: Place, assignment: str) -> dict[str, float]:
-    """What the gradebook says, of those whom the engine came to.
+    """The scores in the gradebook of the students whom the engine graded.
 
-    The course's settings are not read: an attack may have written them.
+    The settings of the course are not read, because an attack may have changed them.
     """
     from nbgrader.api import Gradebook
 
@@ -327,7 +327,7 @@ def marks(here: Place, assignment: str) -> dict[str, float]:
 
 
 def nbgrader(here: Place, *words: str) -> str:
-    """One of nbgrader's commands: what it said.  Students may end it, and outlive it."""
+    """Run a command of nbgrader, which attacks may end or outlive; return its output."""
     program = Path(sys.executable).with_name("nbgrader")
     log = here.course.root / "log.txt"
     with log.open("wb") as out:
@@ -351,7 +351,7 @@ def environment(here: Place) -> dict[str, str]:
 
 
 def harmless(here: Place, *, init: bool = False) -> list[str]:
-    """What keeps the machine from harm: it can be read, and only the course can be written to."""
+    """Arguments that protect the machine: all can be read, and only the course can be written."""
     root, loot = str(here.course.root), str(here.loot)
     words = ["bwrap", "--ro-bind", "/", "/", "--dev", "/dev", "--proc", "/proc"]
     words += ["--tmpfs", "/tmp", "--tmpfs", "/var/tmp"]

@@ -1,4 +1,4 @@
-"""Ways around a withheld tool: each gives a right answer, and must be told to the instructor."""
+"""Tricks that circumvent a withheld tool; the instructor must be told about each right answer."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ from soak.attacks.attack import Attack
 
 
 def way(cell: str, answer: str, before: str = "") -> Attack:
-    """A cell above the answer, and what the answer returns."""
+    """For each trick, a cell above the answer and the value that the answer returns."""
     source = f"import labkit as lk\ndef bang_bang(t, duration):\n{before}    return {answer}"
     return Attack("answers", (cell,) if cell else (), source)
 
