@@ -101,6 +101,8 @@ class PublicResult:
 def mark(question: Question, function: Function, tried: PublicResult | None = None) -> Verdict:
     """Try every test of a question, its public cases before any hidden one.
 
+    The hidden cases of a test are tried if none of its public cases failed.
+
     Args:
         question: The question, with or without its hidden cases.
         function: The student's function, or one that calls it in another process and raises

@@ -65,7 +65,7 @@ def awaits_marking(verdict: Verdict) -> bool:
 
 
 def why_not_counted(withheld: Iterable[str]) -> str:
-    """Why an answer that uses withheld tools is not counted."""
+    """Why an answer that uses withheld tools is not counted, as the end of a sentence about it."""
     names = [name_in_notebook(tool) for tool in withheld]
     # a whole package is never what the student should write
     own = all("." in name for name in names)
@@ -211,7 +211,7 @@ def test_line(test: TestResult) -> str:
 
 
 def test_name(test: TestResult) -> str:
-    """The name of a test, after its status in brackets."""
+    """The name of a test, after its status in brackets, and whether it is a gate."""
     return f"[{test_status(test)}] {test.name}{gate_note(test)}"
 
 

@@ -2,7 +2,7 @@
 
 The file gives the name of the course, the due date and weight of each assignment, extensions, the
 penalty for late work, and which attempt counts.  Due dates and extensions are written into the
-gradebook, where formgrader shows them, and nbgrader's own plugin deducts the penalty for late work.
+gradebook, where formgrader shows them, and nbgrader's plugin for late work deducts the penalty.
 """
 
 from __future__ import annotations
@@ -144,7 +144,11 @@ def read_rules(course: Course) -> Rules:
 
 
 def rules_in(path: Path) -> Rules:
-    """The rules of a file; `read_rules` also checks the names of assignments."""
+    """The rules of a file; `read_rules` also checks the names of assignments.
+
+    Raises:
+        LabkitError: The file is not TOML, or a rule in it is not valid.
+    """
     try:
         rules = msgspec.convert(tomllib.loads(path.read_text(encoding="utf-8-sig")), Rules)
     except FileNotFoundError:
@@ -205,7 +209,7 @@ class CourseRules(LateSubmissionPlugin):  # type: ignore[misc]
     def late_submission_penalty(
         self, student_id: str, score: float, total_seconds_late: float
     ) -> float:
-        """The points to take away."""
+        """The points to deduct."""
         root = self.config.get("CourseDirectory", {}).get("root") or Path.cwd()
         late = read_rules(Course.here(Path(root))).late
         if late == Late():  # then nbgrader's own setting counts, if there is one

@@ -36,7 +36,7 @@ from labkit.scene import TIP_RADIUS, contact_stiffness
 from labkit.shapes import Array, locked
 from labkit.world import Thing
 
-from .gains import TIP_SPRING, Candidate, course_controllers
+from .gains import Candidate, course_controllers
 
 CONTENDERS = ("position", "joint torque", "joint impedance", "workspace impedance")
 
@@ -157,60 +157,6 @@ def spring(
         plant,
         seed,
         names,
-    )
-
-
-@dataclass(frozen=True, eq=False)
-class DeadBand:
-    """How far pushes of increasing force move a tip, and where it stays afterwards.
-
-    Attributes:
-        force: The pushes, shape (k,) in [N].
-        pushed: The displacement along each push at its end, shape (k,) in [m].
-        released: The displacement along each push long after it, shape (k,) in [m].
-        stiffness: The stiffness set in the controller, in [N/m].
-    """
-
-    force: Array
-    pushed: Array
-    released: Array
-    stiffness: float
-
-    @property
-    def width(self) -> float:
-        """The largest of the pushes, in [N], that moved the tip by less than a tenth of F/K."""
-        stuck = self.pushed < 0.1 * self.force / self.stiffness
-        return float(self.force[stuck].max(initial=0.0))
-
-
-def dead_band(
-    plant: Plant, *, axis: int = 2, forces: Any = (0.5, 1.0, 2.0, 4.0, 8.0), seed: int = 0
-) -> DeadBand:
-    """Push an arm under workspace impedance control along one axis for 2 s, harder each time.
-
-    Dry friction holds a joint until the torque on it is larger.  Smaller pushes do not move the
-    tip, and after a push the spring leaves the joint where friction can hold it.  Noise in the
-    measured speeds shakes the joints through the damping, which narrows the band.
-
-    Args:
-        plant: The plant to drive.
-        axis: 0, 1 or 2 for x, y, z.
-        forces: The pushes, shape (k,) in [N].
-        seed: The seed of the noise.
-    """
-    along = np.eye(3)[axis]
-    name = "workspace impedance"
-    pushed, released = [], []
-    for force in forces:
-        met = push(force * along, duration=2.0, rest=2.0, plant=plant, seed=seed, names=(name,))[0]
-        way = met.displacement @ along
-        pushed.append(way[np.searchsorted(met.t, 2.0 - 1e-9)])
-        released.append(way[-1])
-    return DeadBand(
-        force=locked(np.array(forces, dtype=float)),
-        pushed=locked(np.array(pushed)),
-        released=locked(np.array(released)),
-        stiffness=TIP_SPRING[axis],
     )
 
 

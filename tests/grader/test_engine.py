@@ -273,7 +273,7 @@ def test_a_magic_that_keeps_names_to_itself_defines_nothing(marks, solved, magic
     circle = next(q for q in marks(solved).questions if q.verdict.name == "circle")
     word = magic.split()[0]
     assert circle.notes == (
-        f"circle: its cell begins with {word}, which keeps what it defines to itself",
+        f"circle: its cell begins with {word}, so the notebook does not see what it defines",
     )
     assert circle.verdict.earned == 0
 

@@ -93,7 +93,7 @@ def handed_in_again(course):
 
 FAULTS = {
     ungraded: "handed in but not graded",
-    unrecorded: "graded and not in the gradebook",
+    unrecorded: "graded, but not in the gradebook",
     half_recorded: "the result gives 3 for bang_bang, the gradebook nothing",
     recorded_otherwise: "the result gives 4 for circle, the gradebook 0",
     damaged: "ada.json is damaged",

@@ -70,12 +70,20 @@ def test_a_spring_tells_the_controllers_apart():
 
 
 def test_dry_friction_makes_a_dead_band():
-    """The ideal tip obeys the smallest push; Baxter's gives way to none below its stiction."""
-    forces = (1.0, 2.0, 8.0)
-    ideal, baxter = (experiments.dead_band(p, forces=forces) for p in (lk.IDEAL, lk.BAXTER))
-    assert ideal.width == 0.0
-    assert ideal.pushed == pytest.approx(ideal.force / ideal.stiffness, rel=0.03)
-    assert np.abs(ideal.released).max() < 1e-4
-    assert baxter.width == 1.0
-    assert (baxter.pushed < ideal.pushed).all()
-    assert baxter.released[-1] > 3e-3  # and stays where the friction can hold it
+    """The ideal tip obeys the smallest push; Baxter's does not move below its stiction."""
+    forces = np.array([1.0, 2.0, 8.0])
+    given = forces / TIP_SPRING[2]
+
+    def moved(plant):
+        """Where each push holds the tip, and where the tip rests afterwards, in [m]."""
+        how = {"duration": 2.0, "rest": 2.0, "plant": plant, "names": ("workspace impedance",)}
+        runs = [experiments.push(np.array([0.0, 0.0, force]), **how)[0] for force in forces]
+        ends = [(np.searchsorted(run.t, 2.0 - 1e-9), -1) for run in runs]
+        return np.array([run.displacement[k, 2] for run, k in zip(runs, ends, strict=True)]).T
+
+    pushed, released = moved(lk.IDEAL)
+    assert pushed == pytest.approx(given, rel=0.03) and np.abs(released).max() < 1e-4
+    stiff, stuck = moved(lk.BAXTER)
+    assert list(stiff < 0.1 * given) == [True, False, False]
+    assert (stiff < pushed).all()
+    assert stuck[-1] > 3e-3  # and stays where the friction can hold it

@@ -14,8 +14,7 @@ from ...course.authoring.bundle import Bundle
 from ...course.authoring.layout import Course
 from ...course.bugs import Found, Telling
 from ...course.forms import Measured
-from ...course.messages import summary, wrapped
-from ...course.messages import test_line as of_test
+from ...course.messages import summary, test_line, wrapped
 from ...course.own_arm import DEMO
 from ...course.serialize import question_data
 from ...course.source import parsed
@@ -118,7 +117,9 @@ def _by_the_grader(
     elif hidden:
         if not changed or (as_before and changed == "labkit"):
             yield "\nThe hidden case that decided; do not show it before the term ends:"
-            yield from (wrapped(f"  {of_test(test)}") for test in now.tests if test.name in hidden)
+            yield from (
+                wrapped(f"  {test_line(test)}") for test in now.tests if test.name in hidden
+            )
     elif shown.outcome is Outcome.NOT_COUNTED:
         pass  # a withheld tool decided the mark
     elif not shown.right:

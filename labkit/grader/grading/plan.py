@@ -163,7 +163,7 @@ def _answer(
         f"its cell cannot be read by Python: {cell['broken']}" for cell in cells if cell["broken"]
     ]
     why += [
-        f"its cell begins with %%{cell['magic']}, which keeps what it defines to itself"
+        f"its cell begins with %%{cell['magic']}, so the notebook does not see what it defines"
         for cell in cells
         if cell["magic"]
     ]

@@ -1,8 +1,8 @@
 """The mark of each student, as every page and every table shows it.
 
 A mark comes from the gradebook, so it includes changes by hand, extra credit and deductions for
-lateness.  If the gradebook has no mark, or if it differs from the result, the reason is given
-instead of a mark: nobody gets a 0 that they did not earn.
+lateness.  If the gradebook has no mark, or one that differs from the result of grading, the reason
+is given instead of a mark: nobody gets a 0 that they did not earn.
 """
 
 from __future__ import annotations
@@ -31,7 +31,7 @@ from .mark import Mark, MarkLine
 
 
 def marks_of(course: Course, assignment: str, only: str | None = None) -> list[Mark]:
-    """The marks of everybody in the roster and of all others who handed in, sorted by name.
+    """The marks of everybody in the roster, and of all others with work or a mark, by name.
 
     The rules may have changed since the work was graded, so they are applied to the gradebook
     first.
@@ -39,7 +39,8 @@ def marks_of(course: Course, assignment: str, only: str | None = None) -> list[M
     Args:
         course: The course.
         assignment: The assignment.
-        only: One student, by that student's own hand-in; by default all students.
+        only: The one student to read, without a team's report that another handed in; by default
+            all students.
 
     Raises:
         LabkitError: The gradebook, the roster or the rules cannot be used.
@@ -133,7 +134,7 @@ def _marked(row: Mark, submission: Any, one: Result | Failure | None, assignment
     elif one is not None:
         row = replace(row, result=one)
     if submission is None:
-        why = f"graded and not in the gradebook; {how_to_grade(assignment, row.student)}"
+        why = f"graded, but not in the gradebook; {how_to_grade(assignment, row.student)}"
         return replace(row, missing=row.missing or why)
     if not row.listed:
         who = submission.student
