@@ -72,6 +72,16 @@ def test_late_work_loses_its_share_everywhere(late, capsys):
         assert book.find_submission(NAME, "cleo").late_submission_penalty == 0.0
 
 
+def test_the_class_report_says_how_many_lost_points_for_lateness(late, capsys):
+    """Ben alone, as Cleo has an extension; without names a number below 5 is not told."""
+    named, nameless = ("class-report", NAME, "--names"), ("class-report", NAME)
+    start = "3 handed in, 3 graded"
+    assert f"{start}, 1 with points taken for lateness.\n" in verb(late, capsys, *named)[1]
+    assert f"{start}, <5 with points taken for lateness.\n" in verb(late, capsys, *nameless)[1]
+    (late.root / "course.toml").write_text(RULES.replace("percent_per_day = 10", ""))
+    assert f"{start}.\n" in verb(late, capsys, *named)[1]
+
+
 def test_a_rule_that_changes_changes_marks_that_are_there(late, capsys):
     """An extension granted later counts at once, without grading again."""
     text = RULES.replace("cleo", "ben").replace("percent_per_day = 10", "percent_per_day = 20")

@@ -68,6 +68,7 @@ def report(
         handed_in=len(marks),
         left_out=len(marks) - len(counted),
         open=sum(bool(mark.open) for mark in counted),
+        late=sum(mark.penalty > 0.0 for mark in counted),
         rejected=[f"{who[r.student]}: {_escape(r.unanswered)}" for r in rejected],
         graded=len(graded),
         scores=sorted(
