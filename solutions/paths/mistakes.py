@@ -120,6 +120,12 @@ def rates_without_two_pi(s: float, start: Any, centre: Any) -> lk.Sample:
     return lk.Sample(x, dx / (2.0 * pi), ddx / (4.0 * pi**2))
 
 
+def one_two_pi_in_the_acceleration(s: float, start: Any, centre: Any) -> lk.Sample:
+    """The inner derivative comes out once in the second derivative too."""
+    x, dx, ddx = circle(s, start, centre)
+    return lk.Sample(x, dx, ddx / (2.0 * pi))
+
+
 def drops_the_ramp(path: Path, scaling: Scaling, t: float) -> lk.Sample:
     """The acceleration without the term dx dds: half of the product rule."""
     s, ds, _ = scaling(t)

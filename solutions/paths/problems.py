@@ -410,6 +410,13 @@ CIRCLE = Problem(
             "The chain rule again: dφ/ds = 2π.",
         ),
         Wrong(
+            "one factor 2π in the acceleration",
+            "Your velocity is right. Its derivative with respect to s brings the factor 2π once more: the "
+            "acceleration has (2π)².",
+            mistakes.one_two_pi_in_the_acceleration,
+            "The inner derivative comes out once for each derivative.",
+        ),
+        Wrong(
             "a clockwise circle",
             "Seen from above your circle runs clockwise. Angles grow counter-clockwise: θ = θ₀ + "
             "2πs.",
