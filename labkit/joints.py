@@ -52,7 +52,18 @@ def joint_torques(
     A joint slower than its target receives ``bound``, a faster one ``-bound``, and one at its
     target any torque between them.  No joint ends slower than ``slowest`` or faster than
     ``fastest``, whatever torque that takes.  As a function of speed, the torque is thus a falling
-    staircase, so there is exactly one solution.
+    staircase, so there is exactly one solution.  A joint's state says on which step it is, and so
+    what is prescribed for it, the speed or the torque; the other one is solved for:
+
+    =============  ================  ==============================================
+    state          prescribed        the joint leaves it when
+    =============  ================  ==============================================
+    ``LOW``        speed, slowest    the torque is below bound
+    ``SLIP_UP``    torque, bound     the speed is above target or below slowest
+    ``STICK``      speed, target     the torque is above bound or below -bound
+    ``SLIP_DOWN``  torque, -bound    the speed is below target or above fastest
+    ``HIGH``       speed, fastest    the torque is above -bound
+    =============  ================  ==============================================
 
     Args:
         G: Change of the speeds per torque, symmetric and positive definite, shape (n, n).
@@ -67,21 +78,21 @@ def joint_torques(
         The torques, shape (n,) in [N m], and the state of each joint.
 
     Raises:
-        LabkitError: No solution was found, which no arm's inertias have come close to causing.
+        LabkitError: No solution was found; the inertias of no known arm come near to this.
     """
     end, unit = np.full(len(u), inf), np.eye(len(u))
     goal = np.minimum(np.maximum(target, slowest), fastest)
     stairs = np.array([end, slowest, bound, goal, -bound, fastest, -end]).T.tolist()
     states = list(guess)
     for count in range(_ROUNDS):
-        given = np.array([stair[k] for stair, k in zip(stairs, states, strict=True)])
-        held = np.array([k % 2 == 1 for k in states])  # speed prescribed, else torque
-        rows = np.where(held[:, None], G, unit)
-        y = _dgesv()(rows, np.where(held, given - u, given))[2]
+        wanted = np.array([stair[k] for stair, k in zip(stairs, states, strict=True)])
+        of_speed = np.array([k in (LOW, STICK, HIGH) for k in states])
+        rows = np.where(of_speed[:, None], G, unit)
+        y = _dgesv()(rows, np.where(of_speed, wanted - u, wanted))[2]
         v, wrong = u + G @ y, False
         for i, (k, torque, speed) in enumerate(zip(states, y.tolist(), v.tolist(), strict=True)):
             before, after = stairs[i][k - 1], stairs[i][k + 1]
-            if k % 2:
+            if k in (LOW, STICK, HIGH):
                 move = (torque < after) - (torque > before)
             else:
                 move = (speed > after + _ROUNDING) - (speed < before - _ROUNDING)
@@ -127,11 +138,13 @@ class Drive(NamedTuple):
         tau: Prescribed torque, shape (n,) in [N m].
         speed: Speeds that are held in addition, shape (n,) in [rad/s].
         bound: Largest torque of motors or dry friction that holds them, shape (n,) in [N m].
+        holds: Whether any bound is greater than 0.
     """
 
     tau: Array
     speed: Array
     bound: Array
+    holds: bool = True
 
 
 class Touch(NamedTuple):
@@ -182,7 +195,7 @@ class Joints:
         self._signs, self._sign = signs, np.array(signs)
         self._held = np.array([k == STICK for k in states])
         self._columns = self._held[None, :]
-        self._beside = LOW not in states and HIGH not in states
+        self._clear_of_stops = LOW not in states and HIGH not in states
 
     def solve(self, q: Array, dq: Array, drive: Drive, touches: list[Touch]) -> Given:
         """Compute the torques and accelerations of the joints in this step.
@@ -199,14 +212,14 @@ class Joints:
         tau = drive.tau if self._viscous is None else drive.tau - self._viscous * dq
         angles = q.tolist()
         if not touches and all(map(lt, self._low, angles)) and all(map(lt, angles, self._high)):
-            if drive.bound is self._nothing:
-                return Given(drive.bound, tau, None)
+            if not drive.holds:
+                return Given(self._nothing, tau, None)
             if self._sticking:  # held by their motors: common, and cheap to compute
                 a = (drive.speed - dq) / self._dt
                 y = self._model.inverse_dynamics(q, dq, a) - tau
                 if all(map(le, map(abs, y.tolist()), drive.bound.tolist())):
                     return Given(y, tau + y, a)
-            if self._beside:
+            if self._clear_of_stops:
                 return self._slide(q, dq, drive, tau)
         return self._solve(q, dq, drive, touches, tau)
 
@@ -218,9 +231,9 @@ class Joints:
         bound, dt = drive.bound, self._dt
         wanted = (drive.speed - dq) / dt
         free, inverse = self._model.free_motion(q, dq, tau)
-        given = np.where(self._held, wanted - free, self._sign * bound)
+        target = np.where(self._held, wanted - free, self._sign * bound)
         rows = np.where(self._columns, inverse, self._unit).T  # LAPACK's order: 1 us faster
-        y = _dgesv()(rows, given, 1, 1)[2]
+        y = _dgesv()(rows, target, 1, 1)[2]
         a = free + inverse @ y
         slack = _ROUNDING / dt
         for sign, torque, most, made, meant in zip(

@@ -38,8 +38,8 @@ class Motors:
         self._dt, self._plant, self._own = dt, plant, own
         self._effort, self._speed = own.robot.effort.tolist(), own.robot.speed.tolist()
         self._nothing = own.robot.zeros
-        stiction = plant.each("stiction", own.robot.n)
-        self._stiction = stiction if stiction.any() else self._nothing
+        self._stiction = plant.each("stiction", own.robot.n)
+        self._sticks = bool(self._stiction.any())
 
     def follow(self, command: Command) -> None:
         """Follow a command, clipped to the limits, from the next physics step on."""
@@ -65,7 +65,7 @@ class Motors:
             if self._plant.gravity_compensation:  # the arm carries its own weight
                 total, cut = _cut(total + self._own.gravity(q), self._effort)
                 self.saturated |= cut
-            return Drive(total, self._nothing, self._stiction)
+            return Drive(total, self._nothing, self._stiction, self._sticks)
         if self.kind is JointPosition:
             speed = self._approach(q)
         elif self._plant.velocity_lag:

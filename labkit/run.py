@@ -29,7 +29,9 @@ Controller = Callable[[State, Any], Command]
 """Any function of the state and the target's sample; it need not inherit or register anything."""
 
 RUNAWAY = 50.0
-"""Joints faster than this, in [rad/s], are out of control; Baxter's fastest are limited to 4."""
+"""An arm whose joint speeds are a longer vector than this, in [rad/s], is out of control.
+
+The fastest of Baxter's joints are limited to 4 rad/s."""
 
 
 def run(
@@ -98,26 +100,26 @@ def _loop(
     recorder: Recorder,
 ) -> None:
     """Go through the ticks up to the ``last`` one, and leave the arm at rest."""
-    robot, who, whom, target = driven.robot, name_of(controller), samples.name, samples.target
+    robot, target, name = driven.robot, samples.target, name_of(controller)
     lost = driven.lost_ticks(last + 1)
-    kind, k, asked = None, 0, who
+    kind, k, running = None, 0, name
     often = max(1, round(0.005 / driven.period))  # every 5 ms, in which no arm gets far
     t = driven.begin()
     try:
         while True:
-            asked = whom
-            seen = driven.observe()
+            running = samples.name
+            actual, reported, _ = seen = driven.observe()
             sample = samples.checked(target(t), t)
-            asked = who
-            command = controller(seen[1], sample)
+            running = name
+            command = controller(reported, sample)
             if type(command) is not kind:
-                recorder.kind = kind = _command_type(command, kind, who, t)
+                recorder.kind = kind = _command_type(command, kind, name, t)
             if command.value.shape != robot.zeros.shape:
                 raise ShapeError(kind.__name__, robot.zeros.shape, command.value.shape)
             recorder.keep(t, seen, command, sample)
-            dq = seen[0].dq
+            dq = actual.dq
             if not k % often and not dq.dot(dq) <= RUNAWAY**2:  # a NaN runs away too
-                raise Diverged(_runaway(robot, dq, who, t))
+                raise Diverged(_runaway(robot, dq, name, t))
             if k >= last:
                 driven.stop()  # an arm lost in this call still leaves its log
                 break
@@ -135,9 +137,8 @@ def _loop(
         raise
     except Exception as error:
         samples.read(samples.latest, t)  # was it the target that broke the controller?
-        raise ControllerError(
-            f"{asked} failed at t = {t:.3f} s, tick {k}: {_reason(error, samples.latest, robot.n)}"
-        ) from error
+        why = _reason(error, samples.latest, robot.n)
+        raise ControllerError(f"{running} failed at t = {t:.3f} s, tick {k}: {why}") from error
     finally:
         driven.stop()
 
@@ -220,8 +221,8 @@ def _ticks(target: Target, duration: float | None, period: float) -> int:
         duration = getattr(target, "duration", None)
         if duration is None:
             raise OutOfRange(
-                f"how long? the target {name_of(target)} has no duration; give duration=..., "
-                "unless target and controller were swapped: run(arm, target, controller)"
+                f"the target {name_of(target)} has no duration; give duration=..., unless target "
+                "and controller were swapped: run(arm, target, controller)"
             )
     return round(as_number(duration, "duration", least=0.0) / period + 1e-9) + 1
 

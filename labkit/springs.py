@@ -54,4 +54,4 @@ class Springs:
         self._theta = self._theta + dt * self._speed
         spring = self._k * (self._theta - q) + self._d * (self._speed - dq)
         nothing = np.zeros(len(q))
-        return drive.tau + held, Drive(spring, nothing, nothing)
+        return drive.tau + held, Drive(spring, nothing, nothing, holds=False)

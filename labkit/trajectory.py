@@ -140,8 +140,8 @@ def _check_path(path: Any) -> None:
 class Chain:
     """Trajectories one after another.
 
-    Where two trajectories meet, the later one counts.  Each starts and ends at rest, so the chain
-    is smooth in position and velocity.
+    Where two trajectories meet, the later one counts.  The chain is smooth in position and velocity
+    if each begins at rest, where the one before ends at rest; nothing checks this.
 
     Attributes:
         parts: The trajectories, in order; a chain among them is replaced by its own parts.

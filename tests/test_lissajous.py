@@ -64,7 +64,7 @@ def planar(tmp_path):
 
 
 def test_the_derivatives_of_the_figure_are_its_slopes():
-    """Velocity and acceleration by s, at places all along the figure."""
+    """Velocity and acceleration are derivatives with respect to s, all along the figure."""
     for s in np.linspace(0.05, 0.95, 7):
         assert_slopes(Lissajous([0.1, 0.2, 0.3]), s)
 

@@ -169,7 +169,7 @@ def _outcome(results: Sequence[TestResult]) -> Outcome:
     """
     outcomes = {result.outcome for result in results}
     shown = {result.outcome for result in results if not result.hidden}
-    if Outcome.NOT_ATTEMPTED in shown <= {Outcome.NOT_ATTEMPTED, Outcome.NOT_TRIED}:
+    if Outcome.NOT_ATTEMPTED in shown and not shown - {Outcome.NOT_ATTEMPTED, Outcome.NOT_TRIED}:
         return Outcome.NOT_ATTEMPTED
     if len(outcomes) > 1:
         outcomes.discard(Outcome.NOT_TRIED)

@@ -44,7 +44,7 @@ def test_two_folders_of_one_student_are_named_and_collecting_again_keeps_both(
     handed_in_twice(bare, tmp_path, "1", "2")
     assert counting(bare) == {"Ada-Lovelace-42": "1", "ada": "2"}
     _, (said,) = import_list(bare, tmp_path / "list.csv")
-    assert "Ada-Lovelace-42/01_paths: left there, as the same student has work in ada too" in said
+    assert "Ada-Lovelace-42/01_paths: left there, because it belongs in ada, which has" in said
     assert counting(bare) == {"Ada-Lovelace-42": "1", "ada": "2"}
     known = {folder: one.key for folder, one in lms_users(bare, NAME).items()}
     assert known == {"Ada-Lovelace-42": ("moodle", "42"), "ada": ("files", "ada")}
@@ -127,8 +127,23 @@ def test_two_students_of_the_roster_are_never_joined(bare, tmp_path):
     worksheet = tmp_path / "worksheet.csv"
     worksheet.write_text("Identifier,Full name,Email address\nParticipant 5,Bo Li,li2@x\n")
     said, *_ = import_list(bare, worksheet, NAME)[1]
-    assert "submitted/li1/01_paths: left there, as the same student has work in li2 too" in said
+    assert "submitted/li1/01_paths: left there, because it belongs in li2, which has" in said
     assert counting(bare) == {"li1": "5", "li2": "6"}
+
+
+def test_two_students_who_have_each_others_work_get_it_by_collecting_again(bare, tmp_path):
+    """A worksheet that swaps two numbers moves nothing, and nobody is told to delete anything."""
+    save_roster(bare, Roster((Student("li1", "Li", "Wei"), Student("li2", "Bo", "Li", "li2@x"))))
+    people = [(("Li Wei", 5), "x.ipynb", "5"), (("Bo Li", 6), "x.ipynb", "6")]
+    source = from_moodle(tmp_path / "1.zip", people)
+    take(bare, source)
+    rows = "Participant 5,Bo Li,li2@x\nParticipant 6,Li Wei,\n"
+    (tmp_path / "worksheet.csv").write_text(f"Identifier,Full name,Email address\n{rows}")
+    said = " ".join(import_list(bare, tmp_path / "worksheet.csv", NAME)[1])
+    assert said.count("left there") == 2 and "collect the same downloads again" in said
+    assert "delete" not in said
+    take(bare, source)
+    assert counting(bare) == {"li1": "6", "li2": "5"}
 
 
 def test_a_folder_of_nobody_in_the_roster_is_named(bare, tmp_path):

@@ -1,4 +1,4 @@
-"""One student's mark for an assignment, line by line, as every page shows it."""
+"""A mark as a value: a student's points for an assignment, line by line."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The mark of each student, as every page and every table shows it.
+"""How marks are read from the gradebook, for every page and every table.
 
 A mark comes from the gradebook, so it includes changes by hand, extra credit and deductions for
 lateness.  If the gradebook has no mark, or one that differs from the result of grading, the reason

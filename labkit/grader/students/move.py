@@ -72,7 +72,7 @@ def move_work(course: Course, assignment: str, moves: Mapping[str, str]) -> list
         if not _work(course, pair[0], assignment):
             moved |= [pair]
     _move_marks(course, assignment, moved)
-    said: list[Failure] = []
+    said, roster = list[Failure](), read_roster(course)
     for old, new in moves.items():
         result = Results(course, assignment).path(old)
         left = [] if old in moved else _work(course, old, assignment)
@@ -81,12 +81,12 @@ def move_work(course: Course, assignment: str, moves: Mapping[str, str]) -> list
         if left:
             names = " and ".join(str(path.relative_to(course.root)) for path in left)
             says = (
-                f"{names}: left there, as the same student has work in {new} too; to keep "
-                "both, collect the same downloads again, which brings each file to its student; "
-                f"then give {new} again what {old} was given by hand in formgrader, and move what "
-                "was left away"
+                f"{names}: left there, because it belongs in {new}, which has work too; collect "
+                "the same downloads again, which brings each file to its student, and grade; then "
+                f"give {new} again what {old} was given by hand in formgrader"
             )
-            said.append(Failure(old, says))
+            rest = "" if old in roster else f", and delete {names}"
+            said.append(Failure(old, says + rest))
     return said
 
 
