@@ -6,6 +6,7 @@ import subprocess
 from importlib.util import find_spec
 from pathlib import Path
 
+import modules
 import pytest
 
 import labkit
@@ -24,6 +25,7 @@ PAGES = [
         "CHANGELOG.md",
         "book/architecture.md",
         "solutions/README.md",
+        "labkit/README.md",
         "labkit/grader/README.md",
     )
 ]
@@ -125,3 +127,15 @@ def test_every_module_of_the_grader_has_its_line():
         files = {path.stem for path in (grader / folder).glob("[a-z]*.py")}
         assert told[folder] <= files, folder
         assert told[folder] == files or folder == "sandbox", files - told[folder]
+
+
+def test_the_table_of_files_is_made_from_their_docstrings():
+    """After a docstring or a file has changed, `python tests/modules.py` writes the table again."""
+    assert modules.PAGE.read_text(encoding="utf-8") == modules.table()
+
+
+def test_the_graders_page_names_each_of_its_files():
+    """No file of the grader is missing from the page that says what each is for."""
+    home = ROOT / "labkit/grader"
+    page = set(re.findall(r"\w+", (home / "README.md").read_text(encoding="utf-8")))
+    assert not {path.stem for path in home.rglob("[a-z]*.py")} - page

@@ -1,4 +1,4 @@
-r"""Estimation: combining several noisy readings into a better one.
+r"""Estimation: combining several noisy readings of a tag into a better one.
 
 Sources: the Kalman filter, Thrun, Burgard & Fox, *Probabilistic Robotics*, section 3.2; constant
 velocity under white acceleration, Bar-Shalom, Li & Kirubarajan, *Estimation with Applications*,
