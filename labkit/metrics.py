@@ -1,6 +1,7 @@
 r"""Numbers from a log: how well the arm followed its target, and at what cost.
 
-An error is always target minus actual.
+An error is always target minus actual.  A target of `Sample` with as many numbers as the arm has
+joints is taken for joint angles; on an arm with three joints, let points be poses (`PosePath`).
 """
 
 from __future__ import annotations
