@@ -61,10 +61,9 @@ class HandIn:
         lines = [f"[fix] {text}" for text in self.problems]
         lines += [f"[note] {text}" for text in self.notes]
         lines += [f"  {line}" for line in self.lines]
-        lines += [
-            f"  {name}: {words} words; your instructor will read it"
-            for name, words in self.texts.items()
-        ]
+        for name, n in self.texts.items():
+            said = f"{_words(n)}; your instructor will read it" if n else "not written"
+            lines.append(f"  {name}: {said}")
         right = {name for name, v in self.verdicts.items() if v is not None and v.right}
         tasks = self.verdicts.keys() - set(self.predictions)
         counts = []
@@ -80,6 +79,8 @@ class HandIn:
             if self.problems
             else f"the notebook can be handed in as it is{ran}."
         )
+        if empty := [name for name, n in self.texts.items() if not n]:
+            end += f" Without a text, {' and '.join(empty)} will earn nothing."
         return "\n".join([*lines, f"{self.assignment}: {end}"])
 
     def for_the_forum(self) -> str:
@@ -155,11 +156,12 @@ def examine(path: Path) -> HandIn:
     for above, cell in pairwise(cells):
         if kind(cell) == "why" and grade_id(cell):
             words = texts[grade_id(cell)] = len(cell["source"].replace(PLACEHOLDER, "").split())
+            has = f"{grade_id(cell)} has {_words(words)}"
             if words < WORDS[0]:
-                notes.append(f"{grade_id(cell)} has {words} words; it needs at least {WORDS[0]}")
+                notes.append(f"{has}; it needs at least {WORDS[0]}")
             most = re.search(r"(\d+) words", above["source"])
             if most and words > int(most[1]):
-                notes.append(f"{grade_id(cell)} has {words} words; it may have at most {most[1]}")
+                notes.append(f"{has}; it may have at most {most[1]}")
     wrong = [name for name, v in verdicts.items() if v and not v.right]
     for says, predicted in (
         ("not yet right: {}; the parts that are right count all the same", False),
@@ -168,6 +170,10 @@ def examine(path: Path) -> HandIn:
         if which := [name for name in wrong if (name in predictions) == predicted]:
             notes.append(says.format(", ".join(which)))
     return HandIn(name, tuple(problems), tuple(notes), verdicts, predictions, texts)
+
+
+def _words(count: int) -> str:
+    return f"{count} word{'s' * (count != 1)}"
 
 
 def _on_the_public_arm(

@@ -87,6 +87,8 @@ class Close:
         if isinstance(expected, dict):
             return self._differ_dict(answer, expected)
         if isinstance(expected, Sample | PoseSample):
+            if isinstance(answer, np.ndarray) and answer.ndim == 1:  # the position alone
+                return Difference(Kind.PARTS, part, found=value(answer), parts=expected._fields)
             return self._differ_each(answer, expected, expected._fields)
         if isinstance(expected, tuple | list):
             names = self.parts or tuple(f"part {k + 1}" for k in range(len(expected)))

@@ -168,7 +168,7 @@ def mistake_name(known: Misconception) -> str:
 
 def failures(failed: int, of: int) -> str:
     """How many tests failed."""
-    return f"{failed} of {of} tests failed"
+    return f"{failed} of {of} test{'s' * (of != 1)} failed"
 
 
 def _helps(verdict: Verdict) -> Iterator[str]:

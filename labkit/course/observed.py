@@ -104,8 +104,8 @@ def _probed(
 
 
 _SHARES = {
-    -1.0: "What `{}` adds to your answer has the other sign: if {}, it is right.",
-    2.0: "What `{}` adds to your answer is there twice: if {}, it is right.",
+    -1.0: "The term with `{}` has the wrong sign: if {}, your answer is right.",
+    2.0: "The term with `{}` is there twice: if {}, your answer is right.",
 }
 
 

@@ -224,16 +224,16 @@ def hint(name: str, level: int = 1) -> None:
         names = ", ".join(desk().questions)
         print(wrapped(f"There are no hints for {name!r:.60}. The names are {names}."))
         return
-    hints = desk().question(name).hints
+    hints, command = desk().question(name).hints, ""
     if not hints:
         text = f"{name} has no hints."
     elif not isinstance(level, int) or not 1 <= level <= len(hints):
         assignment = read_checks(Path.cwd())["assignment"]
         text = (
             f"{name} has {len(hints)} hints, and no hint {level!r}. If none of them helps, ask the "
-            "instructor or a forum. This line in a new cell prints what to send: "
-            f"!labkit submit-check --forum {assignment}.ipynb"
+            "instructor or a forum. The next line, in a new cell, prints what to send:"
         )
+        command = f"!labkit submit-check --forum {assignment}.ipynb"
     elif 1 < level == len(hints) and name not in desk().attempted:
         text = (
             f"Hint {level} of {name} opens after an attempt: write your best answer, run the "
@@ -244,6 +244,8 @@ def hint(name: str, level: int = 1) -> None:
         text = f'(hint("{name}", {level + 1}) says more)' if level < len(hints) else ""
     if text:
         print(wrapped(text))
+    if command:
+        print(command)  # on a line of its own, to be copied
 
 
 def use(

@@ -158,6 +158,8 @@ class Motion:
             words.append(
                 f"Tip error is {_mm(e[0])} at the start, largest at t = {self.t[peak]:.2f} s with"
                 f" {_mm(e[peak])}, and {_mm(e[-1])} at the end."
+                if _mm(e[peak]) != _mm(0.0)
+                else f"Tip error is {_mm(0.0)} throughout."
             )
         if self.tau is not None:
             at, joint = np.unravel_index(np.abs(self.tau).argmax(), self.tau.shape)

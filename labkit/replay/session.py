@@ -62,8 +62,7 @@ class Session(Simulated):
         self._hand, self._pull, self._thread = Hand(arm), Pull(arm), threading.Thread()
         self._usual, self._q0 = arm.plant, arm.truth().q.copy()
         self._inbox: SimpleQueue[dict[str, Any]] = SimpleQueue()
-        self.logs: list[Log] = []
-        self.state, self.note = "ready", ""
+        self.logs, self.state, self.note = list[Log](), "ready", ""
         self._within = self._keep = self._over = self._again = False  # of a run
         self._steps_left, self._heard, self._limit = 0, 0.0, ""
         self._changes: list[Callable[[], Any]] = []
@@ -121,6 +120,7 @@ class Session(Simulated):
         self._within, self._over, self._again, self._keep = True, False, False, False
         self.plant = self.arm.plant
         self._clock.set(0.0)
+        self.around.begin_run()
         try:
             log = run_driven(self, self.around.target, self._law, LONGEST)
         except BaseException as error:

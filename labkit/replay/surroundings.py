@@ -29,12 +29,17 @@ class Surroundings:
 
     def __init__(self, arm: Arm, target: Any) -> None:
         """Take the target and the things in the world of ``arm``."""
-        self._arm, self._target, self.since = arm, target, 0.0
+        self._arm, self._target, self.since, self._made = arm, target, 0.0, arm.world.t
         self._shift: Array = np.zeros(3)
         self._latest: Any = None
         self._goals: dict[int, Array] = {}
         duration = getattr(target, "duration", None)
         self._round = duration if duration and _closed(target, duration) else None
+
+    def begin_run(self) -> None:
+        """Let a target without an end, such as a tag's, go on with the time of the world."""
+        if not hasattr(self._target, "duration"):
+            self.since = self._arm.world.t - self._made
 
     def begin_again(self) -> None:
         """Go back to the target's start, if it has one; a tag's target continues with its tag."""

@@ -91,8 +91,8 @@ def live(
         }
     )
     widget.words = (
-        f"{title}, held by {' and '.join(laws)}: run this cell, press Start, and pull at the arm "
-        "with the mouse or with the buttons below it."
+        f"{title}. The controller is {' or '.join(laws)}. Run this cell, press Start, and pull at "
+        "the arm with the mouse or with the buttons below it."
     )
     elbow = arm.model.point_on(first["q"], arm.robot.n // 2, np.zeros(3))[0]
     widget.picture = lambda: still(

@@ -303,7 +303,7 @@ def blended(times, every=0.5, ahead=1.0):
             start, began = (samples[-1] if samples else start), t
             place = np.array([tag_place(t) + 0.05 * ahead])
             goal = lk.Sample(place, np.array([0.05]), zero)
-        samples.append(my_blend(t - began, start, goal, ahead))
+        samples.append(lk.Sample(*my_blend(t - began, start, goal, ahead)))
     return samples
 
 
@@ -415,7 +415,7 @@ class Follower:
         )
 
     def sample(self, t):
-        return my_blend(t - self.began, self.start, self.goal, self.ahead)
+        return lk.Sample(*my_blend(t - self.began, self.start, self.goal, self.ahead))
 
 
 def position_mode(state, target):
@@ -453,7 +453,7 @@ lk.plotting.show(
 )
 
 # %% [markdown]
-# If all functions are yours, the tip stays 5 to 6 mm outside the circle. The cause is neither the arm nor
+# If all functions are yours, the tip stays about 6 mm outside the circle. The cause is neither the arm nor
 # noise: after each reading, which is 0.1 s old, the reference aims at where the tag will be in 0.45 s if it moves
 # straight on. A tag on a circle does not move straight on: in these 0.55 s it leaves its tangent by
 # $v^2 t^2 / 2 r$, which is 10 mm. The next reading bends the reference anew before it gets there. What would
@@ -481,12 +481,16 @@ lk.replay.show(lk.replay.motion_of(log, "The hand and the tag", label="the hand"
 
 # %% [markdown]
 # Now move the tag yourself. Press *Start* and drag it with the mouse: the hand follows, some tenths of a
-# second behind, and overshoots where you turn. Drag it out of the camera's sight: what does the prediction
-# do? (While this runs, only this cell can use the arm; *Stop* releases it.)
+# second behind, and overshoots where you turn. Where it cannot reach, it waits. Drag the tag out of the
+# camera's sight: what does the prediction do? (While this runs, only this cell can use the arm; *Stop* releases it.)
 
 # %%
 def by_camera(state, target):
-    return lk.JointPosition(arm.model.inverse_kinematics(target.pose, state.q, posture=arm.robot.ready))
+    try:
+        q = arm.model.inverse_kinematics(target.pose, state.q, posture=arm.robot.ready)
+    except lk.errors.Unreachable:  # wait until the tag comes back
+        q = state.q
+    return lk.JointPosition(q)
 
 
 arm.reset(arm.robot.ready)

@@ -47,7 +47,7 @@ def test_an_untouched_notebook_is_whole_and_not_run(folder):
     assert "  bang_bang: not run" in str(found).splitlines()
     assert str(found).endswith(
         "0 of 6 tasks were right, as far as can be tested here, and 0 of 2 predictions were "
-        "committed."
+        "committed. Without a text, why_twice_the_time will earn nothing."
     )
 
 
@@ -295,7 +295,10 @@ def test_words_of_a_text_are_counted_without_the_placeholder(folder):
     found = examine(folder / "01_paths.ipynb")
     assert found.texts and set(found.texts.values()) == {0}
     assert any(f"{name} has 0 words; it needs" in str(found) for name in found.texts)
+    assert all(f"  {name}: not written" in str(found) for name in found.texts)
+    assert str(found).endswith(f" Without a text, {' and '.join(found.texts)} will earn nothing.")
     found = with_texts_of(folder, 30)
+    assert "will earn nothing" not in str(found)
     assert all(
         f"  {name}: 30 words; your instructor will read it" in str(found) for name in found.texts
     )

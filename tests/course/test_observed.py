@@ -53,7 +53,7 @@ def seen(problem, function):
             lambda state, target, *, kp, kd: law(state, target, kp=kp, kd=kd) + target.acceleration,
             "changes when `target.acceleration` is set to 0",
         ),
-        (lambda state, target, *, kp, kd: law(state, target, kp=kp, kd=-kd), "has the other sign:"),
+        (lambda state, target, *, kp, kd: law(state, target, kp=kp, kd=-kd), "has the wrong sign:"),
     ],
 )
 def test_the_cause_is_seen_in_the_numbers(function, says):

@@ -200,11 +200,11 @@ def test_a_prediction_is_committed_and_not_called_right(result):
 
 def test_the_tests_are_folded_where_the_mistake_is_named(result):
     """Where a sentence says what is wrong, the numbers wait; elsewhere they are all there is."""
-    assert "<details open><summary>1 of 1 tests failed</summary>" in page(result)
+    assert "<details open><summary>1 of 1 test failed</summary>" in page(result)
     first, *rest = result.questions
     named = replace(first.verdict, mistake=Misconception("too soft", "Pull harder."))
     told = page(replace(result, questions=(replace(first, verdict=named), *rest)))
-    assert "<details><summary>1 of 1 tests failed</summary>" in told
+    assert "<details><summary>1 of 1 test failed</summary>" in told
 
 
 def test_policy_names_each_script_and_nothing_else(result):

@@ -573,3 +573,27 @@ def test_only_a_target_that_moves_has_a_path():
             np.testing.assert_allclose(wide, [0.2, 0.2, 0.0], rtol=0, atol=1e-3)
         for target in (lk.Hold(T_READY, 1.0), lambda t: poses(t % 4.0)):
             assert Surroundings(arm, target).path() == []
+
+
+def test_an_endless_targets_time_goes_on_with_the_worlds(live):
+    """A law that fails, and Reset, do not set a tag's follower back in time."""
+    asked = []
+
+    def follow(t):
+        asked.append(t)
+        return lk.Sample(READY, np.zeros(7), np.zeros(7))
+
+    def fails_once(state, target):
+        if len(asked) == 60:
+            raise ValueError("once")
+        return springy(state, target)
+
+    session, frames = live({"law": fails_once}, follow)
+    session.tell({"kind": "go"})
+    until(frames, lambda f: "failed at" in f["note"])
+    session.tell({"kind": "go"})
+    until(frames, lambda f: f["t"] > 1.0)
+    session.tell({"kind": "reset"})
+    until(frames, lambda f: f["t"] > 1.5)
+    session.close()
+    assert asked[0] == 0.0 and min(np.diff(asked)) > -1e-9
