@@ -159,7 +159,9 @@ def _what_to_do(form: Form) -> str:
         case Choose():
             return "Choose"
         case Curve(_, along, height):
-            return escape(f"Set each slider to the {height} where the {along} is its number")
+            return escape(
+                f"The number at each slider is the {along}: set the slider to the {height} there"
+            )
     return escape(f"Type {form.how}")
 
 
