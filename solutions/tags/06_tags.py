@@ -463,7 +463,7 @@ lk.plotting.show(
 # well the arm follows once the reference is smooth.
 
 # %%
-lk.replay.show(lk.replay.motion_of(log, "The hand and the tag", label="the hand"))
+lk.replay.show(lk.replay.motion_of(log, "The arm in the same run", label="the hand"))
 
 # %% [markdown] why="why_round_and_round"
 # When did you see the prediction help and when not, and why? Say what the predictor believes about the tag,

@@ -76,7 +76,7 @@ def feedforward(state, target, **gains):
 
 my_joint_velocity_pd = use("joint_velocity_pd", joint_velocity_pd, feedforward)
 yours = my_joint_velocity_pd is joint_velocity_pd
-joint_law = "joint velocity PD" if yours else "feed-forward, a stand-in"
+joint_law = "joint velocity PD" if yours else "feed-forward (a stand-in)"
 
 ideal, baxter = lk.Arm("left", lk.IDEAL), lk.Arm("left", lk.BAXTER, seed=1)
 model, q0 = ideal.model, ideal.robot.ready
@@ -342,7 +342,7 @@ def tip_feedforward(state, target, model, *, kp, damping):
 
 my_workspace_velocity_pd = use("workspace_velocity_pd", workspace_velocity_pd, tip_feedforward)
 yours = my_workspace_velocity_pd is workspace_velocity_pd
-workspace_law = "workspace velocity PD" if yours else "feed-forward of the tip, a stand-in"
+workspace_law = "workspace velocity PD" if yours else "feed-forward of the tip (a stand-in)"
 
 
 def in_the_workspace(state, target):
@@ -526,10 +526,10 @@ lk.replay.show(
 # %% [markdown]
 # Now the same in real time, and you can push. Press *Start* and try to drag the arm off its circle. You hardly
 # can: velocity mode is stiff, and the motors give all they have to keep the speed. Only where a motor reaches its
-# torque limit does the arm give way: push at the tip with 60 N along +y. Now choose
-# a kp of 30 and raise *state_delay* until the arm begins to swing.
-# Repeat this with half the kp: how much more delay can the arm bear? (The sentence below the picture begins with
-# what moves the arm: your controller, or a stand-in. The stand-in has no kp.)
+# torque limit does the arm give way: push at the tip with 60 N along +y. Now choose a kp of 30 and raise
+# *state_delay* until the arm begins to swing. Repeat this with half the kp: how much more delay can the arm bear?
+# (The line beside or below the picture begins with what moves the arm: your controller, or a stand-in. The
+# stand-in has no kp.)
 
 # %%
 def circling(state, target, kp):
