@@ -370,7 +370,7 @@ OPEN_LOOP = Problem(
             "Dividing by s integrates.",
         ),
         Wrong(
-            "the gain below",
+            "the gain in the denominator",
             "kp multiplies the loop, so it belongs in the numerator.",
             mistakes.Loop(lambda kp, lag: ([1.0], [kp * lag, kp, 0.0])),
             "A larger gain makes the open loop larger.",
@@ -553,7 +553,7 @@ KP_FOR_MARGIN = Problem(
             "Say the unit of every number.",
         ),
         Wrong(
-            "half of it",
+            "half of the gain",
             "At the crossover |L| = 1 gives kp = ω √(1 + (ω·lag)²), without a factor 1/2.",
             mistakes.Margin(gain=lambda w, lag, delay: 0.5 * w * sqrt(1.0 + (lag * w) ** 2)),
             "At the crossover the loop's gain is 1.",

@@ -402,7 +402,7 @@ OPERATIONAL_INERTIA = Problem(
             "Say what each factor does to a wrench.",
         ),
         Wrong(
-            "below zero",
+            "a negative inertia",
             "Your inertia is negative. An inertia is positive: check the sign.",
             mistakes.MassesOf(lambda M, J: -answers.operational_inertia(M, J)),
             "An inertia is positive.",
@@ -1055,7 +1055,7 @@ SHAPED_IMPEDANCE = Problem(
             "Ask of each term whether another term contains it already.",
         ),
         Wrong(
-            "the weight taken off",
+            "the weight subtracted",
             "Gravity pulls down and the motors hold against it, so add model.gravity.",
             mistakes.ShapedLaw(weight=-1.0),
             "model.gravity is the torque that holds the arm.",
@@ -1285,7 +1285,7 @@ APPARENT_STIFFNESS = Problem(
             "Say which row of a solution belongs to which unknown.",
         ),
         Wrong(
-            "sizes of forces",
+            "the signs of the stiffness dropped",
             "Numbers in a stiffness matrix may be negative: keep their signs.",
             mistakes.FitOf(
                 lambda F, x: np.abs(mistakes.solved(mistakes.about(x), mistakes.about(F)))

@@ -245,7 +245,7 @@ TAG_POSE = Problem(
             "Say which pixel belongs to which corner.",
         ),
         Wrong(
-            "the principal point taken off twice",
+            "the principal point subtracted twice",
             "solvePnPGeneric subtracts the principal point itself, with the camera's matrix: pass "
             "the pixels as they are.",
             mistakes.Seen(pixels=lambda p: p - np.array([320.0, 240.0])),
@@ -804,7 +804,7 @@ PREDICT = Problem(
             "F P Fᵀ + Q.",
         ),
         Wrong(
-            "the noise taken off",
+            "the noise subtracted",
             "Pushes make the belief less certain: add Q, do not subtract it.",
             mistakes.Carried(noise=-1.0),
             "A belief becomes less certain with time.",

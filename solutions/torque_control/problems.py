@@ -644,7 +644,7 @@ COMPUTED_TORQUE = Problem(
             "Evaluate the model at the arm's own angles.",
         ),
         Wrong(
-            "the weight taken off",
+            "the weight subtracted",
             "Gravity pulls down and the motors hold against it, so add model.gravity.",
             mistakes.TorqueBy(lambda x: x.M @ x.wish + x.drift - x.g),
             "model.gravity is the torque that holds the arm.",
