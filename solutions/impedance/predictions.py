@@ -5,17 +5,17 @@ from labkit.course import Choose, Identification, Measured, Number, Prediction
 PREDICTIONS = (
     Prediction(
         "wall_force",
-        "The target lies 3 cm behind a wall. The position mode would press with all that its motors "
-        "have. With springs of 300 N/m at the tip, and 3,333 N/m of the wall and the finger's tip "
-        "together, how hard does the tip press?",
+        "The target is 3 cm behind the surface of a wall. The position mode would press with all "
+        "the force that its motors have. With springs of 300 N/m at the tip, and 3,333 N/m of the "
+        "wall and the finger's tip together, how hard does the tip press?",
         Number("N", 0.0, 100.0),
         truth=8.3,
     ),
     Prediction(
         "four_times_the_mass",
-        "A hand pushes with 10 N and keeps pushing. The tip behaves as if it weighed 5 kg, then as if "
-        "it weighed 20 kg. Its springs of 300 N/m stay the same, and the damping is critical for either "
-        "mass. After two seconds, how far away is the heavy tip?",
+        "A hand pushes with 10 N and keeps pushing. The tip behaves as if it weighed 5 kg, then "
+        "as if it weighed 20 kg. Its springs of 300 N/m stay the same, and the damping is "
+        "critical for either mass. After two seconds, how far from its target is the heavy tip?",
         Choose(
             {
                 "a": "a quarter as far as the light one",
@@ -28,15 +28,17 @@ PREDICTIONS = (
     ),
     Identification(
         "my_payload",
-        "Your arm carries its own weight, but somebody has left something in its gripper. How heavy "
-        "is it? Its joints have dry friction, so a single pose tells little.",
+        "Your arm carries its own weight, but somebody has left something in its gripper. How "
+        "heavy is that object? The arm's joints have dry friction, so a single pose tells you "
+        "little.",
         Measured("payload", "kg", 0.0, 3.0, 0.12),
         truth=0.334,
         form="one number, in kg",
         points=3.0,
         hints=(
-            "What you must command at rest is the load's torque, J^T times its weight, and friction. "
-            "Which of the two changes its sign when you come from the other side?",
+            "At rest the torque that you must command is that of the load, J^T times the load's "
+            "weight, plus friction. Which of the two changes its sign when you come from the "
+            "other side?",
             "Let s1 and e1 swing slowly about the ready pose with springs at the joints "
             "(`lk.control.springs`), and average the commanded torque over whole swings.",
             "Compare the averages of s1 and e1 with J^T (0, 0, 9.81), for one kilogram, by least "
@@ -58,8 +60,9 @@ PREDICTIONS = (
             "(`lk.metrics.felt_wrench`).",
             "The wall gives way, by F / k. Where the arm comes to rest is therefore not where it "
             "touched.",
-            "Take the force off that was felt before the contact, and read off the place where it "
-            "begins to rise; or subtract F / `contact_stiffness(wall)`, 3,333 N/m here.",
+            "Subtract the force that was felt before the contact, and read off the position where "
+            "the force begins to rise. Or subtract F / `contact_stiffness(wall)`, with 3,333 N/m "
+            "here, from the position where the arm rests.",
         ),
     ),
 )

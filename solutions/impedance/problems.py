@@ -95,8 +95,8 @@ MSD = Problem(
         ),
     ),
     hints=(
-        "Three forces act on the mass: the hand's, the spring's and the damper's. Draw them for a mass "
-        "to the right of its target.",
+        "Three forces act on the mass: those of the hand, the spring and the damper. Draw them "
+        "for a mass to the right of its target.",
         "With e = x_d - x the spring pulls with k e and the damper with b ė. If nobody pushes and the "
         "error is zero, the mass must move just as its target does.",
         "Write Newton's law for the error, not for the mass: with nobody pushing, the error "
@@ -112,8 +112,8 @@ MSD = Problem(
         ),
         Wrong(
             "the force counted twice",
-            "The push is in twice, once divided by m and once as if it were an acceleration, as "
-            "in the report's equation 19. Keep the first.",
+            "The push is counted twice: once divided by m, and once as if it were an "
+            "acceleration, as in the report's equation 19. Keep the first.",
             mistakes.force_twice,
             "Check units term by term.",
         ),
@@ -122,27 +122,27 @@ MSD = Problem(
             "`force` is what the hand does to the mass: a push to the right accelerates it to the "
             "right.",
             mistakes.hand_pushed_back,
-            "Say always: force of whom, on what.",
+            "Always say whose force it is, and on what it acts.",
         ),
         Wrong(
             "a damper tied to the room",
             "The damper brakes all motion, so the mass drags behind a moving target. Tie it to the "
             "target: b (dx_d - dx).",
             mistakes.damps_all_motion,
-            "What do the two ends of the damper hold?",
+            "What are the two ends of the damper tied to?",
         ),
         Wrong(
             "the target's acceleration left out",
-            "Without error and without push the mass must move as its target does. Add the "
+            "Without an error and without a push the mass must move as its target does. Add the "
             "target's acceleration.",
             mistakes.forgets_the_targets_acceleration,
             "Feed-forward.",
         ),
         Wrong(
             "a force, not an acceleration",
-            "This is the sum of the forces. Divide it by the mass.",
+            "This is the sum of the forces. Divide it by the mass to get an acceleration.",
             mistakes.force_not_acceleration,
-            "Newton.",
+            "Newton's law: force = mass times acceleration.",
         ),
         Wrong(
             "all springs and dampers reversed",
@@ -161,23 +161,25 @@ MSD = Problem(
             "spring and damper swapped",
             "k multiplies the error of the position, b that of the speed.",
             mistakes.OneMass(swapped=True),
-            "Units tell: N/m and N s/m.",
+            "The units tell which is which: stiffness is in N/m, damping in N s/m.",
         ),
         Wrong(
             "the target left out",
-            "Spring and damper are tied to it, not to the origin: use x_d - x and dx_d - dx.",
+            "The target is missing. Tie the spring and the damper to the target, not to the "
+            "origin, with x_d - x and dx_d - dx; and add the target's acceleration.",
             mistakes.OneMass(follows=0.0),
             "Draw the mass to the right of its target.",
         ),
         Wrong(
             "the target's acceleration divided by the mass",
-            "The target's acceleration is an acceleration already: only forces are divided by m.",
+            "ddx_d is an acceleration already: divide only forces by m.",
             mistakes.OneMass(feed=0.0, per_mass=1.0),
-            "Units tell: N and m/s².",
+            "Check the units: N or m/s²?",
         ),
         Wrong(
             "the target's acceleration reversed",
-            "Without error and without push the mass must move as its target does.",
+            "Without an error and without a push the mass must move as its target does. Check the "
+            "sign of the target's acceleration.",
             mistakes.OneMass(feed=-1.0),
             "Draw the mass to the right of its target.",
         ),
@@ -185,11 +187,11 @@ MSD = Problem(
             "a spring tied to the origin",
             "The spring pulls to the target's place, not to x = 0: k (x_d - x).",
             mistakes.spring_to_the_origin,
-            "What do the two ends of the spring hold?",
+            "What are the two ends of the spring tied to?",
         ),
         Wrong(
             "the force of the hand left out",
-            "Add it to the forces of the spring and the damper.",
+            "The hand's force is missing. Add it to the forces of the spring and the damper.",
             mistakes.OneMass(force=0.0),
             "Count the forces: spring, damper, hand.",
         ),
@@ -197,56 +199,57 @@ MSD = Problem(
             "not divided by the mass",
             "The forces are not divided by the mass. Divide them all by m.",
             mistakes.OneMass(power=0.0),
-            "Units tell: N and m/s².",
+            "Check the units: N or m/s²?",
         ),
         Wrong(
             "springs and force beside the mass",
-            "The bracket is missing: force, damper and spring are all divided by the mass.",
+            "The brackets are missing: the force, the damper and the spring are all divided by "
+            "the mass.",
             mistakes.Hanging(lambda f, d, s, m, a: a + f + d + s / m),
             "A force divided by a mass is an acceleration.",
         ),
         Wrong(
             "only the force divided by the mass",
-            "The bracket is missing: damper and spring are divided by the mass as well.",
+            "The brackets are missing: the damper and the spring are divided by the mass as well.",
             mistakes.Hanging(lambda f, d, s, m, a: a + f / m + d + s),
             "A force divided by a mass is an acceleration.",
         ),
         Wrong(
             "the hand's force not divided by the mass",
-            "The hand's force is a force as the spring's is: divide it by the mass too.",
+            "The hand's force is a force like the spring's: divide it by the mass too.",
             mistakes.Hanging(lambda f, d, s, m, a: a + f + (d + s) / m),
             "A force divided by a mass is an acceleration.",
         ),
         Wrong(
             "multiplied by the mass",
-            "A force is divided by the mass to give an acceleration.",
+            "Divide the forces by the mass to get an acceleration; do not multiply them.",
             mistakes.Hanging(lambda f, d, s, m, a: a + (f + d + s) * m),
             "A force divided by a mass is an acceleration.",
         ),
         Wrong(
             "half of the spring",
-            "The one half belongs to the spring's energy. Its force is k times the way.",
+            "The factor 1/2 belongs to the spring's energy. Its force is k times the error.",
             mistakes.Hanging(lambda f, d, s, m, a: a + (f + d + 0.5 * s) / m),
             "A force is the slope of an energy.",
         ),
         Wrong(
             "the energy of the spring",
-            "½ k e² is the spring's energy. Its force is k e, which changes its sign with the "
+            "½ k e² is the spring's energy. Its force is k e, whose sign changes with that of the "
             "error.",
             mistakes.energy_for_force,
             "A force is the slope of an energy.",
         ),
         Wrong(
             "no damper",
-            "The damper is missing: b times the difference of the speeds.",
+            "The damper is missing: add b times the difference of the speeds.",
             mistakes.Hanging(lambda f, d, s, m, a: a + (f + s) / m),
-            "Each term has a task; say it.",
+            "Each term has a task: say which.",
         ),
         Wrong(
             "no spring",
-            "The spring is missing: k times the difference of the places.",
+            "The spring is missing: add k times the difference of the positions.",
             mistakes.Hanging(lambda f, d, s, m, a: a + (f + d) / m),
-            "Each term has a task; say it.",
+            "Each term has a task: say which.",
         ),
     ),
     variants=(variants.msd_by_error, variants.Mass()),
@@ -259,9 +262,9 @@ OPERATIONAL_INERTIA = Problem(
         "contact",
         "model",
     ),
-    asks="Give the inertia Λ that a hand feels at the tip of an arm with the mass matrix `M`, shape "
-    "(n, n), and the Jacobian `J`, shape (6, n) or (3, n): the matrix with F = Λ · (acceleration of the "
-    "tip), when the arm is at rest and its motors are off.",
+    asks="Give the inertia Λ that a hand feels at the tip of an arm with the mass matrix `M`, "
+    "shape (n, n), and the Jacobian `J`, shape (6, n) or (3, n). It is the matrix with F = Λ · "
+    "(acceleration of the tip) when the arm is at rest and its motors are off.",
     answer=answers.operational_inertia,
     judge=Close(rtol=1e-5, atol=1e-9),
     trials=(
@@ -290,20 +293,21 @@ OPERATIONAL_INERTIA = Problem(
     ),
     withheld=("labkit.Model.operational_inertia",),
     hints=(
-        "Follow a push through the arm. A wrench F at the tip gives the joint torques Jᵀ F. What joint "
-        "acceleration do they make, and what acceleration of the tip is that?",
-        "q̈ = M⁻¹ Jᵀ F, and the tip's acceleration is J q̈ (at rest). So acceleration = (J M⁻¹ Jᵀ) F. "
-        "You want it the other way round.",
-        "Follow a force through the three steps: to torques, to joint accelerations, to the "
-        "tip's acceleration. That matrix gives the acceleration of a force; you are asked for "
-        "the other way round.",
+        "Follow a push through the arm. A wrench F at the tip gives the joint torques Jᵀ F. What "
+        "joint acceleration do these torques cause, and what acceleration of the tip does that "
+        "give?",
+        "q̈ = M⁻¹ Jᵀ F, and the tip's acceleration is J q̈ (at rest). So acceleration = (J M⁻¹ "
+        "Jᵀ) F. The question asks for the force, given the acceleration.",
+        "Follow a force through three steps: to torques, to joint accelerations, to the tip's "
+        "acceleration. The matrix of these steps gives the acceleration that a force causes. The "
+        "question asks for the force that an acceleration takes.",
     ),
     wrong=(
         Wrong(
             "J M Jᵀ",
-            "J M Jᵀ has the right shape and the wrong unit: with J in m/rad it grows with the "
-            "lever, while the mass felt at the end of a longer lever gets smaller. Begin with the "
-            "inverse of M.",
+            "J M Jᵀ has the right shape but the wrong unit: with J in m/rad it grows with the "
+            "length of the lever, while the mass felt at the end of a longer lever gets smaller. "
+            "Begin with the inverse of M.",
             mistakes.j_m_jt,
             "Follow a push through the arm instead of guessing a product that fits.",
         ),
@@ -312,44 +316,45 @@ OPERATIONAL_INERTIA = Problem(
             "With six joints this is right. With seven it keeps the elbow out of the motion, and "
             "the arm seems heavier than it is. Follow the push instead: Jᵀ F, then M⁻¹, then J.",
             mistakes.pseudo_inverses,
-            "pinv(J) chooses the shortest motion of the joints, the arm the one with the least "
-            "energy.",
+            "pinv(J) chooses the smallest joint speeds; the arm itself chooses those with the "
+            "least energy.",
         ),
         Wrong(
             "the last inverse left out",
-            "J M⁻¹ Jᵀ says how easily the tip moves. Its inverse says how heavy the tip feels.",
+            "J M⁻¹ Jᵀ says how easily the tip moves. The question asks how heavy the tip feels, "
+            "which is the inverse.",
             mistakes.mobility,
-            "Mobility and inertia.",
+            "Mobility and inertia are inverse to each other.",
         ),
         Wrong(
             "1 / M, number by number",
-            "1 / M divides each number; the inverse of a matrix is np.linalg.inv, or better a "
-            "solve.",
+            "1 / M takes the reciprocal of each number. The inverse of a matrix is np.linalg.inv, "
+            "or better a solve.",
             mistakes.inverse_by_element,
             "In numpy, / divides element by element.",
         ),
         Wrong(
             "only the diagonal of M",
-            "The joints move each other, so the numbers beside the diagonal of M matter. Use the "
-            "whole matrix.",
+            "The joints accelerate each other, so the numbers off the diagonal of M matter. Use "
+            "the whole matrix.",
             mistakes.diagonal_only,
-            "Coupling.",
+            "The mass matrix couples the joints.",
         ),
         Wrong(
             "the inverse of J M Jᵀ",
             "M must be inverted first. Follow the push: Jᵀ F, then M⁻¹, then J.",
             mistakes.inverse_of_the_wrong,
-            "Units tell: kg at the end.",
+            "Check the unit: the result must be in kg.",
         ),
         Wrong(
             "each axis by itself",
-            "A push along x may move the tip along y: the numbers beside the diagonal belong to Λ.",
+            "A push along x may move the tip along y, so the numbers off the diagonal belong to Λ.",
             mistakes.each_axis_alone,
             "Λ is a matrix.",
         ),
         Wrong(
             "1 over each number",
-            "1 / A divides each number; the inverse of a matrix is np.linalg.inv.",
+            "1 / A takes the reciprocal of each number. The inverse of a matrix is np.linalg.inv.",
             mistakes.numbers_turned_over,
             "1 / A is not A⁻¹.",
         ),
@@ -362,28 +367,28 @@ OPERATIONAL_INERTIA = Problem(
         Wrong(
             "the transposes exchanged",
             "Jᵀ M⁻¹ J has the transpose on the wrong side, so with seven joints the sizes do not "
-            "fit. A wrench becomes torques by Jᵀ, the factor on the right: J M⁻¹ Jᵀ.",
+            "fit. Jᵀ turns a wrench into torques, so it is the factor on the right: J M⁻¹ Jᵀ.",
             mistakes.MassesOf(lambda M, J: np.linalg.inv(J.T @ np.linalg.inv(M) @ J)),
             "Say what each factor does to a wrench.",
         ),
         Wrong(
             "M⁻¹ twice",
-            "M is inverted once between J and Jᵀ.",
+            "Invert M only once between J and Jᵀ.",
             mistakes.MassesOf(lambda M, J: np.linalg.inv(J @ np.linalg.inv(M @ M) @ J.T)),
             "Say what each factor does to a wrench.",
         ),
         Wrong(
             "a root",
-            "This is the square root of the right matrix. The matrix itself is asked for.",
+            "This is the square root of the right matrix. Give the matrix itself.",
             mistakes.MassesOf(
                 lambda M, J: mistakes.root(np.linalg.inv(J @ np.linalg.inv(M) @ J.T))
             ),
-            "Units: kg and kg m².",
+            "Check the units: kg and kg m².",
         ),
         Wrong(
             "J M⁻¹ with a pseudo-inverse",
-            "The last factor should be Jᵀ: a wrench at the tip becomes torques by the transpose. "
-            "Then invert the whole product.",
+            "The last factor should be Jᵀ, because the transpose turns a wrench at the tip into "
+            "torques. Then invert the whole product.",
             mistakes.MassesOf(lambda M, J: J @ np.linalg.inv(M) @ np.linalg.pinv(J)),
             "Forces go through the transpose.",
         ),
@@ -397,8 +402,8 @@ OPERATIONAL_INERTIA = Problem(
             "Say what each factor does to a wrench.",
         ),
         Wrong(
-            "below zero",
-            "An inertia is positive.",
+            "a negative inertia",
+            "Your inertia is negative. An inertia is positive: check the sign.",
             mistakes.MassesOf(lambda M, J: -answers.operational_inertia(M, J)),
             "An inertia is positive.",
         ),
@@ -410,10 +415,11 @@ WORKSPACE_IMPEDANCE = Problem(
     name="workspace_impedance",
     points=6,
     outcomes=("contact",),
-    asks="Give the `lk.JointTorque` that makes the tip answer a push as if it were tied to its target "
-    "by springs `stiffness` and dampers `damping`, one for each of x, y, z and the three rotations, in "
-    "world axes, with the inertia Λ that the tip has anyway. The arm does not carry its own weight: add "
-    "g(q). Torque that has no effect at the tip does not count; choose that part as you like.",
+    asks="Give the `lk.JointTorque` that makes the tip respond to a push as if it were tied to "
+    "its target by springs `stiffness` and dampers `damping`, one for each of x, y, z and the "
+    "three rotations, in world axes. The tip keeps its own inertia Λ. The arm does not carry its "
+    "own weight: add g(q). Torque that has no effect at the tip does not count; choose that part "
+    "as you like.",
     answer=answers.workspace_impedance,
     expected=_at_tip(answers.workspace_impedance),
     judge=AtTip(),
@@ -465,24 +471,25 @@ WORKSPACE_IMPEDANCE = Problem(
         ),
     ),
     hints=(
-        "Say what force the tip should feel (spring, damper, and what the target's motion takes), then "
-        "turn it into joint torques with Jᵀ. Weight and Coriolis torques are added at the joints.",
-        "e = lk.se3.pose_error(target.pose, model.pose(q)), ė = target.twist - J q̇. The motion takes "
-        "Λ times the acceleration that the *joints* have to bring up: target.dtwist minus J̇ q̇, which "
-        "comes by itself.",
-        "Ask for the force at the tip first: what the springs and dampers give, and Λ times "
-        "the acceleration that the motors must bring up, which is the target's less the part "
-        "that comes by itself. Then through the Jacobian to the joints, and what the arm "
-        "itself takes.",
+        "Say what force the tip should feel (spring, damper, and what the target's motion takes), "
+        "then turn that force into joint torques with Jᵀ. Weight and Coriolis torques are added "
+        "at the joints.",
+        "e = lk.se3.pose_error(target.pose, model.pose(q)), ė = target.twist - J q̇. The motion "
+        "takes Λ times the acceleration that the *joints* must provide: target.dtwist minus J̇ "
+        "q̇, because J̇ q̇ is there without any joint acceleration.",
+        "First find the force at the tip: that of the springs and dampers, plus Λ times the "
+        "acceleration that the motors must provide, which is the target's minus the part that "
+        "comes by itself. Then map this force to the joints, and add the torques that the arm "
+        "itself needs.",
     ),
     wrong=(
         Wrong(
             "the felt push cancelled",
-            "Your law takes away what the torque sensors feel, so the arm does not give way: one who "
-            "pushes meets a wall. An impedance needs no sensor: the push moves the tip, and the "
-            "springs and dampers answer.",
+            "Your law subtracts what the torque sensors feel, so the arm does not give way: a "
+            "person who pushes it meets a wall. An impedance needs no sensor: the push moves the "
+            "tip, and the springs and dampers respond.",
             mistakes.Feeling(-1.0),
-            "What does the arm do under a push, if this torque cancels it?",
+            "What does the arm do under a push if this torque cancels the push?",
         ),
         Wrong(
             "the felt push added",
@@ -493,49 +500,49 @@ WORKSPACE_IMPEDANCE = Problem(
         ),
         Wrong(
             "the spring's sign reversed",
-            "The spring drives the tip away from its target: as soon as anything disturbs it, the "
-            "arm leaves its workspace. With e as target minus actual, the stiffness has a plus. "
-            "(In the report that this lab grew out of, the equation has your sign, and the "
-            "program has not.)",
+            "The spring drives the tip away from its target: after any disturbance the arm leaves "
+            "its workspace. With e as target minus actual, the stiffness has a plus. (In the "
+            "report that this lab grew out of, the equation has your sign, and the program does "
+            "not.)",
             mistakes.plus_in_front,
-            "One convention: e = target - actual, and every gain with a plus.",
+            "One convention: e = target - actual, and a plus before every gain.",
         ),
         Wrong(
             "M Jᵀ for the acceleration of the tip",
-            "M Jᵀ ẍ is not a torque: check its unit. The tip's inertia is Λ, and Jᵀ brings its "
-            "force to the joints: Jᵀ Λ ẍ. A target at rest does not show this.",
+            "M Jᵀ ẍ is not a torque: check its unit. The tip's inertia is Λ, and Jᵀ turns the "
+            "force Λ ẍ into joint torques: Jᵀ Λ ẍ. A target at rest does not show this mistake.",
             mistakes.joint_inertia_for_tip,
-            "The report's program has this; units would have told.",
+            "The report's program has this mistake; a check of the units shows it.",
         ),
         Wrong(
             "J̇ q̇ left out",
-            "The tip accelerates even if the joints turn evenly (think of a circle). Subtract "
-            "this part, J̇ q̇, before you multiply with Λ.",
+            "The tip accelerates even if the joints turn at constant speed (think of a circle). "
+            "Subtract this part, J̇ q̇, before you multiply by Λ.",
             mistakes.no_drift,
-            "ẍ = J q̈ + J̇ q̇: two terms.",
+            "ẍ = J q̈ + J̇ q̇ has two terms.",
         ),
         Wrong(
             "a weight that nobody carries",
-            "The weight is missing, and here the arm does not carry itself. Add g(q) to the "
-            "torque.",
+            "The weight is missing, and in this question the arm does not carry it. Add g(q) to "
+            "the torque.",
             mistakes.weightless,
             "A spring holds a weight only where it is stretched.",
         ),
         Wrong(
             "the body Jacobian",
-            "The errors are in world axes, the body Jacobian is in the tool's. With the gripper down, the "
-            "wrench is turned by 180 degrees about a horizontal axis: up comes out as down. Use "
-            "tip_jacobian.",
+            "The errors are in world axes, but the body Jacobian is in the tool's axes. With the "
+            "gripper down, the wrench is turned by 180 degrees about a horizontal axis, so that "
+            "up becomes down. Use tip_jacobian.",
             mistakes.body_jacobian,
-            "Name the Jacobian, always.",
+            "Always say which Jacobian you mean.",
         ),
         Wrong(
             "Euler angles subtracted",
-            "The difference of roll, pitch and yaw is not a rotation vector; with the gripper down "
-            "and a yaw beyond 90 degrees, as in the ready pose, it even drives the hand away. Use "
-            "lk.se3.pose_error, which takes the logarithm.",
+            "The difference of roll, pitch and yaw is not a rotation vector. With the gripper "
+            "down and a yaw beyond 90 degrees, as in the ready pose, it even drives the hand "
+            "away. Use lk.se3.pose_error, which takes the logarithm.",
             mistakes.euler_subtraction,
-            "Position errors alone never show it.",
+            "Tests with position errors alone never show this mistake.",
         ),
         Wrong(
             "the springs multiplied by Λ",
@@ -543,14 +550,14 @@ WORKSPACE_IMPEDANCE = Problem(
             "meaning. Keep springs and dampers outside Λ; inside, the law is computed torque at "
             "the tip.",
             mistakes.springs_inside,
-            "Impedance: gains in N/m, outside the inertia.",
+            "In an impedance the stiffness is in N/m, outside the inertia.",
         ),
         Wrong(
             "a damper tied to the room",
             "The damper brakes all motion, so the tip drags behind a moving target. Damp "
             "target.twist - J q̇.",
             mistakes.brakes_the_motion,
-            "What do the two ends of the damper hold?",
+            "What are the two ends of the damper tied to?",
         ),
         Wrong(
             "springs and dampers reversed",
@@ -575,8 +582,8 @@ WORKSPACE_IMPEDANCE = Problem(
         ),
         Wrong(
             "J̇ q̇ with the other sign",
-            "This part of the acceleration comes by itself: subtract it from what the joints have "
-            "to provide.",
+            "J̇ q̇ is the part of the acceleration that comes by itself: subtract it from what "
+            "the joints have to provide.",
             mistakes.TipLaw(drift=-1.0),
             "ẍ = J q̈ + J̇ q̇: solve for J q̈.",
         ),
@@ -584,106 +591,107 @@ WORKSPACE_IMPEDANCE = Problem(
             "no Coriolis torques",
             "C q̇ is missing. Add it, although at low speed its effect is hard to see.",
             mistakes.TipLaw(coriolis=0.0),
-            "Small is not nought: try it fast.",
+            "A small effect is not zero: try a fast motion.",
         ),
         Wrong(
             "the weight subtracted",
             "g(q) is what the motors must give to hold the arm: add it.",
             mistakes.TipLaw(weight=-1.0),
-            "g is on the left of the equation, with the motors on the right.",
+            "In the equation of motion g is on the left and the motors are on the right.",
         ),
         Wrong(
             "no inertia at the tip",
             "Λ is missing. Multiply the acceleration by it to get a force.",
             mistakes.TipLaw(power=0),
-            "Units tell: N and m/s².",
+            "Check the units: N or m/s²?",
         ),
         Wrong(
             "the inverse of Λ",
-            "Λ itself turns an acceleration into a force.",
+            "Λ itself turns an acceleration into a force. Do not invert it.",
             mistakes.TipLaw(power=-1),
-            "Units tell: N and m/s².",
+            "Check the units: N or m/s²?",
         ),
         Wrong(
             "a pseudo-inverse for Jᵀ",
-            "The pseudo-inverse belongs to speeds. A force at the tip takes the joint torques Jᵀ "
-            "F, exactly.",
+            "The pseudo-inverse is for speeds. A force F at the tip takes exactly the joint "
+            "torques Jᵀ F.",
             mistakes.TipLaw(pinv=True),
             "Jᵀ maps forces, J⁺ maps speeds.",
         ),
         Wrong(
             "the body Jacobian everywhere",
-            "Twists and wrenches are in world axes, this Jacobian is in the tool's. Use "
+            "Twists and wrenches are in world axes, but this Jacobian is in the tool's axes. Use "
             "tip_jacobian.",
             mistakes.TipLaw(body=True),
-            "Name the Jacobian, always.",
+            "Always say which Jacobian you mean.",
         ),
         Wrong(
             "stiffness and damping swapped",
             "Multiply the error by stiffness and its rate by damping.",
             mistakes.TipLaw(swapped=True),
-            "Units tell: N/m and N s/m.",
+            "The units tell which is which: stiffness is in N/m, damping in N s/m.",
         ),
         Wrong(
             "the turn in the tool's axes",
             "The rotation from tip to target must be in world axes, as the Jacobian is: "
             "lk.se3.pose_error gives it.",
             mistakes.TipLaw(tool=1),
-            "Error and Jacobian must speak of the same axes.",
+            "Error and Jacobian must be in the same axes.",
         ),
         Wrong(
             "the error in the tool's axes",
-            "Both parts of the error are in the tool's axes, and the Jacobian in the world's: "
-            "lk.se3.pose_error gives both in the world's.",
+            "Both parts of the error are in the tool's axes, but the Jacobian is in the world's. "
+            "lk.se3.pose_error gives both parts in world axes.",
             mistakes.TipLaw(tool=2),
-            "Error and Jacobian must speak of the same axes.",
+            "Error and Jacobian must be in the same axes.",
         ),
         Wrong(
             "no springs for the turn",
             "The last three numbers of the error are missing, so the hand keeps any tilt. Use all "
             "six.",
             mistakes.TipLaw(turn=0.0),
-            "A gain of zero hides a wrong sign.",
+            "A gain of zero hides a wrong sign of the error.",
         ),
         Wrong(
             "the weight twice",
-            "The weight comes once. `Model.bias` holds it already.",
+            "Add the weight once. `Model.bias` contains it already.",
             mistakes.TipLaw(weight=2.0),
-            "Ask of each term who else does it.",
+            "Ask of each term whether another term contains it already.",
         ),
         Wrong(
             "half of the weight",
-            "model.gravity is the whole weight.",
+            "model.gravity is the whole weight: add all of it.",
             mistakes.TipLaw(weight=0.5),
-            "Take a model's term as it is.",
+            "Use each term of the model as it is.",
         ),
         Wrong(
             "no springs",
             "The springs are missing: nothing pulls the tip back.",
             mistakes.TipLaw(e=0.0),
-            "Each term has a task; say it.",
+            "Each term has a task: say which.",
         ),
         Wrong(
             "no dampers",
             "The dampers are missing: the tip swings about its target.",
             mistakes.TipLaw(de=0.0),
-            "Each term has a task; say it.",
+            "Each term has a task: say which.",
         ),
         Wrong(
             "the turn reversed",
-            "The error of orientation has the other sign: it drives the hand away. The turn goes from the tip to the target.",
+            "The error of orientation has the wrong sign, so its springs drive the hand away. The "
+            "rotation must go from the tip to the target.",
             mistakes.TipLaw(turn=-1.0),
             "One convention for the whole course: target minus actual.",
         ),
         Wrong(
             "the Coriolis torques reversed",
-            "C q̇ is added: the arm needs it, whatever the law.",
+            "Add C q̇: the arm needs this torque, whatever the law.",
             mistakes.TipLaw(coriolis=-1.0),
-            "The law is the equation of motion, and springs.",
+            "The law is the equation of motion, plus springs and dampers.",
         ),
         Wrong(
             "J̇ q̇ twice",
-            "The acceleration that comes by itself is taken off once.",
+            "Subtract J̇ q̇, the acceleration that comes by itself, only once.",
             mistakes.TipLaw(drift=2.0),
             "Differentiate V = J q̇ with the product rule.",
         ),
@@ -701,7 +709,8 @@ WORKSPACE_IMPEDANCE = Problem(
         ),
         Wrong(
             "J M Jᵀ for the inertia at the tip",
-            "The tip's inertia is (J M⁻¹ Jᵀ)⁻¹, model.operational_inertia. J M Jᵀ is another matrix.",
+            "The tip's inertia is (J M⁻¹ Jᵀ)⁻¹, which model.operational_inertia gives. J M Jᵀ is "
+            "another matrix.",
             mistakes.TipTerms(
                 lambda J, L, a, D, K, C, g, M: J.T @ (J @ M @ J.T @ a + D + K) + C + g
             ),
@@ -709,7 +718,7 @@ WORKSPACE_IMPEDANCE = Problem(
         ),
         Wrong(
             "the weight through the Jacobian",
-            "The weight is a torque at the joints already: it does not go through the tip.",
+            "g(q) is a torque at the joints already: add it there, not to the wrench at the tip.",
             mistakes.TipTerms(lambda J, L, a, D, K, C, g, M: J.T @ (L @ a + D + K + J @ g) + C),
             "A torque is not a wrench.",
         ),
@@ -718,28 +727,30 @@ WORKSPACE_IMPEDANCE = Problem(
             "R K Rᵀ e turns the springs into the tool's axes. `stiffness` is along the world's "
             "axes, as the error is: K e.",
             mistakes.AlongTheTool(),
-            "A stiffness belongs to axes; name them.",
+            "A stiffness belongs to axes: say which.",
         ),
         Wrong(
             "springs and dampers along the tool's axes",
             "R K Rᵀ e and R D Rᵀ ė turn springs and dampers into the tool's axes. `stiffness` and "
             "`damping` are along the world's axes, as the errors are: K e and D ė.",
             mistakes.AlongTheTool(dampers=True),
-            "A stiffness belongs to axes; name them.",
+            "A stiffness belongs to axes: say which.",
         ),
         Wrong(
             "a damper at the joints",
-            "-q̇ brakes every joint, and the tip feels it beside the dampers that were asked for. "
-            "To brake the elbow alone, project the torque: (I - Jᵀ J̄ᵀ) τ, with J̄ = M⁻¹ Jᵀ Λ.",
+            "-q̇ brakes every joint, and the tip feels this in addition to the dampers of the "
+            "question. To brake the elbow alone, project the torque: (I - Jᵀ J̄ᵀ) τ, with J̄ = "
+            "M⁻¹ Jᵀ Λ.",
             mistakes.damps_the_joints,
             "Ask of each torque whether the tip feels it.",
         ),
         Wrong(
             "a torque behind the projector of speeds",
-            "The tip feels what you add for the elbow. I - J⁺ J is for joint speeds, and a torque "
-            "goes through M first. For torques the projector is I - Jᵀ J̄ᵀ, with J̄ = M⁻¹ Jᵀ Λ.",
+            "The tip feels what you add for the elbow. The projector I - J⁺ J is for joint "
+            "speeds, but a torque acts on the speeds through M⁻¹. For torques the projector is I "
+            "- Jᵀ J̄ᵀ, with J̄ = M⁻¹ Jᵀ Λ.",
             mistakes.brakes_behind_speeds,
-            "Two null spaces: one of speeds, one of torques.",
+            "There are two null spaces: one of speeds, one of torques.",
         ),
     ),
     variants=(
@@ -756,9 +767,9 @@ SHAPED_IMPEDANCE = Problem(
     points=4,
     core=False,
     outcomes=("contact",),
-    asks="As `workspace_impedance`, but the tip is to feel as heavy as `inertia`, M_d of shape (6, 6). "
-    "For that the law receives the measured `wrench` of the hand on the arm, shape (6,), world "
-    "axes.",
+    asks="As `workspace_impedance`, but the tip should feel as heavy as `inertia`, M_d of shape "
+    "(6, 6). For this the law receives the measured `wrench` of the hand on the arm, shape (6,), "
+    "in world axes.",
     answer=answers.shaped_impedance,
     expected=_at_tip(answers.shaped_impedance),
     judge=AtTip(),
@@ -789,71 +800,73 @@ SHAPED_IMPEDANCE = Problem(
         ),
     ),
     hints=(
-        "Ask first for an acceleration: the one that a body M_d would have under spring, damper and "
-        "hand. Then ask which force of the *motors* makes the real tip, with its own Λ, move like "
-        "that.",
-        "M_d (a - dV_d) = D ė + K e + F. And Λ (a - J̇ q̇) = F_motors + F: the hand does its share.",
-        "Solve the wanted behaviour for the tip's acceleration; the hand appears in it. Then "
-        "ask which force gives the real Λ that acceleration, and take off the share that the "
-        "hand does itself.",
+        "First find an acceleration: the one that a body M_d would have under spring, damper and "
+        "hand. Then find the force of the *motors* that makes the real tip, with its own Λ, move "
+        "like that.",
+        "M_d (a - dV_d) = D ė + K e + F. And Λ (a - J̇ q̇) = F_motors + F, because the hand "
+        "provides a part of the force.",
+        "Solve the desired behaviour for the tip's acceleration; the hand's wrench appears in it. "
+        "Then find the force that gives the real Λ this acceleration, and subtract the part that "
+        "the hand provides itself.",
     ),
     wrong=(
         Wrong(
             "the wrench added as it is",
-            "Added as it is, the wrench makes the motors always help the hand as much as it "
-            "pushes. Multiply it by Λ M_d⁻¹ - 1, which is zero if M_d = Λ.",
+            "If you add the wrench as it is, the motors always help the hand as much as it "
+            "pushes. Multiply the wrench by Λ M_d⁻¹ - I, which is zero if M_d = Λ.",
             mistakes.force_added_plainly,
             "Test the special case M_d = Λ.",
         ),
         Wrong(
             "the wrench of the robot on the hand",
-            "The sign of the wrench is wrong, so a tip that should feel heavy feels light, and the "
-            "other way round. `wrench` is what the hand does to the arm.",
+            "The sign of the wrench is wrong, so a tip that should feel heavy feels light, and a "
+            "light one heavy. `wrench` is what the hand does to the arm.",
             mistakes.wrench_of_the_robot,
-            "Say always: force of whom, on what.",
+            "Always say whose force it is, and on what it acts.",
         ),
         Wrong(
             "the wrench left out",
             "Without the measured wrench the hand still feels the arm's own inertia. The wrench "
-            "belongs both to the acceleration that M_d shapes and to the hand's share of the "
-            "work.",
+            "belongs in two places: in the acceleration that M_d shapes, and in the hand's part "
+            "of the force.",
             mistakes.force_forgotten,
-            "That is why shaping needs a sensor, and plain impedance does not.",
+            "Shaping the inertia needs a sensor of the wrench; plain impedance does not.",
         ),
         Wrong(
             "the inertia ignored",
-            "This is the law with the arm's own inertia. Divide springs, dampers and wrench by M_d, then "
-            "multiply by Λ; and subtract the hand's share, the wrench.",
+            "This is the law with the arm's own inertia. Divide springs, dampers and wrench by "
+            "M_d, then multiply by Λ; and subtract the wrench, which is the hand's part of the "
+            "force.",
             mistakes.own_inertia,
             "With M_d = Λ the two laws agree.",
         ),
         Wrong(
             "the report's equation 19",
             "The wrench is outside the braces as a force and inside as an acceleration, as in the "
-            "report's equation 19. Divide the one inside by M_d and subtract the one outside, so that "
-            "the wrench cancels where M_d = Λ.",
+            "report's equation 19. Divide the one inside by M_d and subtract the one outside, so "
+            "that the wrench cancels if M_d = Λ.",
             mistakes.the_reports_equation,
-            "Units, and the special case M_d = Λ.",
+            "Check the units and the special case M_d = Λ.",
         ),
         Wrong(
             "the hand's share left in",
-            "The motors provide all the force that the motion takes, and the hand pushes as well. "
-            "Subtract its wrench.",
+            "Your motors provide all the force that the motion takes, and the hand pushes as "
+            "well. Subtract the hand's wrench.",
             mistakes.hand_works_twice,
             "Λ a = F_motors + F_hand.",
         ),
         Wrong(
             "the wrench inside reversed",
-            "The tip should yield to the push: M_d⁻¹ (D ė + K e + F).",
+            "The tip should give way to the push: the wrench has a plus in M_d⁻¹ (D ė + K e + F).",
             mistakes.ShapedLaw(inside=-1.0),
             "Follow one push through the law, sign by sign.",
         ),
         Wrong(
             "the hand's share added",
-            "The hand does its share of the work, so the motors must do less. Subtract the wrench "
-            "instead of adding it.",
+            "The hand provides a part of the force, so the motors must provide less. Subtract the "
+            "wrench instead of adding it.",
             mistakes.ShapedLaw(outside=-1.0),
-            "Who does which share of the work?",
+            "Which part of the force comes from whom?",
         ),
         Wrong(
             "the wrench outside the braces alone",
@@ -864,21 +877,21 @@ SHAPED_IMPEDANCE = Problem(
         Wrong(
             "M_d where Λ belongs",
             "The motors have to move the arm's own inertia, so multiply the acceleration by Λ. "
-            "M_d only says how large this acceleration should be.",
+            "M_d only determines how large this acceleration should be.",
             mistakes.ShapedLaw(for_own=True),
-            "First the wanted acceleration, then what it takes.",
+            "First find the desired acceleration, then the force that it takes.",
         ),
         Wrong(
             "J̇ q̇ left out",
-            "The tip accelerates even if the joints turn evenly. Subtract this part, J̇ q̇, "
-            "before you multiply with Λ.",
+            "The tip accelerates even if the joints turn at constant speed. Subtract this part, "
+            "J̇ q̇, before you multiply by Λ.",
             mistakes.ShapedLaw(drift=0.0),
-            "ẍ = J q̈ + J̇ q̇: two terms.",
+            "ẍ = J q̈ + J̇ q̇ has two terms.",
         ),
         Wrong(
             "a weight that nobody carries",
-            "The weight is missing, and here the arm does not carry itself. Add g(q) to the "
-            "torque.",
+            "The weight is missing, and in this question the arm does not carry it. Add g(q) to "
+            "the torque.",
             mistakes.ShapedLaw(weight=0.0),
             "A spring holds a weight only where it is stretched.",
         ),
@@ -886,7 +899,7 @@ SHAPED_IMPEDANCE = Problem(
             "no Coriolis torques",
             "C q̇ is missing. Add it, although at low speed its effect is hard to see.",
             mistakes.ShapedLaw(coriolis=0.0),
-            "Small is not nought: try it fast.",
+            "A small effect is not zero: try a fast motion.",
         ),
         Wrong(
             "springs and dampers reversed",
@@ -903,14 +916,14 @@ SHAPED_IMPEDANCE = Problem(
         ),
         Wrong(
             "a pseudo-inverse for Jᵀ",
-            "The pseudo-inverse belongs to speeds. A force at the tip takes the joint torques Jᵀ "
-            "F, exactly.",
+            "The pseudo-inverse is for speeds. A force F at the tip takes exactly the joint "
+            "torques Jᵀ F.",
             mistakes.ShapedLaw(pinv=True),
             "Jᵀ maps forces, J⁺ maps speeds.",
         ),
         Wrong(
             "the springs reversed",
-            "The springs push away: the error is target minus actual.",
+            "The springs push the tip away from its target: the error is target minus actual.",
             mistakes.ShapedTerms(
                 lambda J, L, M, a, v, D, K, F, C, g: mistakes.shaped(J, L, M, a, v, D - K, F, C, g)
             ),
@@ -918,7 +931,8 @@ SHAPED_IMPEDANCE = Problem(
         ),
         Wrong(
             "the dampers reversed",
-            "The dampers drive on: the error of the twist is target minus actual.",
+            "The dampers drive the tip instead of braking it: the error of the twist is target "
+            "minus actual.",
             mistakes.ShapedTerms(
                 lambda J, L, M, a, v, D, K, F, C, g: mistakes.shaped(J, L, M, a, v, K - D, F, C, g)
             ),
@@ -930,7 +944,7 @@ SHAPED_IMPEDANCE = Problem(
             mistakes.ShapedTerms(
                 lambda J, L, M, a, v, D, K, F, C, g: mistakes.shaped(J, L, M, a, v, D, F, C, g)
             ),
-            "Each term has a task; say it.",
+            "Each term has a task: say which.",
         ),
         Wrong(
             "no dampers",
@@ -938,29 +952,31 @@ SHAPED_IMPEDANCE = Problem(
             mistakes.ShapedTerms(
                 lambda J, L, M, a, v, D, K, F, C, g: mistakes.shaped(J, L, M, a, v, K, F, C, g)
             ),
-            "Each term has a task; say it.",
+            "Each term has a task: say which.",
         ),
         Wrong(
             "the turn in the tool's axes",
-            "The error of orientation is in the tool's axes; Jacobian and stiffness are in the world's.",
+            "The error of orientation is in the tool's axes, but the Jacobian and the stiffness "
+            "are in the world's.",
             mistakes.ShapedTerms(
                 lambda J, L, M, a, v, D, K, F, C, g: mistakes.shaped(J, L, M, a, v, D + K, F, C, g),
                 tool=1,
             ),
-            "Error and Jacobian in the same axes.",
+            "Error and Jacobian must be in the same axes.",
         ),
         Wrong(
             "the error in the tool's axes",
-            "The error is in the tool's axes; Jacobian and stiffness are in the world's.",
+            "The error is in the tool's axes, but the Jacobian and the stiffness are in the "
+            "world's.",
             mistakes.ShapedTerms(
                 lambda J, L, M, a, v, D, K, F, C, g: mistakes.shaped(J, L, M, a, v, D + K, F, C, g),
                 tool=2,
             ),
-            "Error and Jacobian in the same axes.",
+            "Error and Jacobian must be in the same axes.",
         ),
         Wrong(
             "the wanted inertia not inverted",
-            "Forces are divided by the wanted inertia: its inverse times the pull.",
+            "Multiply the forces by the inverse of the desired inertia, not by the inertia itself.",
             mistakes.ShapedTerms(
                 lambda J, L, M, a, v, D, K, F, C, g: (
                     J.T @ (L @ (a + M @ (D + K + F) - v) - F) + C + g
@@ -970,13 +986,14 @@ SHAPED_IMPEDANCE = Problem(
         ),
         Wrong(
             "the ratio of the inertias upside down",
-            "The arm's own inertia stands outside, the wanted one is inverted inside. Yours are exchanged.",
+            "The arm's own inertia belongs outside the bracket, and the inverse of the desired "
+            "one inside. You have exchanged the two.",
             mistakes.ShapedTerms(
                 lambda J, L, M, a, v, D, K, F, C, g: (
                     J.T @ (M @ (a + np.linalg.inv(L) @ (D + K + F) - v) - F) + C + g
                 )
             ),
-            "Say which inertia the arm has, and which it should show.",
+            "Say which inertia the arm has and which it should show.",
         ),
         Wrong(
             "the factor upside down",
@@ -987,11 +1004,11 @@ SHAPED_IMPEDANCE = Problem(
                     J.T @ (L @ (a - v) + M @ np.linalg.inv(L) @ (D + K + F) - F) + C + g
                 )
             ),
-            "Say which inertia the arm has, and which it should show.",
+            "Say which inertia the arm has and which it should show.",
         ),
         Wrong(
             "only the diagonal of the wanted inertia",
-            "The wanted inertia is a matrix: invert it whole.",
+            "The desired inertia is a matrix: invert the whole matrix.",
             mistakes.ShapedTerms(
                 lambda J, L, M, a, v, D, K, F, C, g: mistakes.shaped(
                     J, L, np.diag(np.diag(M)), a, v, D + K, F, C, g
@@ -1001,7 +1018,8 @@ SHAPED_IMPEDANCE = Problem(
         ),
         Wrong(
             "no inertia at the tip",
-            "An acceleration goes through the Jacobian where a wrench belongs: the tip's own inertia is missing.",
+            "You multiply an acceleration by Jᵀ, which needs a wrench: the tip's own inertia is "
+            "missing.",
             mistakes.ShapedTerms(
                 lambda J, L, M, a, v, D, K, F, C, g: (
                     J.T @ (a + np.linalg.inv(M) @ (D + K + F) - v - F) + C + g
@@ -1011,7 +1029,7 @@ SHAPED_IMPEDANCE = Problem(
         ),
         Wrong(
             "the inverse of the tip's inertia",
-            "The tip's inertia makes a wrench of an acceleration; its inverse does the opposite.",
+            "The tip's inertia turns an acceleration into a wrench; its inverse does the opposite.",
             mistakes.ShapedTerms(
                 lambda J, L, M, a, v, D, K, F, C, g: (
                     J.T @ (np.linalg.inv(L) @ (a + np.linalg.inv(M) @ (D + K + F) - v) - F) + C + g
@@ -1021,7 +1039,8 @@ SHAPED_IMPEDANCE = Problem(
         ),
         Wrong(
             "the target's acceleration divided by the inertia",
-            "The target's acceleration is one already: it stands outside the inverse.",
+            "The target's acceleration is an acceleration already: do not multiply it by the "
+            "inverse of M_d.",
             mistakes.ShapedTerms(
                 lambda J, L, M, a, v, D, K, F, C, g: (
                     J.T @ (L @ (np.linalg.inv(M) @ (a + D + K + F) - v) - F) + C + g
@@ -1031,25 +1050,25 @@ SHAPED_IMPEDANCE = Problem(
         ),
         Wrong(
             "the weight twice",
-            "The weight comes once. `Model.bias` holds it already.",
+            "Add the weight once. `Model.bias` contains it already.",
             mistakes.ShapedLaw(weight=2.0),
-            "Ask of each term who else does it.",
+            "Ask of each term whether another term contains it already.",
         ),
         Wrong(
-            "the weight taken off",
-            "Gravity pulls down, and the motors hold against it: model.gravity is added.",
+            "the weight subtracted",
+            "Gravity pulls down and the motors hold against it, so add model.gravity.",
             mistakes.ShapedLaw(weight=-1.0),
-            "model.gravity is what must be held.",
+            "model.gravity is the torque that holds the arm.",
         ),
         Wrong(
             "the Coriolis torques reversed",
-            "C q̇ is added: the arm needs it, whatever the law.",
+            "Add C q̇: the arm needs this torque, whatever the law.",
             mistakes.ShapedLaw(coriolis=-1.0),
-            "The law is the equation of motion, and springs.",
+            "The law is the equation of motion, plus springs and dampers.",
         ),
         Wrong(
             "J̇ q̇ with the other sign",
-            "The acceleration that comes by itself is taken off.",
+            "Subtract J̇ q̇, the acceleration that comes by itself.",
             mistakes.ShapedLaw(drift=-1.0),
             "Differentiate V = J q̇ with the product rule.",
         ),
@@ -1071,10 +1090,10 @@ APPARENT_STIFFNESS = Problem(
         "contact",
         "experiment",
     ),
-    asks="Somebody pushed the arm N times and waited until it rested. Fit `force` = K · `displacement` "
-    "+ offset by least squares of the force (its sensor has the noise, displacements are exact), and "
-    "give K of shape (3, 3). Row i of `force` and `displacement`, both of shape (N, 3), belongs to push "
-    "i.",
+    asks="Somebody pushed the arm N times and waited each time until the arm rested. Fit `force` "
+    "= K · `displacement` + offset by least squares of the force (only the force has noise; the "
+    "displacements are exact), and give K of shape (3, 3). Row i of `force` and of "
+    "`displacement`, both of shape (N, 3), belongs to push i.",
     answer=answers.apparent_stiffness,
     judge=Close(rtol=1e-5, atol=1e-6),
     trials=(
@@ -1105,19 +1124,19 @@ APPARENT_STIFFNESS = Problem(
         ),
     ),
     hints=(
-        "Nine numbers of K and three of the offset are unknown, and each push gives three equations. "
-        "All of them are linear.",
-        "np.linalg.lstsq solves A X = B for X. With one row for each push, A holds the displacement and "
-        "a 1, B the force. What stands where in X?",
-        "A column of ones beside the displacements takes up the offset. numpy solves all "
-        "three force components at once; look at which way round its answer has rows and "
-        "columns.",
+        "Nine numbers of K and three of the offset are unknown, and each push gives three "
+        "equations. All of these equations are linear.",
+        "np.linalg.lstsq solves A X = B for X. With one row for each push, A holds the "
+        "displacement and a 1, and B the force. What does each row of X hold?",
+        "A column of ones beside the displacements accounts for the offset. numpy solves for all "
+        "three force components at once; check what the rows and the columns of its answer belong "
+        "to.",
     ),
     wrong=(
         Wrong(
             "force over displacement, axis by axis",
-            "A push along x may move the tip along y, and where a displacement is nearly zero the ratio "
-            "says anything. Fit all nine numbers together.",
+            "A push along x may move the tip along y, and where a displacement is nearly zero the "
+            "ratio means nothing. Fit all nine numbers together.",
             mistakes.element_by_element,
             "A stiffness is a matrix.",
         ),
@@ -1126,53 +1145,53 @@ APPARENT_STIFFNESS = Problem(
             "The force at rest is not zero (a tool's weight, a sensor's offset), and without a "
             "term for it the stiffness has to explain it. Fit an offset too.",
             mistakes.through_the_origin,
-            "Fit the offset, or it fits you.",
+            "An offset that is not fitted spoils the stiffness.",
         ),
         Wrong(
             "the compliance",
             "This is the compliance, in metres per newton. The stiffness is its inverse, in "
             "newtons per metre.",
             mistakes.compliance,
-            "Units.",
+            "Check the unit of the result.",
         ),
         Wrong(
             "K transposed",
-            "lstsq works with rows, so what it gives is the transpose of K. Transpose it; a "
-            "symmetric K does not show this.",
+            "lstsq works with rows, so it returns the transpose of K. Transpose it. A symmetric K "
+            "does not show this mistake.",
             mistakes.transposed,
-            "Rows of data: F = x Kᵀ.",
+            "With one row for each push, F = x Kᵀ.",
         ),
         Wrong(
             "a fit with the noise in the displacement",
             "This fit assumes noise in the displacement, but the noise is in the force. Fit the "
             "force to the displacement by ordinary least squares.",
             mistakes.other_regression,
-            "Least squares is not symmetric: errors belong to the left side.",
+            "Least squares is not symmetric: it puts all of the noise on one side of the equation.",
         ),
         Wrong(
             "a stiffness below zero",
-            "`force` is that of the hand on the arm, so it points where the arm moves, and the "
+            "`force` is that of the hand on the arm, so the arm moves in its direction and the "
             "stiffness is positive. Check the sign.",
             mistakes.arm_against_hand,
-            "Say always: force of whom, on what.",
+            "Always say whose force it is, and on what it acts.",
         ),
         Wrong(
             "no offset, and K transposed",
-            "lstsq works with rows, so K comes out transposed; and the force at rest is not zero, "
-            "so the fit needs an offset.",
+            "lstsq works with rows, so K comes out transposed. Besides, the force at rest is not "
+            "zero, so the fit needs an offset.",
             mistakes.transposed_through_the_origin,
             "Try a fit on numbers whose answer you know.",
         ),
         Wrong(
             "a fit of the displacement",
-            "This fit gives metres per newton. Give newtons per metre, from a fit with the noise "
-            "in the force.",
+            "This fit gives metres per newton. Give newtons per metre, from a fit in which the "
+            "force has the noise.",
             mistakes.regression_of_the_displacement,
             "Look at the unit of the result.",
         ),
         Wrong(
             "the diagonal alone",
-            "A push along x may move the tip along y. Give the numbers beside the diagonal too.",
+            "A push along x may move the tip along y. Give the numbers off the diagonal too.",
             mistakes.diagonal_of_the_fit,
             "K is a matrix.",
         ),
@@ -1186,48 +1205,53 @@ APPARENT_STIFFNESS = Problem(
             "newtons for a millimetre",
             "These numbers are in N/mm. Give N/m.",
             mistakes.in_millimetres,
-            "SI inside, millimetres in print.",
+            "Compute in SI units; use millimetres only in print.",
         ),
         Wrong(
             "a line for each axis",
-            "Three fits, each of one axis by itself, miss what a push along x does along y. Fit "
-            "all nine numbers together.",
+            "Three fits, each of one axis alone, miss the force along y that belongs to a "
+            "displacement along x. Fit all nine numbers together.",
             mistakes.axis_by_axis_fit,
             "K is a matrix: one fit for all.",
         ),
         Wrong(
             "from the first push on",
-            "Everything is measured from the first push, whose noise then goes into all others. Measure from the mean.",
+            "You measure everything from the first push, so the noise of that push enters all the "
+            "others. Measure from the mean.",
             mistakes.FitOf(lambda F, x: mistakes.solved(x - x[0], F - F[0])),
-            "A fit's line goes through the mean.",
+            "The line of a fit with an offset goes through the mean.",
         ),
         Wrong(
             "only the force about its mean",
-            "The displacement has an offset too: take the mean off both.",
+            "You subtract the mean from the force alone. Subtract the displacement's mean from "
+            "the displacement too.",
             mistakes.FitOf(lambda F, x: mistakes.solved(x, mistakes.about(F))),
-            "A fit's line goes through the mean.",
+            "The line of a fit with an offset goes through the mean.",
         ),
         Wrong(
             "one mean for all axes",
             "Each axis has its own mean: mean(axis=0).",
             mistakes.FitOf(lambda F, x: mistakes.solved(x - x.mean(), F - F.mean())),
-            "Say along which axis a mean goes.",
+            "Say over which axis you take a mean.",
         ),
         Wrong(
             "differences of neighbours",
-            "Each difference holds the noise of two pushes. Fit all pushes at once, about their mean.",
+            "Each difference contains the noise of two pushes. Fit all pushes at once, about "
+            "their mean.",
             mistakes.FitOf(lambda F, x: mistakes.solved(np.diff(x, axis=0), np.diff(F, axis=0))),
             "A fit uses all data.",
         ),
         Wrong(
             "three pushes only",
-            "Three pushes are just enough for a matrix without offset, and hold all of the noise. Fit all pushes.",
+            "Three pushes are just enough for a matrix without an offset, and their noise goes "
+            "into it in full. Fit all pushes.",
             mistakes.FitOf(lambda F, x: mistakes.solved(x[:3], F[:3])),
             "A fit uses all data.",
         ),
         Wrong(
             "a ratio of means",
-            "Means of force and displacement are mostly offset. Fit how one changes with the other.",
+            "The means of force and displacement are mostly offset. Fit how the force changes "
+            "with the displacement.",
             mistakes.FitOf(lambda F, x: np.diag(F.mean(axis=0) / x.mean(axis=0))),
             "A stiffness is a slope.",
         ),
@@ -1241,7 +1265,7 @@ APPARENT_STIFFNESS = Problem(
             "a covariance",
             "A covariance of force and displacement is not yet a slope: multiply it by the inverse covariance of the displacement.",
             mistakes.FitOf(lambda F, x: np.cov(F.T, x.T)[:3, 3:]),
-            "Slope: covariance by variance.",
+            "A slope is a covariance divided by a variance.",
         ),
         Wrong(
             "covariances in the wrong order",
@@ -1251,7 +1275,8 @@ APPARENT_STIFFNESS = Problem(
         ),
         Wrong(
             "the offset taken for a column",
-            "With a column of ones the fit has four unknowns in each row; yours returns the ones' share with K.",
+            "With a column of ones, one row of the solution is the offset. You return this row as "
+            "a part of K.",
             mistakes.FitOf(
                 lambda F, x: (
                     np.linalg.lstsq(np.column_stack([np.ones(len(x)), x]), F, rcond=None)[0][:3].T
@@ -1260,16 +1285,16 @@ APPARENT_STIFFNESS = Problem(
             "Say which row of a solution belongs to which unknown.",
         ),
         Wrong(
-            "sizes of forces",
-            "A stiffness may couple axes with a minus: keep the signs.",
+            "the signs of the stiffness dropped",
+            "Numbers in a stiffness matrix may be negative: keep their signs.",
             mistakes.FitOf(
                 lambda F, x: np.abs(mistakes.solved(mistakes.about(x), mistakes.about(F)))
             ),
-            "A stiffness has a sign.",
+            "A stiffness matrix has signed numbers.",
         ),
         Wrong(
             "half of the matrix",
-            "What is below the diagonal is left out.",
+            "The numbers below the diagonal are missing. Give the whole matrix.",
             mistakes.FitOf(
                 lambda F, x: np.triu(mistakes.solved(mistakes.about(x), mistakes.about(F)))
             ),

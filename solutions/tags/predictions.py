@@ -12,9 +12,10 @@ PREDICTIONS = (
     ),
     Prediction(
         "round_and_round",
-        "A tag goes round a circle once in six seconds. Its picture is two seconds old. A predictor "
-        "carries the position and the velocity two seconds forward, in a straight line. Compared with "
-        "using the old position as if it were current, the error is then",
+        "A tag goes round a circle once in six seconds. Its picture is two seconds old. A "
+        "predictor carries the position two seconds forward with the velocity, in a straight "
+        "line. Compared with the error of using the old position as if it were current, the "
+        "predictor's error is",
         Choose({"a": "about a tenth", "b": "about a half", "c": "larger"}),
         truth="c",
     ),

@@ -3,28 +3,29 @@
 from labkit.course import Choose, Found, Identification, Number, Prediction, Telling
 
 RUN = (
-    "Your {} misbehaving run: which mistake came into the law, and at which time does it first show? "
+    "Your {} misbehaving run: which mistake is in the law, and at what time does it first show? "
     "Write the letter and the time in s."
 )
 INTERVAL = (
-    "Plot the error of each joint. It is smooth and small, and then it is not: between 0.3 and 1.0 s.",
-    "What kind of error: of all joints or of one, with the sign of gravity, with the speed, growing by "
-    "itself, only while the target accelerates?",
+    "Plot the error of each joint. At first it is smooth and small; at some time between 0.3 and "
+    "1.0 s it no longer is.",
+    "What kind of error is it? Does it affect all joints or one, follow gravity or the speed, "
+    "grow by itself, or appear only while the target accelerates?",
     "Run the suspects yourself, with `labkit.course.bugs.tells_apart`, and compare.",
 )
 
 PREDICTIONS = (
     Prediction(
         "gravity_twice",
-        "The arm carries its own weight. Your law does not know, and adds g(q) as well. Springs of "
-        "80 N m/rad hold each joint. Where is the tip after 1.5 s?",
+        "The arm carries its own weight. Your law does not know this, and adds g(q) as well. "
+        "Springs of 80 N m/rad hold each joint. Where is the tip after 1.5 s?",
         Choose({"a": "where it was", "b": "lower", "c": "higher"}),
         truth="c",
     ),
     Prediction(
         "unknown_load",
-        "Somebody puts 0.5 kg into the gripper, and the model does not know. Computed torque with "
-        "kp = 40 1/s² holds the arm. How far does the tip sag?",
+        "Somebody puts 0.5 kg into the gripper, and the model does not know of it. Computed "
+        "torque with kp = 40 1/s² holds the arm. How far does the tip sag?",
         Number("mm", 0.0, 1000.0),
         truth=21.0,
     ),

@@ -45,8 +45,8 @@ def _return(kp: float, kd: float, settle: float, most: float) -> Loop:
 
 
 HINTS_SWITCH = (
-    "The arm or the law carries the weight, but not both: add model.gravity(state.q) only where "
-    "arm_compensates is False."
+    "Either the arm or the law carries the weight, not both: add model.gravity(state.q) only "
+    "where arm_compensates is False."
 )
 
 TERMS = (
@@ -83,10 +83,10 @@ AUGMENTED_PD = Problem(
     name="augmented_pd",
     points=4,
     outcomes=("control",),
-    asks="Give the `lk.JointTorque` of the augmented PD law: the torque that the target's motion takes "
-    "(M times the target's acceleration, C times the target's speed, the weight if the arm does not "
-    "carry it itself), plus a spring `kp` and a damper `kd` at each joint. M, C and g are those of the "
-    "arm where it is.",
+    asks="Give the `lk.JointTorque` of the augmented PD law: the torque that the target's motion "
+    "takes (M times the target's acceleration, C times the target's speed, and the weight if the "
+    "arm does not carry it itself), plus a spring `kp` and a damper `kd` at each joint. Evaluate "
+    "M, C and g at the arm's own state, not at the target's.",
     answer=answers.augmented_pd,
     judge=TORQUE,
     trials=(
@@ -107,12 +107,13 @@ AUGMENTED_PD = Problem(
     ),
     withheld=("labkit.control.springs",),
     hints=(
-        "Write the error first: e = target.position - state.q, and its rate with the speeds. Then "
-        "the torque is a sum of four things: inertia, Coriolis, weight, springs and dampers.",
+        "Write the error first, e = target.position - state.q, and its rate in the same way from "
+        "the speeds. Then the torque is a sum of four parts: inertia, Coriolis, weight, and the "
+        "springs and dampers.",
         HINTS_SWITCH + " M is model.mass_matrix(state.q), C is model.coriolis(state.q, state.dq).",
-        "Five terms. Two are the motion's own, and both use the target's motion; one is the "
-        "weight, and a condition stands before it; two are the springs and dampers, outside "
-        "of M.",
+        "The law has five terms. Two are for the motion, and both use the target's motion. One is "
+        "the weight, which is added under a condition. Two are the springs and the dampers, which "
+        "M does not multiply.",
     ),
     wrong=(
         Wrong(
@@ -120,7 +121,7 @@ AUGMENTED_PD = Problem(
             "The springs push the arm away from its target. With e as target minus actual, every "
             "gain has a plus.",
             mistakes.actual_minus_target,
-            "Settle the sign of e once, aloud.",
+            "Choose the sign of e once, and say it aloud.",
         ),
         Wrong(
             "the weight carried twice",
@@ -138,17 +139,17 @@ AUGMENTED_PD = Problem(
         ),
         Wrong(
             "C times the arm's own speed",
-            "Multiply C with the target's speed: for this law stability is proven. With the arm's "
-            "own speed, as in the report's equation 18, it takes more damping. At low speed the "
-            "difference is hard to see.",
+            "Multiply C by the target's speed: for this law stability is proven. With the arm's "
+            "own speed, as in the report's equation 18, stability takes more damping. At low "
+            "speed the difference is hard to see.",
             mistakes.own_speed_in_coriolis,
-            "MLS 4.53: C(q, dq) dq_d, so that the skew symmetry of dM - 2C does its work.",
+            "MLS 4.53 has C(q, dq) dq_d, because the proof uses the skew symmetry of dM - 2C.",
         ),
         Wrong(
             "springs and dampers alone",
-            "The torque that the target's motion takes is missing, so the arm must be off its target "
-            "before the springs provide it. Add M times the acceleration and C times the speed of the "
-            "target.",
+            "The torque that the target's motion takes is missing, so the springs give it only "
+            "once the arm is off its target. Add M times the acceleration and C times the speed "
+            "of the target.",
             mistakes.no_motion_terms,
             "Feed-forward does the work, feedback corrects the rest.",
         ),
@@ -161,24 +162,25 @@ AUGMENTED_PD = Problem(
         ),
         Wrong(
             "the model evaluated at the target",
-            "M, C and g are evaluated at the target's angles. The arm feels its inertia and its "
-            "weight where it is: use state.q.",
+            "M, C and g are evaluated at the target's angles. The arm's inertia and weight are "
+            "those of the pose where the arm is: use state.q.",
             mistakes.model_at_the_target,
             "The physics happens at q, not at q_d.",
         ),
         Wrong(
             "the report's gravity",
-            "M J' (0, 0, 0.981, ...) is not a torque (look at its units), only the tip feels it, and it "
-            "comes to a few percent of the weight. Use model.gravity.",
+            "M Jᵀ (0, 0, 0.981, ...) is not a torque (look at its units). It treats gravity as a "
+            "force on the tip alone, and it comes to a few percent of the weight. Use "
+            "model.gravity.",
             mistakes.the_reports_gravity,
-            "Units would have told.",
+            "Check the units of every term.",
         ),
         Wrong(
             "the gains inside M",
-            "This is computed torque, which comes next. Here springs and dampers act on the "
-            "joints directly: keep them outside M.",
+            "This is computed torque, which comes in the next question. In the augmented law the "
+            "springs and dampers act on the joints directly: keep them outside M.",
             mistakes.gains_inside,
-            "Two laws, two theorems: gains in N m/rad here, in 1/s² there.",
+            "In the augmented law the gain kp is in N m/rad, in computed torque it is in 1/s².",
         ),
         Wrong(
             "the springs reversed",
@@ -199,27 +201,27 @@ AUGMENTED_PD = Problem(
             "arm_compensates is True where the arm carries its own weight; add g(q) only where it "
             "is False.",
             mistakes.AugmentedLaw(switch=True),
-            "Say aloud who carries the weight.",
+            "Say who carries the weight: the arm or the law.",
         ),
         Wrong(
             "the weight subtracted",
             "g(q) is what the motors must give to hold the arm: add it.",
             mistakes.AugmentedLaw(weight=-1.0),
-            "g is on the left of the equation, with the motors on the right.",
+            "In the equation of motion g is on the left and the motors are on the right.",
         ),
         Wrong(
             "no Coriolis torques",
             "C times the target's speed is missing. Add it, although at low speed its effect is "
             "hard to see.",
             mistakes.AugmentedLaw(coriolis=0.0),
-            "Small is not nought: try it fast.",
+            "A small effect is not zero: try a fast motion.",
         ),
         Wrong(
             "C of the target's speed",
-            "C must be the arm's own, C(q, q̇). Only the speed that you multiply it with is the "
-            "target's.",
+            "C must be evaluated at the arm's own state, C(q, q̇). Only the speed that you "
+            "multiply by C is the target's.",
             mistakes.AugmentedLaw(at_target=True),
-            "C(q, q̇) q̇_d: which speed stands where?",
+            "C(q, q̇) q̇_d has two speeds: one inside C, one that C multiplies.",
         ),
         Wrong(
             "no inertia",
@@ -229,40 +231,40 @@ AUGMENTED_PD = Problem(
         ),
         Wrong(
             "only the diagonal of M",
-            "The joints move each other, so the numbers beside the diagonal of M matter. Use the "
-            "whole matrix.",
+            "The joints accelerate each other, so the numbers off the diagonal of M matter. Use "
+            "the whole matrix.",
             mistakes.AugmentedLaw(beside=0.0),
-            "M is a matrix, M @ ddq.",
+            "M is a matrix: M @ ddq.",
         ),
         Wrong(
             "kp and kd swapped",
             "kp multiplies the error of the angles, and kd that of the speeds.",
             mistakes.AugmentedLaw(swapped=True),
-            "Units tell: N m/rad, N m s/rad.",
+            "The units tell which is which: kp is in N m/rad, kd in N m s/rad.",
         ),
         Wrong(
             "no springs",
             "kp times the error of the angles is missing: nothing pulls the arm back.",
             mistakes.AugmentedLaw(e=0.0),
-            "Each term has a task; say it.",
+            "Each term has a task: say which.",
         ),
         Wrong(
             "no dampers",
             "kd times the error of the speeds is missing: the arm swings about its target.",
             mistakes.AugmentedLaw(de=0.0),
-            "Each term has a task; say it.",
+            "Each term has a task: say which.",
         ),
         Wrong(
             "the Coriolis torques reversed",
-            "C q̇_d is added: it is what the motion takes.",
+            "Add C q̇_d: it is a part of the torque that the motion takes.",
             mistakes.AugmentedLaw(coriolis=-1.0),
-            "The law is the equation of motion, and springs.",
+            "The law is the equation of motion, plus springs and dampers.",
         ),
         Wrong(
             "half of the Coriolis torques",
-            "model.coriolis holds its one half already.",
+            "model.coriolis contains the factor 1/2 already. Do not halve its torque again.",
             mistakes.AugmentedLaw(coriolis=0.5),
-            "Take a model's term as it is.",
+            "Use each term of the model as it is.",
         ),
         Wrong(
             "C transposed",
@@ -276,21 +278,21 @@ AUGMENTED_PD = Problem(
         ),
         Wrong(
             "the inertia's torque reversed",
-            "M q̈_d is added: it is what the motion takes.",
+            "Add M q̈_d: it is a part of the torque that the motion takes.",
             mistakes.TorqueBy(
                 lambda x: x.motion - 2.0 * x.M @ x.target.acceleration + x.pull + x.g
             ),
-            "The law is the equation of motion, and springs.",
+            "The law is the equation of motion, plus springs and dampers.",
         ),
         Wrong(
             "C times the error of the speeds",
-            "In this law C is multiplied with the target's speed.",
+            "In this law C multiplies the target's speed, not the error of the speeds.",
             mistakes.TorqueBy(lambda x: x.M @ x.target.acceleration + x.C @ x.de + x.pull + x.g),
-            "The law is the equation of motion along the target, and springs.",
+            "The law is the equation of motion for the target's motion, plus springs and dampers.",
         ),
         Wrong(
             "M times a speed",
-            "M is multiplied with the target's acceleration, not with its velocity.",
+            "M multiplies the target's acceleration, not its velocity.",
             mistakes.TorqueBy(
                 lambda x: x.M @ x.target.velocity + x.C @ x.target.velocity + x.pull + x.g
             ),
@@ -298,25 +300,26 @@ AUGMENTED_PD = Problem(
         ),
         Wrong(
             "the springs inside M",
-            "In this law the gains do not multiply M: kp e is a torque.",
+            "In this law M does not multiply the springs: kp e is a torque already.",
             mistakes.TorqueBy(lambda x: x.motion + x.M @ (x.kp * x.e) + x.kd * x.de + x.g),
             "Units: say whether kp e is a torque or an acceleration.",
         ),
         Wrong(
             "the dampers inside M",
-            "In this law the gains do not multiply M: kd ė is a torque.",
+            "In this law M does not multiply the dampers: kd ė is a torque already.",
             mistakes.TorqueBy(lambda x: x.motion + x.kp * x.e + x.M @ (x.kd * x.de) + x.g),
             "Units: say whether kp e is a torque or an acceleration.",
         ),
         Wrong(
             "the weight where the target is",
-            "The arm is heavy where it is, not where it should be: model.gravity(state.q).",
+            "The weight depends on where the arm is, not on where it should be: "
+            "model.gravity(state.q).",
             mistakes.TorqueBy(lambda x: x.motion + x.pull + x.weight_there),
-            "The model is asked at the arm's own angles.",
+            "Evaluate the model at the arm's own angles.",
         ),
         Wrong(
             "the mass matrix where the target is",
-            "M is that of the arm where it is: model.mass_matrix(state.q).",
+            "Evaluate M where the arm is: model.mass_matrix(state.q).",
             mistakes.TorqueBy(
                 lambda x: (
                     x.motion
@@ -325,11 +328,11 @@ AUGMENTED_PD = Problem(
                     + x.g
                 )
             ),
-            "The model is asked at the arm's own angles.",
+            "Evaluate the model at the arm's own angles.",
         ),
         Wrong(
             "C where the target is",
-            "C is that of the arm where it is: model.coriolis(state.q, state.dq).",
+            "Evaluate C where the arm is: model.coriolis(state.q, state.dq).",
             mistakes.TorqueBy(
                 lambda x: (
                     x.motion
@@ -338,29 +341,30 @@ AUGMENTED_PD = Problem(
                     + x.g
                 )
             ),
-            "The model is asked at the arm's own angles.",
+            "Evaluate the model at the arm's own angles.",
         ),
         Wrong(
             "the weight twice",
-            "Where the law carries the weight, it carries it once.",
+            "Where the arm does not carry its weight, add g(q) once.",
             mistakes.AugmentedLaw(weight=2.0),
-            "Ask of each term who else does it.",
+            "Ask of each term whether another term contains it already.",
         ),
         Wrong(
             "half of the weight",
-            "Where the law carries the weight, it carries all of it.",
+            "Where the arm does not carry its weight, add all of g(q).",
             mistakes.AugmentedLaw(weight=0.5),
-            "Take a model's term as it is.",
+            "Use each term of the model as it is.",
         ),
         Wrong(
             "the weight inside M",
-            "model.gravity is a torque already; M times it is not one.",
+            "model.gravity is a torque already. Do not multiply it by M.",
             mistakes.TorqueBy(lambda x: x.motion + x.pull + x.M @ x.g),
             "Units: M times an acceleration is a torque.",
         ),
         Wrong(
             "the bias for C",
-            "`Model.bias` holds C q̇ and g together: the weight comes once too often, and C has the arm's own speed.",
+            "`Model.bias` is C q̇ + g. With it the weight is added once too often, and C "
+            "multiplies the arm's own speed.",
             mistakes.TorqueBy(
                 lambda x: (
                     x.motion
@@ -371,15 +375,16 @@ AUGMENTED_PD = Problem(
                     + x.g
                 )
             ),
-            "Ask of each term who else does it.",
+            "Ask of each term whether another term contains it already.",
         ),
         Wrong(
             "a scalar product for the gains",
-            "np.dot and @ add the seven joints to one number. * multiplies each joint by its own gain.",
+            "np.dot and @ add the products of all seven joints to one number. * multiplies each "
+            "joint by its own gain.",
             mistakes.TorqueBy(
                 lambda x: x.motion + np.dot(x.kp * np.ones(7), x.e) + x.kd * x.de + x.g
             ),
-            "Gains go joint by joint.",
+            "Each joint has its own gain.",
         ),
     ),
     variants=(variants.augmented_by_newton_euler, variants.augmented_in_a_list),
@@ -389,8 +394,8 @@ COMPUTED_TORQUE = Problem(
     name="computed_torque",
     points=4,
     outcomes=("control",),
-    asks="Give the `lk.JointTorque` of computed torque: the acceleration with which the error "
-    "would decay like a damped spring, put through the arm's equation of motion. The weight is added "
+    asks="Give the `lk.JointTorque` of computed torque: the torque that gives the arm the "
+    "acceleration with which the error would decay like that of a damped spring. Add the weight "
     "only if the arm does not carry it itself.",
     answer=answers.computed_torque,
     judge=TORQUE,
@@ -411,31 +416,31 @@ COMPUTED_TORQUE = Problem(
         ),
     ),
     hints=(
-        "Ask first for an acceleration: if the joints had it, the error would obey "
-        "ë + kd ė + kp e = 0. Which one is it?",
+        "First find an acceleration: if the joints had it, the error would obey ë + kd ė + kp e = "
+        "0. Which acceleration is that?",
         "ddq = target.acceleration + kd * de + kp * e. Then the torque for it is that of the "
         "manipulator equation, at the arm's own q and dq. " + HINTS_SWITCH,
-        "Put the acceleration that you ask for into the equation of motion, with the arm's "
-        "own state everywhere else. What the arm does for itself must come off.",
+        "Put the acceleration that you want into the equation of motion, with the arm's own state "
+        "everywhere else. Leave out what the arm does for itself.",
     ),
     wrong=(
         Wrong(
             "the gains outside M",
-            "With the gains outside M every joint answers in its own way, for each has another "
-            "inertia. Put kp e and kd ė into the acceleration, before M is multiplied.",
+            "With the gains outside M every joint responds differently, because each has another "
+            "inertia. Put kp e and kd ė into the acceleration, before you multiply by M.",
             mistakes.gains_outside,
-            "Computed torque: gains in 1/s², so they stand inside M.",
+            "In computed torque kp is in 1/s², so it belongs inside M.",
         ),
         Wrong(
             "the model evaluated at the target",
             "M, C and g are evaluated at the target's angles and speeds. They cancel the arm's "
-            "own only where the arm is: use state.q and state.dq.",
+            "own torques only if they are evaluated where the arm is: use state.q and state.dq.",
             mistakes.everything_at_the_target,
             "What is to cancel must be evaluated at the same place.",
         ),
         Wrong(
             "the weight carried twice",
-            "The weight is in although the arm carries it already. inverse_dynamics and bias "
+            "The weight is added although the arm carries it already. inverse_dynamics and bias "
             "contain g: subtract it where arm_compensates is True.",
             mistakes.carries_twice,
             "Know what a library call contains.",
@@ -444,19 +449,20 @@ COMPUTED_TORQUE = Problem(
             "a weight that nobody carries",
             "Where arm_compensates is False, nothing carries the weight. Add g(q) there.",
             mistakes.weightless,
-            "Without it, e = g / (M kp) remains.",
+            "Without g an error e = M⁻¹ g / kp remains.",
         ),
         Wrong(
             "C times the target's speed",
-            "C dq_d belongs to the augmented law. Here the arm's own Coriolis torque has to "
-            "cancel: multiply C with the arm's own speed.",
+            "C dq_d belongs to the augmented law. In computed torque C must cancel the arm's own "
+            "Coriolis torque: multiply C by the arm's own speed.",
             mistakes.targets_speed_in_coriolis,
             "Cancel what is there: C(q, dq) dq.",
         ),
         Wrong(
             "the target's acceleration left out",
-            "Without the target's acceleration the arm falls behind while the target speeds up, and "
-            "runs ahead while it brakes. Add the acceleration before you multiply with M; a target at rest does not show this.",
+            "Without the target's acceleration the arm falls behind while the target speeds up, "
+            "and runs ahead while the target brakes. Add the acceleration before you multiply by "
+            "M. A target at rest does not show this mistake.",
             mistakes.no_target_acceleration,
             "Feed-forward.",
         ),
@@ -464,7 +470,7 @@ COMPUTED_TORQUE = Problem(
             "the error reversed",
             "The arm runs away from its target. Take target minus actual for both errors.",
             mistakes.runs_away,
-            "Settle the sign of e once, aloud.",
+            "Choose the sign of e once, and say it aloud.",
         ),
         Wrong(
             "the error of the angles reversed",
@@ -484,85 +490,86 @@ COMPUTED_TORQUE = Problem(
             "Where arm_compensates is True the arm carries its own weight, and the law adds none. "
             "(model.inverse_dynamics contains g already; subtract it only there.)",
             mistakes.ComputedLaw(switch=True),
-            "Say aloud who carries the weight.",
+            "Say who carries the weight: the arm or the law.",
         ),
         Wrong(
             "g added to inverse_dynamics",
-            "The weight is in twice: model.inverse_dynamics contains g already. Do not add it "
-            "again.",
+            "The weight is added once too often: model.inverse_dynamics contains g already.",
             mistakes.ComputedLaw(twice=True),
-            "Know what a function holds before you add to it.",
+            "Know what a function contains before you add to it.",
         ),
         Wrong(
             "no Coriolis torques",
             "C times the arm's speed is missing. Add it, although at low speed its effect is hard "
             "to see.",
             mistakes.ComputedLaw(coriolis=0.0),
-            "Small is not nought: try it fast.",
+            "A small effect is not zero: try a fast motion.",
         ),
         Wrong(
             "the Coriolis torques inside M",
-            "C q̇ is a torque already: it is added after M, not to the acceleration.",
+            "C q̇ is a torque already: add it after you multiply by M, not to the acceleration.",
             mistakes.ComputedLaw(coriolis=0.0, drift=1.0),
-            "Units tell: N m and rad/s².",
+            "Check the units: N m or rad/s²?",
         ),
         Wrong(
             "the acceleration given as a torque",
             "This is an acceleration. Multiply it by M to get a torque.",
             mistakes.ComputedLaw(power=0),
-            "Units tell: N m and rad/s².",
+            "Check the units: N m or rad/s²?",
         ),
         Wrong(
             "the inverse of M",
-            "M itself turns an acceleration into a torque.",
+            "M itself turns an acceleration into a torque. Do not invert it.",
             mistakes.ComputedLaw(power=-1),
-            "Units tell: N m and rad/s².",
+            "Check the units: N m or rad/s²?",
         ),
         Wrong(
             "kp and kd swapped",
             "kp multiplies the error of the angles, and kd that of the speeds.",
             mistakes.ComputedLaw(swapped=True),
-            "Units tell: kp is in 1/s², kd in 1/s.",
+            "The units tell which is which: kp is in 1/s², kd in 1/s.",
         ),
         Wrong(
             "no springs",
             "kp times the error of the angles is missing: nothing pulls the arm back.",
             mistakes.ComputedLaw(e=0.0),
-            "Each term has a task; say it.",
+            "Each term has a task: say which.",
         ),
         Wrong(
             "no dampers",
             "kd times the error of the speeds is missing: the arm swings about its target.",
             mistakes.ComputedLaw(de=0.0),
-            "Each term has a task; say it.",
+            "Each term has a task: say which.",
         ),
         Wrong(
             "damps the motion, not the error",
-            "kd multiplies the arm's own speed: it brakes where the target moves on. The error of the speeds is target minus actual.",
+            "kd multiplies the arm's own speed, so it brakes the arm even when the arm moves "
+            "exactly as its target does. Multiply kd by the error of the speeds, target minus "
+            "actual.",
             mistakes.TorqueBy(lambda x: x.M @ (x.wish - x.kd * x.target.velocity) + x.drift + x.g),
             "A damper is tied to the target, not to the room.",
         ),
         Wrong(
             "the Coriolis torques reversed",
-            "C q̇ is added: the arm needs it, whatever the law.",
+            "Add C q̇: the arm needs this torque, whatever the law.",
             mistakes.ComputedLaw(coriolis=-1.0),
             "The law is the equation of motion with another acceleration.",
         ),
         Wrong(
             "half of the Coriolis torques",
-            "model.coriolis holds its one half already.",
+            "model.coriolis contains the factor 1/2 already. Do not halve its torque again.",
             mistakes.ComputedLaw(coriolis=0.5),
-            "Take a model's term as it is.",
+            "Use each term of the model as it is.",
         ),
         Wrong(
             "the Coriolis torques twice",
-            "C q̇ comes once.",
+            "Add C q̇ once.",
             mistakes.ComputedLaw(coriolis=2.0),
-            "Take a model's term as it is.",
+            "Use each term of the model as it is.",
         ),
         Wrong(
             "C times the error of the speeds",
-            "In this law C is multiplied with the arm's own speed.",
+            "In this law C multiplies the arm's own speed, not the error of the speeds.",
             mistakes.TorqueBy(lambda x: x.M @ x.wish + x.C @ x.de + x.g),
             "The law is the equation of motion with another acceleration.",
         ),
@@ -574,19 +581,19 @@ COMPUTED_TORQUE = Problem(
         ),
         Wrong(
             "the springs outside M",
-            "kp e is an acceleration in this law: it stands inside the bracket that M multiplies.",
+            "kp e is an acceleration in this law: it belongs inside the bracket that M multiplies.",
             mistakes.TorqueBy(lambda x: x.M @ (x.wish - x.kp * x.e) + x.kp * x.e + x.drift + x.g),
             "Units: say whether kp e is a torque or an acceleration.",
         ),
         Wrong(
             "the dampers outside M",
-            "kd ė is an acceleration in this law: it stands inside the bracket that M multiplies.",
+            "kd ė is an acceleration in this law: it belongs inside the bracket that M multiplies.",
             mistakes.TorqueBy(lambda x: x.M @ (x.wish - x.kd * x.de) + x.kd * x.de + x.drift + x.g),
             "Units: say whether kp e is a torque or an acceleration.",
         ),
         Wrong(
             "the target's acceleration outside M",
-            "M multiplies the whole acceleration, the target's too.",
+            "M multiplies the whole acceleration, including the target's.",
             mistakes.TorqueBy(
                 lambda x: (
                     x.M @ (x.wish - x.target.acceleration) + x.target.acceleration + x.drift + x.g
@@ -596,7 +603,8 @@ COMPUTED_TORQUE = Problem(
         ),
         Wrong(
             "the target's acceleration reversed",
-            "The target's acceleration is added: it is what the arm should do without any error.",
+            "Add the target's acceleration: without any error, it is the acceleration that the "
+            "arm should have.",
             mistakes.TorqueBy(
                 lambda x: x.M @ (x.wish - 2.0 * x.target.acceleration) + x.drift + x.g
             ),
@@ -604,27 +612,28 @@ COMPUTED_TORQUE = Problem(
         ),
         Wrong(
             "the weight inside M",
-            "model.gravity is a torque already; M times it is not one.",
+            "model.gravity is a torque already. Do not multiply it by M.",
             mistakes.TorqueBy(lambda x: x.M @ (x.wish + x.g) + x.drift),
             "Units: M times an acceleration is a torque.",
         ),
         Wrong(
             "the weight where the target is",
-            "The arm is heavy where it is, not where it should be: model.gravity(state.q).",
+            "The weight depends on where the arm is, not on where it should be: "
+            "model.gravity(state.q).",
             mistakes.TorqueBy(lambda x: x.M @ x.wish + x.drift + x.weight_there),
-            "The model is asked at the arm's own angles.",
+            "Evaluate the model at the arm's own angles.",
         ),
         Wrong(
             "the mass matrix where the target is",
-            "M is that of the arm where it is: model.mass_matrix(state.q).",
+            "Evaluate M where the arm is: model.mass_matrix(state.q).",
             mistakes.TorqueBy(
                 lambda x: x.model.mass_matrix(x.target.position) @ x.wish + x.drift + x.g
             ),
-            "The model is asked at the arm's own angles.",
+            "Evaluate the model at the arm's own angles.",
         ),
         Wrong(
             "C where the target is",
-            "C is that of the arm where it is: model.coriolis(state.q, state.dq).",
+            "Evaluate C where the arm is: model.coriolis(state.q, state.dq).",
             mistakes.TorqueBy(
                 lambda x: (
                     x.M @ x.wish
@@ -632,35 +641,37 @@ COMPUTED_TORQUE = Problem(
                     + x.g
                 )
             ),
-            "The model is asked at the arm's own angles.",
+            "Evaluate the model at the arm's own angles.",
         ),
         Wrong(
-            "the weight taken off",
-            "Gravity pulls down, and the motors hold against it: model.gravity is added.",
+            "the weight subtracted",
+            "Gravity pulls down and the motors hold against it, so add model.gravity.",
             mistakes.TorqueBy(lambda x: x.M @ x.wish + x.drift - x.g),
-            "model.gravity is what must be held.",
+            "model.gravity is the torque that holds the arm.",
         ),
         Wrong(
             "half of the weight",
-            "Where the law carries the weight, it carries all of it.",
+            "Where the arm does not carry its weight, add all of g(q).",
             mistakes.TorqueBy(lambda x: x.M @ x.wish + x.drift + 0.5 * x.g),
-            "Take a model's term as it is.",
+            "Use each term of the model as it is.",
         ),
         Wrong(
             "only the diagonal of M",
-            "The joints shake one another: what is beside the diagonal of M belongs to the law.",
+            "The joints accelerate each other, so the numbers off the diagonal of M belong to the "
+            "law. Use the whole matrix.",
             mistakes.TorqueBy(lambda x: np.diag(x.M) * x.wish + x.drift + x.g),
             "A mass matrix couples the joints.",
         ),
         Wrong(
             "M twice",
-            "M comes once: M times an acceleration is a torque.",
+            "Multiply by M once: M times an acceleration is a torque.",
             mistakes.ComputedLaw(power=2),
             "Units: M times an acceleration is a torque.",
         ),
         Wrong(
             "a scalar product for the gains",
-            "np.dot and @ add the seven joints to one number. * multiplies each joint by its own gain.",
+            "np.dot and @ add the products of all seven joints to one number. * multiplies each "
+            "joint by its own gain.",
             mistakes.TorqueBy(
                 lambda x: (
                     x.M @ (x.target.acceleration + np.dot(x.kp * np.ones(7), x.e) + x.kd * x.de)
@@ -668,7 +679,7 @@ COMPUTED_TORQUE = Problem(
                     + x.g
                 )
             ),
-            "Gains go joint by joint.",
+            "Each joint has its own gain.",
         ),
     ),
     variants=(variants.computed_by_newton_euler, variants.computed_by_bias),
@@ -681,9 +692,9 @@ GAINS_FOR = Problem(
     points=2,
     core=False,
     outcomes=("control",),
-    asks="The error should obey ë + kd ė + kp e = 0. Give `(kp, kd)` for a "
-    "natural `frequency` in Hz, that of the swing without damping, and a `damping_ratio`. Both may be "
-    "numbers or arrays.",
+    asks="The error should obey ë + kd ė + kp e = 0. Give `(kp, kd)` for a `frequency` in Hz and "
+    "a `damping_ratio`. The frequency is the natural one: that of the swing without damping. Both "
+    "may be numbers or arrays.",
     answer=answers.gains_for,
     judge=Close(parts=("kp", "kd")),
     trials=(
@@ -707,7 +718,8 @@ GAINS_FOR = Problem(
         "Compare with the equation of a damped spring, ë + 2 ζ ω ė + ω² e = 0. What is ω, in rad/s, "
         "if the frequency is in Hz?",
         "ω = 2π · frequency. Compare the two equations term by term.",
-        "Compare the two equations term by term; a frequency in Hz is not yet ω.",
+        "Compare the coefficients of e and of ė in the two equations. A frequency in Hz is not "
+        "yet ω.",
     ),
     wrong=(
         Wrong(
@@ -733,11 +745,11 @@ GAINS_FOR = Problem(
             "kp without the square",
             "kp is in 1/s². Square ω.",
             mistakes.root_as_gain,
-            "Units again.",
+            "Check the unit: kp is in 1/s², ω in rad/s.",
         ),
         Wrong(
             "the damping ratio as a gain",
-            "The ratio has no unit, kd is in 1/s: it needs 2 ω beside it.",
+            "The damping ratio has no unit, and kd is in 1/s: multiply the ratio by 2 ω.",
             mistakes.damping_is_the_ratio,
             "A ratio compares with critical damping, 2 ω.",
         ),
@@ -745,7 +757,7 @@ GAINS_FOR = Problem(
             "the square of the frequency alone",
             "kp is the square of the whole ω = 2πf, the 2π included.",
             mistakes.square_of_the_frequency_alone,
-            "Brackets before powers.",
+            "Write the brackets: (2π f)², not 2π f².",
         ),
         Wrong(
             "divided by 2π",
@@ -755,13 +767,13 @@ GAINS_FOR = Problem(
         ),
         Wrong(
             "kp in the place of ω",
-            "You used kp in the place of ω. kd = 2 ζ ω, and ω is the root of kp.",
+            "You used kp instead of ω. kd = 2 ζ ω, and ω is the square root of kp.",
             mistakes.stiffness_for_frequency,
-            "Units tell: kd is in 1/s.",
+            "Check the unit: kd is in 1/s.",
         ),
         Wrong(
             "π for 2π",
-            "Once round is 2π: ω = 2π f. Yours is half of it.",
+            "One turn is 2π radians: ω = 2π f. Your ω is half of that.",
             mistakes.GainsOf(lambda w, z: ((w / 2.0) ** 2, z * w)),
             "ω = 2π f.",
         ),
@@ -776,18 +788,19 @@ GAINS_FOR = Problem(
             "np.dot and @ add up the products of all joints. * multiplies joint by joint, so that "
             "each joint has its own kd.",
             mistakes.GainsOf(lambda w, z: (w**2, 2.0 * np.dot(z, w))),
-            "Between arrays, * goes entry by entry and @ sums.",
+            "Between arrays, * multiplies entry by entry and @ sums.",
         ),
         Wrong(
             "the damped frequency",
-            "The frequency is the natural one, ω itself. Yours makes the damped swing have it, ω √(1 - ζ²).",
+            "`frequency` is the natural frequency, ω. Your gains give it to the damped swing, "
+            "whose frequency is ω √(1 - ζ²).",
             mistakes.GainsOf(
                 lambda w, z: (
                     w**2 / (1.0 - np.minimum(z, 0.999) ** 2),
                     2.0 * z * w / np.sqrt(1.0 - np.minimum(z, 0.999) ** 2),
                 )
             ),
-            "Natural frequency: that of the springs without dampers.",
+            "The natural frequency is that of the springs without dampers.",
         ),
     ),
     variants=(variants.gains_by_roots,),
@@ -820,10 +833,10 @@ SAMPLED_JOINT = Problem(
     hints=(
         "During one period the torque does not change, so the acceleration does not either. What are "
         "angle and speed after dt at constant acceleration a?",
-        "q + dt q̇ + dt²/2 · a, and q̇ + dt · a. Now put a = -(kp q + kd q̇) / inertia and collect what "
-        "stands before q and before q̇.",
-        "With τ held, q grows by dt·dq + ½dt²·τ/m and dq by dt·τ/m. Put in what τ is, and "
-        "read off what stands before q and before dq.",
+        "They are q + dt q̇ + dt²/2 · a and q̇ + dt · a. Now put in a = -(kp q + kd q̇) / "
+        "inertia, and collect the factors of q and of q̇.",
+        "With τ held, q grows by dt·dq + ½dt²·τ/m and dq grows by dt·τ/m. Replace τ by what the "
+        "law commands, and read off the factors of q and of dq.",
     ),
     wrong=(
         Wrong(
@@ -836,8 +849,9 @@ SAMPLED_JOINT = Problem(
         ),
         Wrong(
             "a torque that is not held",
-            "In this loop the torque changes all the time, and it is stable for all positive "
-            "gains. A sampled loop is not: hold the torque during the period.",
+            "Your matrix belongs to a loop in which the torque changes all the time. Such a loop "
+            "is stable for all positive gains, and a sampled one is not: hold the torque during "
+            "the period.",
             mistakes.torque_never_held,
             "exp(A_closed dt) samples a continuous loop; the loop itself is not sampled.",
         ),
@@ -846,19 +860,20 @@ SAMPLED_JOINT = Problem(
             "The angle moves with the speed at the end of the period. Use the mean of the old and "
             "the new speed.",
             mistakes.new_speed_first,
-            "Semi-implicit Euler is what a simulator does; here the exact answer is asked.",
+            "Many simulators use this step, semi-implicit Euler. The question asks for the exact "
+            "one.",
         ),
         Wrong(
             "the torque with the wrong sign",
-            "The torque pushes the joint away from zero. Its sign is negative: -kp q - kd q̇.",
+            "Your torque pushes the joint away from zero. It should be -kp q - kd q̇.",
             mistakes.pushes_away,
-            "Feedback against the error.",
+            "Feedback acts against the error.",
         ),
         Wrong(
             "torque taken for acceleration",
             "The inertia is missing. Divide the torque by it to get the acceleration.",
             mistakes.without_inertia,
-            "The whole point is that the wrist has so little of it.",
+            "A wrist is difficult because its inertia is so small.",
         ),
         Wrong(
             "the matrix of the differential equation",
@@ -872,51 +887,53 @@ SAMPLED_JOINT = Problem(
             "Rows and columns are swapped. The first row gives the new angle, the second the new "
             "speed.",
             mistakes.on_its_side,
-            "At rest, with no gains: q + dt q̇ is the first row.",
+            "Without gains the new angle is q + dt q̇: that is the first row.",
         ),
         Wrong(
             "multiplied by the inertia",
-            "Divide the torque by it to get the acceleration.",
+            "Divide the torque by the inertia to get the acceleration.",
             mistakes.times_inertia,
-            "The heavier, the slower.",
+            "The heavier the joint, the smaller its acceleration.",
         ),
         Wrong(
             "kp and kd swapped",
             "kp multiplies the angle and kd the speed.",
             mistakes.gains_of_the_other,
-            "Columns: angle, speed.",
+            "The first column belongs to the angle, the second to the speed.",
         ),
         Wrong(
             "a series of the loop that is never sampled",
-            "I + A dt + (A dt)²/2 lets the torque change during the step. The torque "
-            "is held: it adds dt²/2 · a to the angle and dt · a to the speed, and nothing of higher order.",
+            "I + A dt + (A dt)²/2 lets the torque change during the step. The held torque adds "
+            "dt²/2 · a to the angle and dt · a to the speed, and no term of higher order.",
             mistakes.second_order_series,
-            "What stands still during the step?",
+            "What stays constant during the step?",
         ),
         Wrong(
             "a damper that does not move the angle",
             "The torque of the damper accelerates the joint from the first moment on: -kd dt²/(2 "
             "inertia) belongs to the angle too.",
             mistakes.half_forgotten,
-            "Both columns have both torques.",
+            "The spring and the damper each move both angle and speed.",
         ),
         Wrong(
             "an implicit step",
-            "This takes the torque from the end of the step, which no computer knows yet. Hold "
-            "the torque of its beginning: the real loop can become unstable, and an implicit step "
-            "never does.",
+            "This uses the torque at the end of the step, which the computer cannot know yet. "
+            "Hold the torque of the beginning. The real loop can become unstable, and with an "
+            "implicit step it never would.",
             mistakes.implicit_step,
             "A stable formula does not make a stable arm.",
         ),
         Wrong(
             "the kick's rows exchanged",
-            "A held torque moves the angle by dt²/2 and the speed by dt. Yours has the two exchanged.",
+            "A held torque changes the angle by dt²/2 · a and the speed by dt · a. You have "
+            "exchanged the two.",
             mistakes.Stepped(kick=lambda dt, i: [dt / i, dt**2 / 2.0 / i]),
             "Angle: dt²/2. Speed: dt.",
         ),
         Wrong(
             "the free motion stands still",
-            "Without a torque the angle goes on with its speed: the upper right number is dt.",
+            "Without a torque the angle still changes with the speed: the upper right number "
+            "begins with dt.",
             mistakes.Stepped(lambda dt: np.eye(2)),
             "A joint without torque keeps its speed.",
         ),
@@ -928,25 +945,26 @@ SAMPLED_JOINT = Problem(
         ),
         Wrong(
             "dt² for the speed too",
-            "A constant acceleration changes the speed by a dt, with dt once.",
+            "A constant acceleration a changes the speed by a · dt, not by a · dt².",
             mistakes.Stepped(kick=lambda dt, i: [dt**2 / 2.0 / i, dt**2 / i]),
             "Integrate once for the speed, twice for the angle.",
         ),
         Wrong(
             "the inertia for the speed alone",
-            "The angle's kick is divided by the inertia as well.",
+            "Divide the torque by the inertia in the row of the angle as well.",
             mistakes.Stepped(kick=lambda dt, i: [dt**2 / 2.0, dt / i]),
             "A torque divided by the inertia is an acceleration.",
         ),
         Wrong(
             "the inertia for the angle alone",
-            "The speed's kick is divided by the inertia as well.",
+            "Divide the torque by the inertia in the row of the speed as well.",
             mistakes.Stepped(kick=lambda dt, i: [dt**2 / 2.0 / i, dt]),
             "A torque divided by the inertia is an acceleration.",
         ),
         Wrong(
             "no free motion",
-            "The state before the step is lost: to the kick comes the free motion [[1, dt], [0, 1]].",
+            "Your matrix loses the state before the step: add the free motion [[1, dt], [0, 1]] "
+            "to the effect of the torque.",
             mistakes.Stepped(lambda dt: np.zeros((2, 2))),
             "A joint without torque keeps its speed.",
         ),
@@ -958,13 +976,13 @@ SAMPLED_JOINT = Problem(
         ),
         Wrong(
             "only the damper",
-            "kp is left out: the springs pull as well.",
+            "kp is left out: the spring pulls as well.",
             mistakes.PullOnly(0.0, 1.0),
             "tau = -kp q - kd dq.",
         ),
         Wrong(
             "only the spring",
-            "kd is left out: the dampers brake as well.",
+            "kd is left out: the damper brakes as well.",
             mistakes.PullOnly(1.0, 0.0),
             "tau = -kp q - kd dq.",
         ),
@@ -987,9 +1005,9 @@ GRAVITY_FACTOR = Problem(
         "control",
         "experiment",
     ),
-    asks="In N rest poses you read the torques that hold the arm, `tau_hold`, and compute the model's "
-    "`gravity_model`, both of shape (N, 7). Give the one factor by which the model's gravity explains "
-    "the torques best, in the sense of least squares.",
+    asks="At rest in N poses you read the torques that hold the arm, `tau_hold`, and compute the "
+    "model's `gravity_model`, both of shape (N, 7). Give the one factor for the model's gravity "
+    "that explains the torques best, in the sense of least squares.",
     answer=answers.gravity_factor,
     judge=Close(rtol=1e-6, atol=1e-9),
     trials=(
@@ -1014,17 +1032,19 @@ GRAVITY_FACTOR = Problem(
         ),
     ),
     hints=(
-        "One unknown k, and 7 N equations tau = k g. For which k is the sum of (tau - k g)² least?",
-        "Differentiate that sum by k and set it to zero: k is a fraction of two sums.",
-        "Write the sum of squares of τ - k g over all poses and joints, set its derivative by "
-        "k to zero, and solve. One fraction remains.",
+        "There is one unknown, k, and there are 7 N equations, tau = k g. For which k is the sum "
+        "of (tau - k g)² least?",
+        "Differentiate that sum with respect to k and set the derivative to zero: k is a fraction "
+        "of two sums.",
+        "Write the sum of squares of τ - k g over all poses and joints, set its derivative with "
+        "respect to k to zero, and solve. One fraction remains.",
     ),
     wrong=(
         Wrong(
             "the mean of ratios",
-            "Joint s0 is vertical and carries nothing, so its ratio divides by zero, and in the "
-            "wrist the noise is divided by almost zero. Use least squares, which weighs each "
-            "equation by what it knows.",
+            "The axis of joint s0 is vertical and carries no weight, so its ratio divides by "
+            "zero; in the wrist the noise is divided by almost zero. Use least squares, in which "
+            "small torques count little.",
             mistakes.mean_of_ratios,
             "Never divide by a measurement that may be zero.",
         ),
@@ -1040,12 +1060,12 @@ GRAVITY_FACTOR = Problem(
             "This fit explains the model by the torques, and the noise in them makes the factor "
             "too large. Fit the torques to the model.",
             mistakes.other_regression,
-            "Least squares is not symmetric: errors belong to the left side.",
+            "Least squares is not symmetric: it puts all of the noise on one side of the equation.",
         ),
         Wrong(
             "a ratio of lengths",
-            "A length has no sign and no direction, so that noise alone gives a factor too. Use "
-            "least squares.",
+            "A length has no sign and no direction, so noise alone gives a factor too. Use least "
+            "squares.",
             mistakes.ratio_of_lengths,
             "Project, do not compare lengths.",
         ),
@@ -1054,7 +1074,7 @@ GRAVITY_FACTOR = Problem(
             "Torques of opposite sign cancel in the sums before they are compared. Use least "
             "squares.",
             mistakes.ratio_of_sums,
-            "Sums of signed numbers lose what they stand for.",
+            "Numbers of opposite sign cancel in a sum.",
         ),
         Wrong(
             "a line with an offset",
@@ -1067,25 +1087,25 @@ GRAVITY_FACTOR = Problem(
             "This is a factor of the torques. For the factor of the model, divide by the model's "
             "squares, not by the torques'.",
             mistakes.model_over_torque,
-            "What explains what?",
+            "Say which quantity explains the other.",
         ),
         Wrong(
             "one over the factor",
-            "Look at tau = factor · g again.",
+            "You return the reciprocal. Look at tau = factor · g again.",
             mistakes.one_over_the_factor,
-            "What explains what?",
+            "Say which quantity explains the other.",
         ),
         Wrong(
             "a mean over poses",
-            "A pose with little weight tells little, and counts here as much as any. Sum over all "
-            "joints and poses first.",
+            "A pose with small torques says little about the factor, but here it counts as much "
+            "as any other. Sum over all joints and poses first.",
             mistakes.mean_over_poses,
             "Sum, then divide.",
         ),
         Wrong(
             "a mean over joints",
-            "A joint without load tells nothing, and counts here as much as any. Sum over all "
-            "joints and poses first.",
+            "A joint without load says nothing about the factor, but here it counts as much as "
+            "any other. Sum over all joints and poses first.",
             mistakes.mean_over_joints,
             "Sum, then divide.",
         ),
@@ -1097,25 +1117,27 @@ GRAVITY_FACTOR = Problem(
         ),
         Wrong(
             "one pose alone",
-            "All poses count; this is the factor of the first one.",
+            "This is the factor of the first pose. Use all poses.",
             mistakes.Fit(lambda t, g: np.sum(t[0] * g[0]) / np.sum(g[0] ** 2)),
             "More data, less noise.",
         ),
         Wrong(
             "the last pose alone",
-            "All poses count; this is the factor of the last one.",
+            "This is the factor of the last pose. Use all poses.",
             mistakes.Fit(lambda t, g: np.sum(t[-1] * g[-1]) / np.sum(g[-1] ** 2)),
             "More data, less noise.",
         ),
         Wrong(
             "a median of ratios",
-            "Ratios of small numbers are mostly noise, and a median of them too. Least squares weighs by size.",
+            "Ratios of small numbers are mostly noise, and so is their median. Use least squares, "
+            "in which small numbers count little.",
             mistakes.Fit(lambda t, g: np.nanmedian(t / g)),
-            "Divide sums, do not average ratios.",
+            "Divide two sums; do not average ratios.",
         ),
         Wrong(
             "a correlation",
-            "A correlation has no size: it says how well a factor explains, not which.",
+            "A correlation says how well a factor explains the torques, not how large the factor "
+            "is.",
             mistakes.Fit(lambda t, g: np.corrcoef(t.ravel(), g.ravel())[0, 1]),
             "A correlation is not a slope.",
         ),
@@ -1123,23 +1145,24 @@ GRAVITY_FACTOR = Problem(
             "no denominator",
             "Σ τ g is not yet a factor: divide it by Σ g².",
             mistakes.Fit(lambda t, g: np.sum(t * g)),
-            "Units: a factor has none.",
+            "A factor has no unit.",
         ),
         Wrong(
             "a ratio of the largest",
-            "Two single numbers decide here. Least squares uses all.",
+            "Here two single numbers decide. Least squares uses all of them.",
             mistakes.Fit(lambda t, g: np.abs(t).max() / np.abs(g).max()),
             "More data, less noise.",
         ),
         Wrong(
             "a ratio of the mean sizes",
-            "Sizes add noise that would cancel. Least squares: Σ τ g / Σ g².",
+            "Without signs the noise adds up instead of cancelling. Use least squares: Σ τ g / Σ "
+            "g².",
             mistakes.Fit(lambda t, g: np.abs(t).mean() / np.abs(g).mean()),
             "Keep the signs.",
         ),
         Wrong(
             "products without their signs",
-            "|τ g| adds noise that would cancel: keep the signs.",
+            "In |τ g| the noise adds up instead of cancelling: keep the signs.",
             mistakes.Fit(lambda t, g: np.abs(t * g).sum() / np.sum(g**2)),
             "Keep the signs.",
         ),
@@ -1147,19 +1170,19 @@ GRAVITY_FACTOR = Problem(
             "a difference for the factor",
             "The mean of τ - g is a torque. A factor has no unit.",
             mistakes.Fit(lambda t, g: np.mean(t - g)),
-            "Units: a factor has none.",
+            "A factor has no unit.",
         ),
         Wrong(
             "in percent",
-            "The factor itself is asked for, not a hundred times it.",
+            "This is a percentage. Give the factor itself.",
             mistakes.Fit(lambda t, g: 100.0 * np.sum(t * g) / np.sum(g**2)),
             "Say the unit of every number.",
         ),
         Wrong(
             "what is left over",
-            "This is the residual. The factor that makes it smallest is asked for.",
+            "This is the residual. Give the factor that makes it smallest.",
             mistakes.Fit(lambda t, g: np.sum((t - g * np.sum(t * g) / np.sum(g**2)) ** 2)),
-            "Residual and fit are two things.",
+            "A residual is what a fit leaves over.",
         ),
     ),
     variants=(variants.factor_by_lstsq,),
@@ -1179,10 +1202,11 @@ CHOOSE_GAINS = Problem(
     name="choose_gains",
     points=3,
     outcomes=("control",),
-    asks="Choose `(kp, kd)` in N m/rad and N m s/rad, each a number or seven, for springs and dampers at "
-    "the joints of the `lk.BAXTER` arm (`lk.control.springs`, 200 Hz). They must serve on a slow line, "
-    "on quicker paths, and with up to a kilogram in the gripper that the model does not know of; and an "
-    "arm that is let go beside its target must come to rest there.",
+    asks="Choose `(kp, kd)` in N m/rad and N m s/rad, each one number or seven, for springs and "
+    "dampers at the joints of the `lk.BAXTER` arm (`lk.control.springs`, 200 Hz). The same gains "
+    "must work on a slow line, on quicker paths, and with up to a kilogram in the gripper that "
+    "the model does not know of. An arm that is released beside its target must come to rest "
+    "there.",
     answer=answers.choose_gains,
     expected=lambda model: None,
     judge=Gains(),
@@ -1226,37 +1250,38 @@ CHOOSE_GAINS = Problem(
         ),
     ),
     hints=(
-        "Let every joint swing alike: choose one frequency and one damping ratio, and multiply the "
-        "gains by each joint's inertia. Which inertia is on the diagonal of M.",
-        "Too soft, and friction and the load win. Too stiff, and the state, up to 14 ms old, comes too "
-        "late: stay well below one tenth of the 100 Hz at which it is published. Draw the error over "
-        "the frequency, between 0.5 and 5 Hz.",
-        "Multiply the square of the frequency, in rad/s, by the inertia that each joint "
-        "feels, and critical damping follows from the two. The frequency is yours to find: "
-        "between one and three hertz.",
+        "Let every joint swing alike: choose one frequency and one damping ratio, and multiply "
+        "the gains by each joint's inertia, which is on the diagonal of M.",
+        "If the springs are too soft, friction and the load win. If they are too stiff, the "
+        "state, which is up to 14 ms old, comes too late: stay well below one tenth of the 100 Hz "
+        "at which the state is published. Draw the error over the frequency, between 0.5 and 5 Hz.",
+        "Multiply the square of the frequency, in rad/s, by the inertia that each joint feels. "
+        "Critical damping follows from the two. The frequency is for you to find: it is between "
+        "one and three hertz.",
     ),
     wrong=(
         Wrong(
             "gains tuned on the slow line only",
-            "These gains are good enough for the slow line only. Friction, the faster circle and "
+            "These gains are good enough for the slow line only. Friction, the quicker circle and "
             "the load stretch such soft springs three times as far as necessary: try those as "
             "well.",
             mistakes.Swings(6.0),
-            "Gains that were tried on one motion are tuned to that motion.",
+            "Gains that were tried on one motion suit that motion.",
         ),
         Wrong(
             "too stiff for an old state",
-            "The arm buzzes, because it reacts to where it was 14 ms ago. Lower the gains: a loop "
-            "must be slower than its news.",
+            "The arm shakes, because it reacts to where it was 14 ms ago. Lower the gains: a loop "
+            "must be slower than the delay of its measurements.",
             mistakes.Swings(25.0),
             "Delay times bandwidth must stay well below one.",
         ),
         Wrong(
             "the same gains in every joint",
-            "The last wrist joint has a fortieth of the shoulder's inertia, so gains that are mild at the "
-            "shoulder are fierce at the wrist. Scale the gains with each joint's own inertia, not with one number for all.",
+            "The last wrist joint has a fortieth of the shoulder's inertia, so gains that are "
+            "mild at the shoulder are fierce at the wrist. Scale the gains by each joint's own "
+            "inertia.",
             mistakes.same_for_every_joint,
-            "N m/rad means something only beside kg m².",
+            "Whether a stiffness in N m/rad is large depends on the inertia in kg m².",
         ),
         Wrong(
             "kd before kp",
@@ -1270,21 +1295,21 @@ CHOOSE_GAINS = Problem(
             "With 8 N m/rad at the shoulder, one newton metre of friction leaves an error of an "
             "eighth of a radian, as the report's figures show. Make the springs stiffer.",
             mistakes.the_reports_gains,
-            "Their plateaus are friction over kp.",
+            "The plateaus in the report's figures are friction divided by kp.",
         ),
         Wrong(
             "too little damping",
-            "Released beside its target the arm swings for seconds, which a smooth tour does not "
-            "show. Critical damping is kd = 2 m ω; use at least half of it.",
+            "Released beside its target, the arm swings for seconds, which a smooth motion does "
+            "not show. Critical damping is kd = 2 m ω; use at least half of it.",
             mistakes.Swings(zeta=0.1),
-            "Test a damper with a jolt, not with a tour.",
+            "Test a damper with a sudden start, not with a smooth motion.",
         ),
         Wrong(
             "no damping",
             "A spring without a damper swings for ever, and with an old state the swing grows. "
             "Choose kd above zero.",
             mistakes.Swings(zeta=0.0),
-            "Test a damper with a jolt, not with a tour.",
+            "Test a damper with a sudden start, not with a smooth motion.",
         ),
     ),
     variants=(variants.ByFrequency(11.0, 0.8), variants.ByFrequency(13.0, 0.7), variants.by_hand),
