@@ -14,7 +14,13 @@ from labkit.__main__ import main
 from labkit.errors import LabkitError
 from labkit.grader.nbgrader.gradebook import open_gradebook
 from labkit.grader.rules import Late, read_rules
-from labkit.grader.students.attempts import HandIn, counted_attempt, install, store
+from labkit.grader.students.attempts import (
+    HandIn,
+    correct_stamp,
+    counted_attempt,
+    install,
+    store,
+)
 
 RULES = f"""
 name = "Robot control, winter 2026"
@@ -70,6 +76,39 @@ def test_late_work_loses_its_share_everywhere(late, capsys):
     with open_gradebook(late) as book:
         assert book.find_submission(NAME, "ben").late_submission_penalty == 4.8
         assert book.find_submission(NAME, "cleo").late_submission_penalty == 0.0
+
+
+def test_a_time_that_is_known_after_grading_counts_at_once(late, capsys):
+    """Moodle's worksheet, imported when the marks are there, deducts without grading again."""
+    stamp = late.submitted / "ada" / NAME / "timestamp.txt"
+    stamp.write_text("2026-11-03 23:59 UTC")
+    assert scores(late, capsys)["ada"] == "19.2"
+    stamp.write_text("no time")
+    assert scores(late, capsys)["ada"] == "19.2"
+    (stamp.parent / f"{NAME}.ipynb").write_bytes(notebook_of("another one"))
+    stamp.write_text("2026-11-01 12:00 UTC")
+    with open_gradebook(late) as book:
+        before = book.find_submission(NAME, "ada").timestamp
+    scores(late, capsys)
+    with open_gradebook(late) as book:
+        assert book.find_submission(NAME, "ada").timestamp == before, "of the file that was graded"
+
+
+def test_an_attempt_that_is_put_back_has_its_own_time(late, capsys):
+    """Not that of the file which it replaces: none, or what the platform says."""
+    data = (late.submitted / "ben" / NAME / f"{NAME}.ipynb").read_bytes()
+    seen = HandIn(datetime(2026, 11, 2, 12, tzinfo=UTC), "moodle", "7", "x.ipynb")
+    store(late, "ben", NAME, data, seen)
+    later = HandIn(datetime(2026, 11, 3, 23, 59, tzinfo=UTC), "moodle", "7", "x.ipynb", exact=True)
+    store(late, "ben", NAME, notebook_of("ben's second"), later)
+    install(late, "ben", NAME)
+    path = late.submitted / "ben" / NAME / f"{NAME}.ipynb"
+    assert path.read_bytes() == notebook_of("ben's second")
+    path.write_bytes(data)
+    correct_stamp(late, "ben", NAME)
+    assert not (path.parent / "timestamp.txt").exists()
+    graded(late, result_of(late, "ben", data=data))
+    assert scores(late, capsys)["ben"] == "24.0"
 
 
 def test_the_class_report_says_how_many_lost_points_for_lateness(late, capsys):

@@ -6,6 +6,7 @@ import json
 import os
 import sys
 from collections.abc import Iterable, Iterator
+from contextlib import suppress
 from functools import partial
 from typing import TYPE_CHECKING, Any
 
@@ -66,6 +67,7 @@ def grade(course: Course, assignment: str, student: str | None, as_json: bool, *
     from ..grading.results import Results
     from ..lock import exclusive_run
     from ..nbgrader.gradebook import record, recorded
+    from ..students.attempts import correct_stamp
     from ..submission import misnamed
 
     diff, watching = how.pop("diff"), how.pop("watch")
@@ -88,6 +90,9 @@ def grade(course: Course, assignment: str, student: str | None, as_json: bool, *
                 written = record(course, assignment, [one.result])
                 tell(failures.sift(written, "not in the gradebook"), said)
         who = _handed_in(course, assignment, student, failures)
+        for name in who:
+            with suppress(LabkitError):  # `labkit collect` names a damaged record
+                correct_stamp(course, name, assignment)
         if diff:
             with exclusive_run(Results(course, assignment).folder):
                 found = changes(course, assignment, who, options)

@@ -25,6 +25,7 @@ import re
 from collections.abc import Sequence
 from dataclasses import dataclass
 from datetime import UTC, datetime
+from itertools import chain
 from pathlib import Path
 from typing import Annotated
 
@@ -283,7 +284,31 @@ def install(course: Course, student: str, assignment: str) -> Counted | None:
     if not same:
         _put(path, data)
         os.utime(path, (when.timestamp(), when.timestamp()))
+    correct_stamp(course, student, assignment)
     return chosen
+
+
+def correct_stamp(course: Course, student: str, assignment: str) -> None:
+    """Replace the time beside a submission if it is another attempt's, as after a `cp` by hand.
+
+    Then the attempt's own time is written; none, if it was only seen in downloads.
+
+    Raises:
+        LabkitError: The record of an attempt is damaged.
+    """
+    folder = course.submitted / student / assignment
+    when, path = read_time(read_stamp(folder)), folder / f"{assignment}.ipynb"
+    if when is None or path.is_symlink() or not path.is_file():
+        return
+    sha256, times = digest(read_file(path)), dict[str, list[datetime]]()
+    for one in attempts(course, student, assignment):
+        times[one.sha256] = [x.when for x in one.hand_ins if x.exact]
+    if sha256 not in times or when in times[sha256] or when not in chain(*times.values()):
+        return
+    if own := times[sha256]:
+        _put(folder / TIMESTAMP, str(own[0]).encode())
+    else:
+        (folder / TIMESTAMP).unlink()
 
 
 def named_for(file: str, assignment: str) -> bool:
