@@ -14,9 +14,13 @@ from ..course.authoring.layout import Course
 from ..errors import LabkitError
 from .clean import clean_line
 
+_CONFIG = "nbgrader_config.py"
+
 
 def nbgrader_api(course: Course) -> Any:
-    """The interface of nbgrader, configured by the course's ``nbgrader_config.py``.
+    """The interface of nbgrader, configured by ``nbgrader_config.py``.
+
+    An archived term has none, so that of the course in which it lies is used.
 
     Raises:
         LabkitError: That file cannot be run.
@@ -29,8 +33,9 @@ def nbgrader_api(course: Course) -> Any:
     here = str(Path(sys.executable).parent)  # nbgrader calls programs that lie beside Python
     if here not in os.environ["PATH"].split(os.pathsep):
         os.environ["PATH"] = os.pathsep.join([here, os.environ["PATH"]])
+    homes = [x for x in (course.root, *course.root.parents[:2]) if (x / _CONFIG).exists()]
     try:
-        config = PyFileConfigLoader("nbgrader_config.py", path=str(course.root)).load_config()
+        config = PyFileConfigLoader(_CONFIG, path=str([*homes, course.root][0])).load_config()
     except tomllib.TOMLDecodeError as error:  # the rules, which it reads
         raise LabkitError(f"{course.root / 'course.toml'}: {error}; correct that line") from None
     except (Exception, SystemExit) as error:  # it is a program that the instructor wrote

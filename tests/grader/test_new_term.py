@@ -74,6 +74,8 @@ def test_the_next_term_archives_the_names_and_forgets_them(course, capsys):
     folder = term.archive(course)
     assert not course.submitted.exists() and not page.exists() and not arms.exists()
     assert (Course(folder).build / "explain/ada" / page.name).exists()
+    settings = nbgrader_api(Course(folder)).config  # of the course: an archive has none of its own
+    assert settings.CourseDirectory.root == str(folder) and "ClearSolutions" in settings
     assert term.archives(course)[0].people == 0, "a folder without a file is nobody's work"
     (folder / "submitted/ada/01_paths/01_paths.ipynb").touch()
     assert term.archives(course)[0].people == 1

@@ -63,11 +63,11 @@ def feedback(
             tell(failures.sift(hand_out(course, assignment), "no sheet"), sys.stdout)
             return failures.code
         everybody = [mark for mark in marks_of(course, assignment) if not mark.absent]
-        if not unmarked:
-            _wait_for_marks(everybody)
         marks = [mark for mark in everybody if student in {None, mark.student}]
         if not marks:
             raise nobody(assignment, student)
+        if not unmarked:
+            _wait_for_marks(marks)
         pages = write_feedback(course, assignment, marks)
         made = list(failures.sift(pages, "no page"))
         print(f"pages in {course.root / 'feedback'}: {len(made)}")

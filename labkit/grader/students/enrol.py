@@ -14,7 +14,7 @@ from dataclasses import dataclass, replace
 from itertools import chain, count
 from pathlib import Path
 
-from ...course.authoring.layout import Course
+from ...course.authoring.layout import CUP, Course
 from ...errors import LabkitError
 from ..clean import few, how_many, safe_name
 from ..seeds import seed_of
@@ -106,7 +106,7 @@ def import_list(
     Raises:
         LabkitError: The list contradicts the roster or itself, or the file is not a list.
     """
-    if assignment:
+    if assignment and assignment != CUP:
         course.notebook_source(assignment)
     rows = read_list(file)
     entries = [entry for entry in rows if not entry.is_canvas_test_student]
