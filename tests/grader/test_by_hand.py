@@ -125,7 +125,7 @@ def test_no_page_before_all_is_marked(written, capsys):
     code, _, err = verb(written, capsys, "feedback")
     assert code == 2 and f"ada ({WHY}, {REPORT})" in err and f"bob ({REPORT})" in err
     assert not (written.root / "feedback").exists()
-    assert verb(written, capsys, "feedback", "--student", "carl")[0] == 0, "Carl has no answer that waits"
+    assert verb(written, capsys, "feedback", "--student", "carl")[0] == 0, "nothing of Carl waits"
     assert verb(written, capsys, "feedback", "--unmarked")[0] == 0
     assert "Not marked in full yet." in page(written, "ada")
     assert "It is not marked yet." in page(written, "ada")

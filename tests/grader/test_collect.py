@@ -331,6 +331,10 @@ def test_marks_go_with_the_work(course, tmp_path):
     await_mark(course, "Ada-Lovelace-42", ())
     give_mark(course, "Ada-Lovelace-42", (3, 2, 1))
     (before,) = marks_of(course, NAME)
+    cup = course.results / "cup/Ada-Lovelace-42.json"
+    for path in (cup, course.build / "explain/Ada-Lovelace-42/circle.html"):
+        path.parent.mkdir(parents=True, exist_ok=True)
+        path.write_text("[]")
     (tmp_path / "list.csv").write_text("name,login\nAda Lovelace,ada\n")
     _, left = import_list(course, tmp_path / "list.csv")
     assert not left
@@ -343,6 +347,8 @@ def test_marks_go_with_the_work(course, tmp_path):
     assert not list(results.folder.rglob("Ada-Lovelace-42*")), "forget finds all by the name"
     (defence,) = marks_of(course, DEFENCE)
     assert (defence.student, defence.score) == ("ada", 6.0)
+    assert not [*course.root.rglob("Ada-Lovelace-42*")], "forget finds all by the new name"
+    assert (course.build / "explain/ada/circle.html").exists()
     with open_gradebook(course) as book:
         assert [one.id for one in book.students] == ["ada"]
 

@@ -16,7 +16,7 @@ from .identity import all_lms_users, assign_folders, record_users
 from .roster import Roster, read_roster
 
 _WORK = (FOLDER, "submitted")
-_MADE_OF_IT = ("autograded", "feedback")
+_MADE = ("autograded", "feedback")
 
 
 def move_to_owners(course: Course, roster: Roster) -> list[Failure]:
@@ -60,7 +60,7 @@ def move_work(course: Course, assignment: str, moves: Mapping[str, str]) -> list
     moved: dict[str, str] = {}
     for pair in _in_order(moves):
         both = all(_work(course, who, assignment) for who in pair)
-        for base in () if both else (*_WORK, *_MADE_OF_IT):
+        for base in () if both else (*_WORK, *_MADE):
             source, target = (course.root / base / who / assignment for who in pair)
             if target.is_dir() and all(path.is_dir() for path in target.rglob("*")):
                 shutil.rmtree(target)  # it holds no files
@@ -107,6 +107,7 @@ def _move_marks(course: Course, assignment: str, moves: Mapping[str, str]) -> No
     results = Results(course, assignment)
     for old, new in moves.items():
         results.rename(old, new)
+        _move_pages(course, old, new)
     if not moves or not (course.root / "gradebook.db").exists():
         return
     with open_gradebook(course) as book:
@@ -118,6 +119,20 @@ def _move_marks(course: Course, assignment: str, moves: Mapping[str, str]) -> No
                 book.db.commit()
         for old, new in moves.items():
             _move_the_rest(course, book, old, new)
+
+
+def _move_pages(course: Course, old: str, new: str) -> None:
+    """Move pages about a student whose folder has no work left; the cup runs its entries again."""
+    if old in read_roster(course) or any((course.root / base / old).exists() for base in _WORK):
+        return
+    (course.results / "cup" / f"{old}.json").unlink(missing_ok=True)
+    made = (course.build / "explain", course.build / "defence", *map(course.root.joinpath, _MADE))
+    for folder in made:
+        if (folder / old).is_dir():
+            shutil.copytree(folder / old, folder / new, dirs_exist_ok=True)
+            shutil.rmtree(folder / old)
+        if (page := folder / f"{old}.html").exists():
+            page.replace(folder / f"{new}.html")
 
 
 def _move_the_rest(course: Course, book: Any, old: str, new: str) -> None:
