@@ -86,7 +86,7 @@ def _linear(stiffness: float, seconds: float) -> float:
 
 
 def push() -> HTML:
-    """The arm gives way to a push like the commanded spring."""
+    """The arm yields to a push like the commanded spring."""
     _, ax = plt.subplots(figsize=(6.0, 3.2))
     told, found = [], []
     told_to_be, read_at = (150.0, 300.0, 600.0), 1.95

@@ -857,7 +857,7 @@ SHAPED_IMPEDANCE = Problem(
         ),
         Wrong(
             "the wrench inside reversed",
-            "The tip should give way to the push: the wrench has a plus in M_d⁻¹ (D ė + K e + F).",
+            "The tip should yield to the push: the wrench has a plus in M_d⁻¹ (D ė + K e + F).",
             mistakes.ShapedLaw(inside=-1.0),
             "Follow one push through the law, sign by sign.",
         ),
