@@ -90,6 +90,19 @@ def test_a_rule_that_changes_changes_marks_that_are_there(late, capsys):
                                                   "cleo": "14.4"}  # fmt: skip
 
 
+def test_a_time_that_becomes_known_after_grading_counts_at_once(late, capsys):
+    """For the file that was graded; one that was put in its place since changes no time."""
+    places = {who: late.submitted / who / NAME for who in ("ada", "ben", "cleo")}
+    (places["ada"] / "timestamp.txt").write_text("2026-11-03 23:59 UTC")
+    (places["ben"] / "timestamp.txt").unlink()
+    (places["cleo"] / "timestamp.txt").write_text("2026-11-30 23:59 UTC")
+    (places["cleo"] / f"{NAME}.ipynb").write_text("another")
+    found = scores(late, capsys)
+    assert (found["ada"], found["ben"]) == ("19.2", "24.0")
+    with open_gradebook(late) as book:
+        assert book.find_submission(NAME, "cleo").timestamp.day == 3
+
+
 def test_the_term_in_one_table(late, capsys):
     """All assignments with their weights; a student who lacks a mark has no percentage."""
     code, out, _ = verb(late, capsys, "export")

@@ -23,9 +23,10 @@ from ...course.notebook import by_hand, grade_id, nbgrader_info, question_of, re
 from ...errors import LabkitError
 from ..atomic import write
 from ..each import Failure, for_student
-from ..grading.results import Result
+from ..grading.results import Result, Results
 from ..nbgrader_api import nbgrader_api
 from ..rules import apply_lateness
+from ..submission import Submission, digest
 from ..timestamp import read_stamp, read_time
 from ..whys import credit_whys
 from .autograded_notebook import as_text, in_release_form, release_source, with_verdicts
@@ -71,7 +72,26 @@ def apply_rules(course: Course, book: Any, assignment: str) -> None:
         LabkitError: The rules cannot be used, or the assignment was not released here.
     """
     credit_whys(course, book, assignment)
+    _update_times(course, book, assignment)
     apply_lateness(course, book, assignment)
+
+
+def _update_times(course: Course, book: Any, assignment: str) -> None:
+    """Set when each graded file was handed in, which may have become known since it was graded.
+
+    A file that was put in its place since then has another time, and changes nothing.
+    """
+    results = Results(course, assignment)
+    for submission in book.assignment_submissions(assignment):
+        files = Submission.of(course, assignment, submission.student.id)
+        text = read_stamp(files.folder)
+        when = read_time(text)
+        stated = when and when.replace(tzinfo=None)
+        if (text and when is None) or stated == submission.timestamp:
+            continue
+        result, (data, _, _) = results.get(files.student), files.read()
+        if result is not None and result.hashes["submission"] == digest(data):
+            submission.timestamp = stated
 
 
 def _record(course: Course, book: Any, source: Any, result: Result) -> list[str]:
