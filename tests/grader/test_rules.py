@@ -14,7 +14,8 @@ from labkit.__main__ import main
 from labkit.errors import LabkitError
 from labkit.grader.nbgrader.gradebook import open_gradebook
 from labkit.grader.rules import Late, read_rules
-from labkit.grader.students.attempts import HandIn, counted_attempt, install, store
+from labkit.grader.students.attempts import HandIn, counted_attempt, store
+from labkit.grader.students.installed import install
 
 RULES = f"""
 name = "Robot control, winter 2026"

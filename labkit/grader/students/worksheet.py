@@ -12,9 +12,10 @@ from ..clean import few
 from ..each import Failure
 from ..rules import read_rules
 from ..timestamp import read_time
-from .attempts import Attempt, Counted, attempts, choose, install, store
+from .attempts import Attempt, Counted, attempts, choose, store
 from .class_list import Entry, Student
 from .identity import lms_users, record_users
+from .installed import install
 from .move import move_work
 from .platforms import LmsUser
 
