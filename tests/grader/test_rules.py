@@ -222,3 +222,23 @@ def test_the_latest_in_time_counts_where_the_rules_say_so(course):
     install(course, "ada", NAME)
     stamp = (course.submitted / "ada" / NAME / "timestamp.txt").read_text()
     assert stamp.startswith("2026-11-01")
+
+
+def test_grading_names_whose_file_counts_under_a_rule_that_changed(course, monkeypatch, capsys):
+    """--diff names it and leaves the file; grading puts the one that counts in its place."""
+    monkeypatch.setattr("labkit.grader.grading.batch.grade_class", lambda *_: iter(()))
+    monkeypatch.setattr("labkit.grader.grading.changes.changes", lambda *_: iter(()))
+    for day in (1, 5):
+        hand_in = HandIn(datetime(2026, 11, day, tzinfo=UTC), "exchange", "ada", f"{NAME}.ipynb")
+        store(course, "ada", NAME, notebook_of(f"day {day}"), hand_in)
+    (course.root / "course.toml").write_text(RULES)
+    install(course, "ada", NAME)
+    (course.root / "course.toml").write_text('counts = "latest in time"\n' + RULES)
+    path = course.submitted / "ada" / NAME / f"{NAME}.ipynb"
+    says = "ada: now the file of 2026-11-01 00:00 UTC counts, instead of that of 2026-11-05"
+    out = verb(course, capsys, "grade", NAME, "--diff")[1]
+    assert says in out and f"to grade it, type: labkit grade {NAME}" in out
+    assert path.read_bytes() == notebook_of("day 5")
+    assert says in verb(course, capsys, "grade", NAME)[1]
+    assert path.read_bytes() == notebook_of("day 1")
+    assert says not in verb(course, capsys, "grade", NAME)[1]
