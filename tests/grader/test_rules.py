@@ -242,3 +242,17 @@ def test_grading_names_whose_file_counts_under_a_rule_that_changed(course, monke
     assert says in verb(course, capsys, "grade", NAME)[1]
     assert path.read_bytes() == notebook_of("day 1")
     assert says not in verb(course, capsys, "grade", NAME)[1]
+
+
+def test_a_file_that_was_put_back_and_graded_by_nbgrader_is_as_late_as_it_was(course, capsys):
+    """Its button takes the time of the file that it replaces; a table has its own."""
+    (course.root / "course.toml").write_text(RULES)
+    for day, data in ((1, notebook_of("ada")), (5, notebook_of("day 5"))):
+        when = datetime(2026, 11, day, tzinfo=UTC)
+        hand_in = HandIn(when, "exchange", "ada", f"{NAME}.ipynb", exact=True)
+        store(course, "ada", NAME, data, hand_in)
+    install(course, "ada", NAME)
+    graded(course, result_of(course, "ada"))
+    with open_gradebook(course) as book:
+        assert book.find_submission(NAME, "ada").timestamp.day == 5
+    assert scores(course, capsys)["ada"] == "24.0"

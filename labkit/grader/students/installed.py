@@ -7,15 +7,17 @@ from __future__ import annotations
 
 import os
 from collections.abc import Mapping
+from contextlib import suppress
 from datetime import UTC, datetime
 from pathlib import Path
 
 from ...course.authoring.layout import Course
 from ...errors import LabkitError
-from ..submission import digest, read_file
+from ..submission import digest, read_file, students
 from ..timestamp import TIMESTAMP, read_stamp, read_time
 from .attempts import (
     BY_HAND,
+    FOLDER,
     Attempt,
     Counted,
     HandIn,
@@ -27,6 +29,7 @@ from .attempts import (
     store,
 )
 from .exchange import SECRET, read_secret
+from .identity import identity_lock
 
 
 def store_submitted(course: Course, student: str, assignment: str, now: str) -> dict[str, Attempt]:
@@ -113,6 +116,20 @@ def settle(course: Course, student: str, assignment: str, *, change: bool = True
         if change:
             _record_put_back(course, student, assignment, path, lies.attempt)
     return instead(lies, install(course, student, assignment) if change else counted)
+
+
+def date_put_back(course: Course, assignment: str, only: str | None = None) -> None:
+    """Give each known attempt that a person put back its own time, also if nbgrader graded it."""
+    if not (course.root / FOLDER).exists():
+        return
+    for student in students(course, assignment) if only is None else [only]:
+        with suppress(LabkitError):  # grading and collecting name what cannot be read
+            there = by_digest(course, student, assignment)
+            lies = in_place(course, student, assignment, there)
+            path = course.submitted / student / assignment / f"{assignment}.ipynb"
+            if lies is not None and _put_back(path, lies.attempt):
+                with identity_lock(course):
+                    settle(course, student, assignment)
 
 
 def instead(before: Counted | None, after: Counted | None) -> str:
