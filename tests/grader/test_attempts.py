@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import os
+import shutil
 import tempfile
 import zipfile
 from pathlib import Path
@@ -18,9 +19,10 @@ from labkit.errors import LabkitError
 from labkit.grader.grading.results import Results
 from labkit.grader.nbgrader.gradebook import open_gradebook, record, timestamp
 from labkit.grader.students import attempts as attempts_module
-from labkit.grader.students.attempts import attempts, install
+from labkit.grader.students.attempts import attempts, perhaps_late
 from labkit.grader.students.collect import collect
 from labkit.grader.students.exchange import SECRET
+from labkit.grader.students.installed import install, settle
 from labkit.grader.students.roster import FILE as ROSTER
 
 ADA = ("Ada Lovelace", 101)
@@ -86,7 +88,8 @@ def test_an_older_download_takes_no_newer_hand_ins_place(bare, tmp_path):
     new = shown(tmp_path / "new.zip", 8, (f"{NAME}.ipynb", "new"))
     old = shown(tmp_path / "old.zip", 1, (f"{NAME}(2).ipynb", "old"))
     assert take(bare, new) == [f"Ada-Lovelace-101: {NAME}.ipynb: taken"]
-    assert take(bare, old) == [f"Ada-Lovelace-101: {NAME}(2).ipynb: kept, but a later one counts"]
+    another = "another one, of 2026-03-08 12:00 UTC, counts"
+    assert take(bare, old) == [f"Ada-Lovelace-101: {NAME}(2).ipynb: kept, but {another}"]
     assert counting(bare) == {"Ada-Lovelace-101": "new"}
     assert kept(bare, "Ada-Lovelace-101") == {"new", "old"}
 
@@ -255,6 +258,84 @@ def test_an_earlier_hand_in_that_is_put_back_keeps_its_time_and_secret(bare, tmp
     assert counting(bare) == {"root": "of day 1"}
     assert (place / "timestamp.txt").read_text().startswith("2026-03-01")
     assert (place / SECRET).read_text() == "secret of of day 1"
+
+
+DUE = f"[assignments.{NAME}]\ndue = 2026-03-03T00:00:00Z\n"
+IN_TIME, LATEST = f'counts = "latest in time"\n{DUE}', f'counts = "latest"\n{DUE}'
+
+
+def two_attempts(course, tmp_path, when="2026-03-01 10:00:00 UTC"):
+    """Two hand-ins through the exchange, the second after the due date."""
+    (course.root / "course.toml").write_text(LATEST)
+    for data, time in (("first", when), ("second", "2026-03-05 10:00:00 UTC")):
+        handed_in(tmp_path / "in", "root", data, time)
+    take(course, tmp_path / "in")
+    return course.submitted / "root" / NAME
+
+
+@pytest.mark.parametrize("copy", [shutil.copy, shutil.copy2])
+def test_an_attempt_that_is_put_back_has_its_own_time_without_collecting(bare, tmp_path, copy):
+    """Also with the modification time of the copy's source; under either rule, the file stays."""
+    place = two_attempts(bare, tmp_path)
+    (kept_one,) = (x for x in bare.root.glob("attempts/*/*/*/*.ipynb") if x.read_text() == "first")
+    os.utime(kept_one, (1e9, 1e9))
+    copy(kept_one, place / f"{NAME}.ipynb")
+    assert settle(bare, "root", NAME) == ""
+    assert (place / "timestamp.txt").read_text().startswith("2026-03-01")
+    for rule in (IN_TIME, LATEST):
+        (bare.root / "course.toml").write_text(rule)
+        assert (settle(bare, "root", NAME), counting(bare)) == ("", {"root": "first"})
+
+
+def test_a_late_attempt_that_is_put_back_stays_where_only_work_in_time_counts(bare, tmp_path):
+    """A person decided so, and it is as late as it was."""
+    place = two_attempts(bare, tmp_path)
+    (bare.root / "course.toml").write_text(IN_TIME)
+    assert settle(bare, "root", NAME).startswith("now the file of 2026-03-01")
+    (place / f"{NAME}.ipynb").write_text("second")
+    assert (settle(bare, "root", NAME), counting(bare)) == ("", {"root": "second"})
+    assert (place / "timestamp.txt").read_text().startswith("2026-03-05")
+
+
+def test_an_attempt_of_unknown_time_that_is_put_back_has_no_time_of_another(bare, tmp_path):
+    """A download before the due date shows it, so it is in time; after it, nobody knows."""
+    (bare.root / "course.toml").write_text(LATEST)
+    take(bare, shown(tmp_path / "1.zip", 1, (f"{NAME}.ipynb", "first")))
+    take(bare, shown(tmp_path / "5.zip", 5, (f"{NAME}.ipynb", "second")))
+    who = "Ada-Lovelace-101"
+    place = bare.submitted / who / NAME
+    (place / "timestamp.txt").write_text("2026-03-05 12:00:00+00:00")
+    (place / f"{NAME}.ipynb").write_text("first")
+    assert settle(bare, who, NAME) == "" and not (place / "timestamp.txt").exists()
+    assert perhaps_late(bare, who, NAME) == ""
+    (bare.root / "course.toml").write_text(DUE.replace("03-03", "02-01"))
+    assert "only that it was there at 2026-03-01" in perhaps_late(bare, who, NAME)
+
+
+def test_a_rule_that_changes_what_counts_is_never_silent(bare, tmp_path):
+    """Grading names both files and changes nothing with --diff; so does collecting again."""
+    two_attempts(bare, tmp_path)
+    first = "now the file of 2026-03-01 10:00 UTC counts, instead of that of 2026-03-05 10:00 UTC"
+    second = "now the file of 2026-03-05 10:00 UTC counts, instead of that of 2026-03-01 10:00 UTC"
+    (bare.root / "course.toml").write_text(IN_TIME)
+    assert settle(bare, "root", NAME, change=False) == first
+    assert counting(bare) == {"root": "second"}
+    assert settle(bare, "root", NAME) == first
+    assert (settle(bare, "root", NAME), counting(bare)) == ("", {"root": "first"})
+    (bare.root / "course.toml").write_text(LATEST)
+    assert f"root: {second}" in take(bare, tmp_path / "in")
+    assert counting(bare) == {"root": "second"}
+    (bare.root / "course.toml").write_text(IN_TIME)
+    said = take(bare, tmp_path / "in")
+    assert said[-1] == f"root: {first}"
+    assert "there already, but another" in "".join(said) and "a later one" not in "".join(said)
+
+
+def test_a_file_that_was_never_collected_stays_and_counts(bare, tmp_path):
+    """A mail's notebook in place of an attempt is what is graded."""
+    place = two_attempts(bare, tmp_path)
+    (place / f"{NAME}.ipynb").write_text("by mail")
+    assert (settle(bare, "root", NAME), counting(bare)) == ("", {"root": "by mail"})
 
 
 def test_a_collection_that_was_stopped_is_made_good(bare, tmp_path, monkeypatch):

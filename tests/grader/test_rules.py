@@ -14,13 +14,8 @@ from labkit.__main__ import main
 from labkit.errors import LabkitError
 from labkit.grader.nbgrader.gradebook import open_gradebook
 from labkit.grader.rules import Late, read_rules
-from labkit.grader.students.attempts import (
-    HandIn,
-    correct_stamp,
-    counted_attempt,
-    install,
-    store,
-)
+from labkit.grader.students.attempts import HandIn, counted_attempt, store
+from labkit.grader.students.installed import install
 
 RULES = f"""
 name = "Robot control, winter 2026"
@@ -78,39 +73,6 @@ def test_late_work_loses_its_share_everywhere(late, capsys):
         assert book.find_submission(NAME, "cleo").late_submission_penalty == 0.0
 
 
-def test_a_time_that_is_known_after_grading_counts_at_once(late, capsys):
-    """Moodle's worksheet, imported when the marks are there, deducts without grading again."""
-    stamp = late.submitted / "ada" / NAME / "timestamp.txt"
-    stamp.write_text("2026-11-03 23:59 UTC")
-    assert scores(late, capsys)["ada"] == "19.2"
-    stamp.write_text("no time")
-    assert scores(late, capsys)["ada"] == "19.2"
-    (stamp.parent / f"{NAME}.ipynb").write_bytes(notebook_of("another one"))
-    stamp.write_text("2026-11-01 12:00 UTC")
-    with open_gradebook(late) as book:
-        before = book.find_submission(NAME, "ada").timestamp
-    scores(late, capsys)
-    with open_gradebook(late) as book:
-        assert book.find_submission(NAME, "ada").timestamp == before, "of the file that was graded"
-
-
-def test_an_attempt_that_is_put_back_has_its_own_time(late, capsys):
-    """Not that of the file which it replaces: none, or what the platform says."""
-    data = (late.submitted / "ben" / NAME / f"{NAME}.ipynb").read_bytes()
-    seen = HandIn(datetime(2026, 11, 2, 12, tzinfo=UTC), "moodle", "7", "x.ipynb")
-    store(late, "ben", NAME, data, seen)
-    later = HandIn(datetime(2026, 11, 3, 23, 59, tzinfo=UTC), "moodle", "7", "x.ipynb", exact=True)
-    store(late, "ben", NAME, notebook_of("ben's second"), later)
-    install(late, "ben", NAME)
-    path = late.submitted / "ben" / NAME / f"{NAME}.ipynb"
-    assert path.read_bytes() == notebook_of("ben's second")
-    path.write_bytes(data)
-    correct_stamp(late, "ben", NAME)
-    assert not (path.parent / "timestamp.txt").exists()
-    graded(late, result_of(late, "ben", data=data))
-    assert scores(late, capsys)["ben"] == "24.0"
-
-
 def test_the_class_report_says_how_many_lost_points_for_lateness(late, capsys):
     """Ben alone, as Cleo has an extension; without names a number below 5 is not told."""
     named, nameless = ("class-report", NAME, "--names"), ("class-report", NAME)
@@ -127,6 +89,19 @@ def test_a_rule_that_changes_changes_marks_that_are_there(late, capsys):
     (late.root / "course.toml").write_text(text)
     assert scores(late, capsys) | {"ada": ""} == {"(full marks)": "24.0", "ada": "", "ben": "24.0",
                                                   "cleo": "14.4"}  # fmt: skip
+
+
+def test_a_time_that_becomes_known_after_grading_counts_at_once(late, capsys):
+    """For the file that was graded; one that was put in its place since changes no time."""
+    places = {who: late.submitted / who / NAME for who in ("ada", "ben", "cleo")}
+    (places["ada"] / "timestamp.txt").write_text("2026-11-03 23:59 UTC")
+    (places["ben"] / "timestamp.txt").unlink()
+    (places["cleo"] / "timestamp.txt").write_text("2026-11-30 23:59 UTC")
+    (places["cleo"] / f"{NAME}.ipynb").write_text("another")
+    found = scores(late, capsys)
+    assert (found["ada"], found["ben"]) == ("19.2", "24.0")
+    with open_gradebook(late) as book:
+        assert book.find_submission(NAME, "cleo").timestamp.day == 3
 
 
 def test_the_term_in_one_table(late, capsys):
@@ -247,3 +222,37 @@ def test_the_latest_in_time_counts_where_the_rules_say_so(course):
     install(course, "ada", NAME)
     stamp = (course.submitted / "ada" / NAME / "timestamp.txt").read_text()
     assert stamp.startswith("2026-11-01")
+
+
+def test_grading_names_whose_file_counts_under_a_rule_that_changed(course, monkeypatch, capsys):
+    """--diff names it and leaves the file; grading puts the one that counts in its place."""
+    monkeypatch.setattr("labkit.grader.grading.batch.grade_class", lambda *_: iter(()))
+    monkeypatch.setattr("labkit.grader.grading.changes.changes", lambda *_: iter(()))
+    for day in (1, 5):
+        hand_in = HandIn(datetime(2026, 11, day, tzinfo=UTC), "exchange", "ada", f"{NAME}.ipynb")
+        store(course, "ada", NAME, notebook_of(f"day {day}"), hand_in)
+    (course.root / "course.toml").write_text(RULES)
+    install(course, "ada", NAME)
+    (course.root / "course.toml").write_text('counts = "latest in time"\n' + RULES)
+    path = course.submitted / "ada" / NAME / f"{NAME}.ipynb"
+    says = "ada: now the file of 2026-11-01 00:00 UTC counts, instead of that of 2026-11-05"
+    out = verb(course, capsys, "grade", NAME, "--diff")[1]
+    assert says in out and f"to grade it, type: labkit grade {NAME}" in out
+    assert path.read_bytes() == notebook_of("day 5")
+    assert says in verb(course, capsys, "grade", NAME)[1]
+    assert path.read_bytes() == notebook_of("day 1")
+    assert says not in verb(course, capsys, "grade", NAME)[1]
+
+
+def test_a_file_that_was_put_back_and_graded_by_nbgrader_is_as_late_as_it_was(course, capsys):
+    """Its button takes the time of the file that it replaces; a table has its own."""
+    (course.root / "course.toml").write_text(RULES)
+    for day, data in ((1, notebook_of("ada")), (5, notebook_of("day 5"))):
+        when = datetime(2026, 11, day, tzinfo=UTC)
+        hand_in = HandIn(when, "exchange", "ada", f"{NAME}.ipynb", exact=True)
+        store(course, "ada", NAME, data, hand_in)
+    install(course, "ada", NAME)
+    graded(course, result_of(course, "ada"))
+    with open_gradebook(course) as book:
+        assert book.find_submission(NAME, "ada").timestamp.day == 5
+    assert scores(course, capsys)["ada"] == "24.0"

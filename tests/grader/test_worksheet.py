@@ -83,6 +83,18 @@ def test_who_is_perhaps_late_is_named_until_the_time_is_known(bare, tmp_path, ca
     assert (handed_in(bare), perhaps_late(bare, "Ada-Lovelace", NAME)) == ("04 11:30", "")
 
 
+def test_a_time_that_changes_which_file_counts_is_named(bare, tmp_path, capsys):
+    """A download after the due date shows a second file, and the worksheet says it was in time."""
+    due = f"[assignments.{NAME}]\ndue = 2026-03-02T12:00:00Z\n"
+    (bare.root / "course.toml").write_text('counts = "latest in time"\n' + due)
+    take(bare, tmp_path)
+    take(bare, tmp_path, "2", day=5)
+    code, _, err = worksheet(bare, tmp_path, capsys, "Monday, 2 March 2026, 11:30 AM")
+    assert (code, handed_in(bare)) == (1, "02 11:30")
+    assert "now the file of 2026-03-02 11:30 UTC counts, instead of that of 2026-03-01" in err
+    assert f"to grade it, type: labkit grade {NAME}" in err
+
+
 def test_a_worksheet_without_times_is_named_once(bare, tmp_path, capsys):
     """Where the column is missing or in another language, no student is named."""
     take(bare, tmp_path)

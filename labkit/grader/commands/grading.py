@@ -67,7 +67,6 @@ def grade(course: Course, assignment: str, student: str | None, as_json: bool, *
     from ..grading.results import Results
     from ..lock import exclusive_run
     from ..nbgrader.gradebook import record, recorded
-    from ..students.attempts import correct_stamp
     from ..submission import misnamed
 
     diff, watching = how.pop("diff"), how.pop("watch")
@@ -82,6 +81,7 @@ def grade(course: Course, assignment: str, student: str | None, as_json: bool, *
         given = " and ".join(name for name, value in not_watched.items() if value)
         raise LabkitError(f"--watch grades whatever comes in; for {given} leave out --watch")
     with Failures(at_once=watching) as failures:
+        tell(_settled(course, assignment, student, change=not diff), said)
         if watching:
             failures.add("not graded", misnamed(course, assignment))
             for one in failures.sift(watch(course, assignment, options), "not graded"):
@@ -90,9 +90,6 @@ def grade(course: Course, assignment: str, student: str | None, as_json: bool, *
                 written = record(course, assignment, [one.result])
                 tell(failures.sift(written, "not in the gradebook"), said)
         who = _handed_in(course, assignment, student, failures)
-        for name in who:
-            with suppress(LabkitError):  # `labkit collect` names a damaged record
-                correct_stamp(course, name, assignment)
         if diff:
             with exclusive_run(Results(course, assignment).folder):
                 found = changes(course, assignment, who, options)
@@ -112,6 +109,27 @@ def grade(course: Course, assignment: str, student: str | None, as_json: bool, *
             tell(_on_top(course, assignment), sys.stdout)
             print(f"isolation: {graded[-1].isolation}\nresults: {course.results / assignment}")
     return failures.code
+
+
+def _settled(
+    course: Course, assignment: str, student: str | None, *, change: bool
+) -> Iterator[str]:
+    """A sentence for each student of whom another file counts than the one in ``submitted/``."""
+    from ..students.attempts import FOLDER
+    from ..students.identity import identity_lock
+    from ..students.installed import settle
+    from ..submission import students
+
+    if not (course.root / FOLDER).exists():  # then no file in submitted/ is of an attempt
+        return
+    with identity_lock(course):
+        for one in students(course, assignment):
+            with suppress(LabkitError):  # grading and collecting name what cannot be read
+                if student in {None, one} and (
+                    says := settle(course, one, assignment, change=change)
+                ):
+                    then = "" if change else f"; to grade it, type: labkit grade {assignment}"
+                    yield f"{one}: {says}{then}"
 
 
 def _other_notebooks(results: Iterable[Result]) -> Iterator[Failure]:

@@ -25,6 +25,7 @@ from ..rules import read_rules
 from ..students.attempts import perhaps_late
 from ..students.class_list import Student
 from ..students.identity import lms_users
+from ..students.installed import date_put_back
 from ..students.roster import read_roster
 from ..submission import did_you_mean, plain_name, students
 from .mark import Mark, MarkLine
@@ -45,6 +46,7 @@ def marks_of(course: Course, assignment: str, only: str | None = None) -> list[M
     Raises:
         LabkitError: The gradebook, the roster or the rules cannot be used.
     """
+    date_put_back(course, assignment, only)
     with open_gradebook(course) as book:
         apply_rules(course, book, assignment)
         submissions = {plain_name(s.student.id): s for s in book.assignment_submissions(assignment)}

@@ -26,7 +26,7 @@ from ..each import Failure, for_student
 from ..grading.results import Result, Results
 from ..nbgrader_api import nbgrader_api
 from ..rules import apply_lateness
-from ..submission import digest, read_file
+from ..submission import Submission, digest
 from ..timestamp import read_stamp, read_time
 from ..whys import credit_whys
 from .autograded_notebook import as_text, in_release_form, release_source, with_verdicts
@@ -68,31 +68,30 @@ def record(course: Course, assignment: str, results: Iterable[Result]) -> list[s
 def apply_rules(course: Course, book: Any, assignment: str) -> None:
     """Update the gradebook to the present rules: whys that nobody marks, and late work.
 
-    Times of hand-ins count that became known after grading, as from Moodle's worksheet.
-
     Raises:
         LabkitError: The rules cannot be used, or the assignment was not released here.
     """
-    for submission in book.assignment_submissions(assignment):
-        when = _time_since_known(course, submission, assignment)
-        submission.timestamp = when or submission.timestamp
     credit_whys(course, book, assignment)
+    _update_times(course, book, assignment)
     apply_lateness(course, book, assignment)
 
 
-def _time_since_known(course: Course, submission: Any, assignment: str) -> datetime | None:
-    """The time beside a submission if it is not the recorded one, and of the graded file."""
-    student = submission.student.id
-    folder = course.submitted / student / assignment
-    when = read_time(read_stamp(folder))
-    if when is None or when.replace(tzinfo=None) == submission.timestamp:
-        return None
-    result = Results(course, assignment).get(student)
-    path = folder / f"{assignment}.ipynb"
-    if result is None or path.is_symlink() or not path.is_file():
-        return None
-    graded = digest(read_file(path)) == result.hashes["submission"]
-    return when.replace(tzinfo=None) if graded else None
+def _update_times(course: Course, book: Any, assignment: str) -> None:
+    """Set when each graded file was handed in, which may have become known since it was graded.
+
+    A file that was put in its place since then has another time, and changes nothing.
+    """
+    results = Results(course, assignment)
+    for submission in book.assignment_submissions(assignment):
+        files = Submission.of(course, assignment, submission.student.id)
+        text = read_stamp(files.folder)
+        when = read_time(text)
+        stated = when and when.replace(tzinfo=None)
+        if (text and when is None) or stated == submission.timestamp:
+            continue
+        result, (data, _, _) = results.get(files.student), files.read()
+        if result is not None and result.hashes["submission"] == digest(data):
+            submission.timestamp = stated
 
 
 def _record(course: Course, book: Any, source: Any, result: Result) -> list[str]:

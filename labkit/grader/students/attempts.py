@@ -11,21 +11,21 @@ first download that shows it, and an older download never replaces a newer hand-
 notebooks were handed in together, the one that is named after the assignment counts; among several
 of those, the one with the highest number, such as ``01_paths(2).ipynb``; then the one that was
 collected last.  A notebook that somebody put into ``submitted/`` by hand is dated by the time at
-which the file was written.  If ``course.toml`` says ``counts = "latest in time"``, the latest
-hand-in before the due date counts, and a late one counts only if there is no other.
+which the file was written, or put back if it is a known attempt; whether a known one is late
+follows from its own hand-in.  If ``course.toml`` says ``counts = "latest in time"``, the latest
+hand-in before the due date counts, and a late one counts only if there is no other, or if a person
+put it there.
 
-The attempt that counts is copied to ``submitted/STUDENT/ASSIGNMENT/ASSIGNMENT.ipynb``, where
-nbgrader reads it.
+`installed` copies the attempt that counts to ``submitted/STUDENT/ASSIGNMENT/ASSIGNMENT.ipynb``,
+where nbgrader reads it.
 """
 
 from __future__ import annotations
 
-import os
 import re
 from collections.abc import Sequence
 from dataclasses import dataclass
-from datetime import UTC, datetime
-from itertools import chain
+from datetime import datetime
 from pathlib import Path
 from typing import Annotated
 
@@ -37,9 +37,8 @@ from ...errors import LabkitError
 from ..atomic import write
 from ..clean import safe_name
 from ..rules import read_rules
-from ..submission import digest, read_file
-from ..timestamp import TIMESTAMP, read_stamp, read_time
-from .exchange import SECRET, read_secret
+from ..submission import digest
+from .exchange import SECRET
 
 FOLDER = "attempts"
 BY_HAND = "by hand"
@@ -96,6 +95,16 @@ class Counted:
     attempt: Attempt
     first: HandIn
 
+    @property
+    def came(self) -> HandIn:
+        """The hand-in that says when it came: the student's, also if a person put it back."""
+        theirs = [x for x in self.attempt.hand_ins if x.origin != BY_HAND]
+        back = self.first.origin == BY_HAND and theirs
+        return min(theirs, key=lambda x: (not x.exact, x.when)) if back else self.first
+
+    def __str__(self) -> str:
+        return f"the file of {self.came.when:%Y-%m-%d %H:%M %Z}"
+
 
 def attempts(course: Course, student: str, assignment: str) -> tuple[Attempt, ...]:
     """All attempts of a student, sorted by the names of their folders.
@@ -133,11 +142,15 @@ def counted_attempt(course: Course, student: str, assignment: str) -> Counted | 
     due = rules.due_for(student, assignment)
     if due is None or rules.counts == "latest":
         return choose(all, assignment)
-    shown = (
-        replace(one, hand_ins=tuple(x for x in one.hand_ins if x.when <= due and not x.late))
-        for one in all
-    )
-    return choose([one for one in shown if one.hand_ins], assignment) or choose(all, assignment)
+
+    def taken(x: HandIn, one: Attempt) -> bool:
+        return (x.when <= due and not x.late) or _by_a_person(x, one)
+
+    shown = (replace(one, hand_ins=tuple(x for x in one.hand_ins if taken(x, one))) for one in all)
+    found = choose([one for one in shown if one.hand_ins], assignment)
+    if found is None:
+        return choose(all, assignment)
+    return Counted(next(one for one in all if one.file == found.attempt.file), found.first)
 
 
 def perhaps_late(course: Course, student: str, assignment: str) -> str:
@@ -150,9 +163,9 @@ def perhaps_late(course: Course, student: str, assignment: str) -> str:
         chosen = counted_attempt(course, student, assignment)
     except LabkitError:  # collecting names a damaged record
         return ""
-    if chosen is None or due is None or chosen.first.when <= due:
+    if chosen is None or due is None or chosen.came.when <= due:
         return ""
-    first = chosen.first
+    first = chosen.came
     exact = any(x.exact for x in (first, *chosen.attempt.hand_ins))
     if exact or first.late or first.origin not in {"moodle", "files"}:
         return ""
@@ -189,19 +202,19 @@ def store(
     Raises:
         LabkitError: The record of an attempt is damaged.
     """
-    there = _by_digest(course, student, assignment) if there is None else there
+    there = by_digest(course, student, assignment) if there is None else there
     sha256 = digest(data)
     before, new = there.get(sha256), sha256 not in there
     if before is None:
         name = f"{hand_in.when:%Y-%m-%dT%H%M%SZ}-{sha256[:16]}"
         folder = course.root / FOLDER / student / assignment / name
         before = Attempt(folder / f"{safe_name(Path(hand_in.file).stem)}.ipynb", sha256, ())
-        _put(before.file, data)
+        put(before.file, data)
     newest = max(
         (one.when for one in before.hand_ins if one.origin == "exchange"), default=hand_in.when
     )
     if secret is not None and hand_in.when >= newest:
-        _put(before.file.parent / SECRET, secret)
+        put(before.file.parent / SECRET, secret)
     same = (hand_in.when, hand_in.origin, hand_in.file, hand_in.exact)
     if all((x.when, x.origin, x.file, x.exact) != same for x in before.hand_ins):
         record = replace(before, hand_ins=(*before.hand_ins, hand_in))
@@ -212,103 +225,11 @@ def store(
     return new
 
 
-def store_submitted(course: Course, student: str, assignment: str, now: str) -> dict[str, Attempt]:
-    """Store what a person, nbgrader or an older labkit put into ``submitted/``.
-
-    Args:
-        course: The course.
-        student: The student whose folder is searched.
-        assignment: The assignment.
-        now: The present time, in ISO 8601.
-
-    Returns:
-        All attempts of the student, by SHA-256 digest.
-
-    Raises:
-        LabkitError: A file cannot be read, or a record is damaged.
-    """
-    folder = course.submitted / student / assignment
-    for path in (folder.parent, folder):
-        if path.is_symlink():
-            raise LabkitError(f"{path.relative_to(course.root)} is a link; put a folder there")
-    there = _by_digest(course, student, assignment)
-    ours, chosen = set(there), counted_attempt(course, student, assignment)
-    for path in sorted(folder.glob("*.ipynb")):
-        if path.is_symlink() or not path.is_file():
-            raise LabkitError(f"{path.relative_to(course.root)} is not a file; move it away")
-        data = read_file(path)
-        if path.name == f"{assignment}.ipynb" and chosen is not None:
-            known = digest(data) == chosen.attempt.sha256
-        else:
-            known = digest(data) in ours
-        if not known:
-            new = digest(data) not in ours
-            stated = read_time(read_stamp(folder)) if new else None
-            when = stated or datetime.fromtimestamp(int(path.stat().st_mtime), UTC)
-            exact = stated is not None
-            hand_in = HandIn(when, BY_HAND, "", path.name, exact=exact, collected=now)
-            secret = read_secret(folder) if new else None
-            store(course, student, assignment, data, hand_in, secret, there)
-    return there
-
-
-def install(course: Course, student: str, assignment: str) -> Counted | None:
-    """Copy the attempt that counts to the folder where nbgrader reads it.
-
-    Returns:
-        The attempt that counts; None if there is none.
-
-    Raises:
-        LabkitError: An attempt or its record is damaged.
-    """
-    chosen = counted_attempt(course, student, assignment)
-    if chosen is None:
-        return None
-    source, when = chosen.attempt.file, chosen.first.when
-    data = source.read_bytes()
-    if digest(data) != chosen.attempt.sha256:
-        raise LabkitError(f"{source} was changed after it was handed in; restore it")
-    folder = course.submitted / student / assignment
-    path = folder / f"{assignment}.ipynb"
-    same = path.is_file() and path.read_bytes() == data
-    secret = read_secret(source.parent)
-    stated = [x.when for x in (chosen.first, *chosen.attempt.hand_ins) if x.exact]
-    if not stated and chosen.first.late:  # the platform gives no earlier time
-        stated = [chosen.first.when]
-    stamp = str(stated[0]).encode() if stated else None
-    for name, content in ((TIMESTAMP, stamp), (SECRET, secret)):
-        if content is not None:
-            _put(folder / name, content)
-        elif not same:
-            (folder / name).unlink(missing_ok=True)  # its own attempt still has a copy
-    if not same:
-        _put(path, data)
-        os.utime(path, (when.timestamp(), when.timestamp()))
-    correct_stamp(course, student, assignment)
-    return chosen
-
-
-def correct_stamp(course: Course, student: str, assignment: str) -> None:
-    """Replace the time beside a submission if it is another attempt's, as after a `cp` by hand.
-
-    Then the attempt's own time is written; none, if it was only seen in downloads.
-
-    Raises:
-        LabkitError: The record of an attempt is damaged.
-    """
-    folder = course.submitted / student / assignment
-    when, path = read_time(read_stamp(folder)), folder / f"{assignment}.ipynb"
-    if when is None or path.is_symlink() or not path.is_file():
-        return
-    sha256, times = digest(read_file(path)), dict[str, list[datetime]]()
-    for one in attempts(course, student, assignment):
-        times[one.sha256] = [x.when for x in one.hand_ins if x.exact]
-    if sha256 not in times or when in times[sha256] or when not in chain(*times.values()):
-        return
-    if own := times[sha256]:
-        _put(folder / TIMESTAMP, str(own[0]).encode())
-    else:
-        (folder / TIMESTAMP).unlink()
+def _by_a_person(hand_in: HandIn, one: Attempt) -> bool:
+    """Whether a person put the attempt there; an older labkit recorded its own copies as such."""
+    theirs = {int(x.when.timestamp()) for x in one.hand_ins if x.origin != BY_HAND}
+    by_hand = hand_in.origin == BY_HAND and not hand_in.exact
+    return by_hand and int(hand_in.when.timestamp()) not in theirs
 
 
 def named_for(file: str, assignment: str) -> bool:
@@ -322,7 +243,8 @@ def _rank(hand_in: HandIn, assignment: str) -> tuple[bool, int, str]:
     return named_for(hand_in.file, assignment), int(match[1]) if match else 0, hand_in.collected
 
 
-def _by_digest(course: Course, student: str, assignment: str) -> dict[str, Attempt]:
+def by_digest(course: Course, student: str, assignment: str) -> dict[str, Attempt]:
+    """All attempts of a student by SHA-256 digest."""
     return {one.sha256: one for one in attempts(course, student, assignment)}
 
 
@@ -338,7 +260,7 @@ def _read(path: Path) -> Attempt:
         ) from None
 
 
-def _put(path: Path, data: bytes) -> None:
+def put(path: Path, data: bytes) -> None:
     """Write a file, unless it already has this content; then its modification time stays."""
     if not path.is_file() or path.read_bytes() != data:
         write(path, data)

@@ -22,14 +22,13 @@ from ..submission import digest
 from .attempts import (
     HandIn,
     counted_attempt,
-    install,
     named_for,
     perhaps_late,
     store,
-    store_submitted,
 )
 from .exchange import in_exchange
 from .identity import all_lms_users, assign_folders, identity_lock, record_users
+from .installed import in_place, install, instead, store_submitted
 from .move import move_to_owners
 from .owner import find_owner
 from .platforms import File, Named, in_folder, in_zip, open_zip, reader
@@ -199,6 +198,7 @@ def _store_each(
 ) -> Iterator[Taken]:
     now = str(datetime.now(UTC))
     there = store_submitted(course, student, assignment, now)
+    lies = in_place(course, student, assignment, there)
     before = counted_attempt(course, student, assignment)
     shown = max((file.when for file, _ in notebooks), default=datetime.now(UTC))
     done: list[tuple[HandIn, str, bool]] = []
@@ -216,13 +216,18 @@ def _store_each(
     beside = {x.when: x.file for x in after.attempt.hand_ins} if after else {}
     for hand_in, sha256, new in done:
         if after is None or after.attempt.sha256 != sha256:
-            which = beside.get(hand_in.when, "a later one")
-            if after and which == hand_in.file:
-                which = f"another {which}, of {after.first.when:%Y-%m-%d %H:%M %Z},"
+            which = beside.get(hand_in.when, "one")
+            if after and which in {hand_in.file, "one"}:
+                which = f"another {which}, of {after.came.when:%Y-%m-%d %H:%M %Z},"
             says = f"{'kept' if new else 'there already'}, but {which} counts"
         elif before is not None and before.attempt.sha256 == sha256:
             says = "there already"
         else:
-            says = "taken" + (", in place of an earlier one, which is kept" if before else "")
+            older = before is None or before.first.when < after.first.when
+            which = "an earlier one" if older else str(before).replace("the file", "the one")
+            says = "taken" + (f", in place of {which}, which is kept" if before else "")
             says += "" if hand_in.file == f"{assignment}.ipynb" else f", as {assignment}.ipynb"
         yield Taken(student, hand_in.file, says + (", late" if hand_in.late else ""))
+    new_one = before is None or after is None or before.attempt.sha256 != after.attempt.sha256
+    if not new_one and (says := instead(lies, after)):
+        yield Taken(student, "", says)

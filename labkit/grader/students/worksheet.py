@@ -12,9 +12,10 @@ from ..clean import few
 from ..each import Failure
 from ..rules import read_rules
 from ..timestamp import read_time
-from .attempts import Attempt, Counted, attempts, choose, install, store
+from .attempts import Attempt, Counted, attempts, choose, counted_attempt, store
 from .class_list import Entry, Student
 from .identity import lms_users, record_users
+from .installed import install, instead
 from .move import move_work
 from .platforms import LmsUser
 
@@ -41,7 +42,7 @@ def keep_times(
     """Record when each counted attempt was handed in, as Moodle's worksheet says.
 
     Returns:
-        How many times were recorded; and a sentence for each that was not.
+        How many times were recorded; and a sentence for each that was not, or changes what counts.
     """
     zone = ZoneInfo(read_rules(course).zone)
     taken = 0
@@ -60,9 +61,11 @@ def keep_times(
         if isinstance(when, str):
             left.append(f"{student}: no hand-in time is set; the worksheet says {when}")
         elif when != first.when or not first.exact:
+            before = counted_attempt(course, student.id, assignment)
             data = chosen.attempt.file.read_bytes()
             store(course, student.id, assignment, data, replace(first, when=when, exact=True))
-            install(course, student.id, assignment)
+            if says := instead(before, install(course, student.id, assignment)):
+                left.append(f"{student}: {says}; to grade it, type: labkit grade {assignment}")
             taken += 1
     if left and not any(entry.handed_in for entry, _ in rows):
         left = [
