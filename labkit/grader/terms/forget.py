@@ -16,7 +16,7 @@ from ...course.authoring.layout import Course
 from ...course.own_arm import HANDLES, Arms
 from ...errors import LabkitError
 from ..atomic import write
-from ..marks.table import marks_of
+from ..grading.results import Results
 from ..nbgrader.gradebook import quiet_database
 from ..pseudonyms import FILE as KEY
 from ..pseudonyms import pseudonym
@@ -27,7 +27,7 @@ from ..students.identity import all_lms_users, identity_lock, save_lms_users
 from ..students.move import move_work
 from ..students.roster import FILE as ROSTER
 from ..students.roster import Roster, read_roster, same_name, save_roster
-from ..submission import did_you_mean, is_name
+from ..submission import did_you_mean, is_name, students
 from .older import relocate
 from .term import archives
 
@@ -71,16 +71,20 @@ def shared_reports(course: Course, student: str) -> list[tuple[Course, str, str]
     """Reports that a student handed in for a team: term, assignment, and new owner.
 
     Raises:
-        LabkitError: The marks that depend on this student's report cannot be read.
+        LabkitError: The roster or the release of a term is damaged.
     """
     found = []
     for term in _terms(course):
-        one = read_roster(term).get(student)
-        names = [path.stem for path in sorted(term.bundle.glob("*.json"))] if one else []
-        for name in names if one and one.team else ():
+        roster = read_roster(term)
+        one = roster.get(student)
+        if one is None or not one.team:
+            continue
+        team = {mate.id for mate in roster.students if mate.team == one.team}
+        for name in sorted(path.stem for path in term.bundle.glob("*.json")):
             if Bundle.of(term, name).is_report:
-                mates = [mark.student for mark in marks_of(term, name) if mark.author == student]
-                found += [(term, name, mate) for mate in mates[:1]]
+                own = team & {*students(term, name), *Results(term, name).students()}
+                if own and min(own) == student and team - own:
+                    found.append((term, name, min(team - own)))
     return found
 
 
