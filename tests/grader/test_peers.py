@@ -193,11 +193,19 @@ def test_who_is_forgotten_takes_no_mark_from_their_team(course, capsys):
         book.db.commit()
     before = {mark.student: mark for mark in marks_of(course, NAME)}["bob"]
     assert before.author == "ada" and before.score > 0
+    page = course.root / f"feedback/bob/{NAME}/{NAME}.html"
+    assert typed(course, "feedback", NAME, "--unmarked") == 0
+    assert "Handed in by ada" in page.read_text()
     capsys.readouterr()
     for more, says in ([], "would move"), (["--yes"], "moved"):
         assert typed(course, "term", "forget", "--student", "ada", *more) == 0
-        said = f"{says} to bob, with its mark, which is the team's: submitted/ada/{NAME}\n"
-        assert said in capsys.readouterr().out
+        said = capsys.readouterr().out
+        assert f"{says} to bob, with its mark, which is the team's: submitted/ada/{NAME}\n" in said
+        assert f": feedback/bob/{NAME}/{NAME}.html\n" in said
+        assert f"write it again: labkit feedback {NAME} --student bob\n" in said
+    assert not page.exists()
+    assert typed(course, "feedback", NAME, "--unmarked", "--student", "bob") == 0
+    assert "Handed in by" not in page.read_text()
     marks = {mark.student: mark for mark in marks_of(course, NAME)}
     assert (marks["bob"].score, marks["bob"].author) == (before.score, "")
     assert marks["bob"].lines == before.lines and "ada" not in marks
@@ -217,6 +225,7 @@ def test_who_is_forgotten_after_the_term_takes_no_mark_from_their_team(tmp_path,
     result = replace(result, questions=tuple(Answer(verdict, source="") for verdict in blank))
     Results(course, NAME).keep(result)
     record(course, NAME, [result])
+    assert typed(course, "feedback", NAME, "--unmarked", "--student", "ada") == 0
     archived = Course(archive(course))
     (archived.root / "course.toml").write_text("late = 3 =")
     capsys.readouterr()
@@ -227,3 +236,4 @@ def test_who_is_forgotten_after_the_term_takes_no_mark_from_their_team(tmp_path,
     with open_gradebook(archived) as book:
         assert [x.student.id for x in book.assignment_submissions(NAME)] == ["bob"]
         assert "ada" not in {one.id for one in book.students}
+    assert not list(archived.root.glob("feedback/*/*/*")), "not Ada's page in Bob's folder"
