@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+import json
 import os
 from dataclasses import replace
 from datetime import date
 
 import numpy as np
 import pytest
+from downloaded import from_moodle
 from handmade import hand_in
 
 from labkit import Sample, State
@@ -22,6 +24,7 @@ from labkit.grader.grading.worker import TRIES
 from labkit.grader.marks.export import of_term
 from labkit.grader.marks.table import marks_of
 from labkit.grader.sandbox.launch import SandboxLost
+from labkit.grader.students.collect import collect
 
 HONEST = """
 import labkit as lk
@@ -65,14 +68,17 @@ cup(endless)
 TODAY, TOMORROW = date(2026, 11, 22), date(2026, 11, 23)
 
 
-def enter(course, student, *cells):
+def notebook(*cells):
     cells = [
         {"cell_type": "code", "id": f"c{k}", "metadata": {}, "source": source, "outputs": [],
          "execution_count": None}
         for k, source in enumerate(cells)
     ]  # fmt: skip
-    hand_in(course, CUP, student, {"cells": cells, "metadata": {}, "nbformat": 4,
-                                   "nbformat_minor": 5})  # fmt: skip
+    return {"cells": cells, "metadata": {}, "nbformat": 4, "nbformat_minor": 5}
+
+
+def enter(course, student, *cells):
+    hand_in(course, CUP, student, notebook(*cells))
     (path,) = (course.submitted / student / CUP).glob("*.ipynb")
     return path
 
@@ -183,6 +189,34 @@ def test_the_last_hand_in_of_a_handle_counts_whoever_made_it(course, instant):
         os.utime(enter(course, "ada", source), (2e9, 2e9))
         list(play(course, TODAY, final=True))
         assert latest(course, final=True)[0].scores == (score,) * SEEDS
+
+
+def test_a_worksheet_decides_which_of_a_teams_notebooks_is_the_later(course, instant, capsys):
+    """In one download both have one time, which the board says; Moodle's times end the doubt."""
+    (course.root / "list.csv").write_text("name,login,team\nAda Low,ada,kite\nZoe Park,zoe,kite\n")
+    typed = ["students", "import", str(course.root / "list.csv"), "--course", str(course.root)]
+    assert main(typed) == 0
+    people = [
+        ((who, number), "x.ipynb", json.dumps(notebook(source)))
+        for number, who, source in [(1, "Ada Low", HONEST), (2, "Zoe Park", COUNTS)]
+    ]
+    download = from_moodle(course.root / "1.zip", people)
+    assert all(one.fine for one in collect(course, CUP, download))
+    board = ["export", "--layout", "cup", "--course", str(course.root)]
+    capsys.readouterr()
+    assert main(board) == 0
+    said = capsys.readouterr().err
+    assert "the notebook of zoe counts, and ada handed in another at the same time" in said
+    assert f"labkit students import WORKSHEET.csv --assignment {CUP}" in said
+    rows = ('1,Ada Low,ada,"Sunday, 1 March 2026, 11:30 AM"',
+            '2,Zoe Park,zoe,"Sunday, 1 March 2026, 11:20 AM"')  # fmt: skip
+    head = "Identifier,Full name,Username,Last modified (submission)\n"
+    (course.root / "list.csv").write_text(head + "".join(f"Participant {row}\n" for row in rows))
+    assert main([*typed, "--assignment", CUP]) == 0
+    capsys.readouterr()
+    assert main(board) == 0
+    assert "same time" not in capsys.readouterr().err
+    assert [x.student for x in latest(course, final=False)] == ["ada"]
 
 
 def test_the_final_has_other_seeds_and_benchmarks_beaten_are_extra_credit(

@@ -15,6 +15,7 @@ from handmade import ROOT, cell_of, hand_in, raw
 
 from labkit.__main__ import main
 from labkit.course.authoring.bundle import Bundle
+from labkit.course.authoring.layout import Course
 from labkit.course.marking import all_alike
 from labkit.course.verdict import Outcome
 from labkit.errors import LabkitError
@@ -24,7 +25,9 @@ from labkit.grader.marks.table import marks_of
 from labkit.grader.nbgrader.gradebook import open_gradebook, record
 from labkit.grader.peers.readers import handed_out, names_of_class, readers, sheet_of, without_names
 from labkit.grader.students.class_list import Student
+from labkit.grader.submission import students
 from labkit.grader.terms.release import release
+from labkit.grader.terms.term import archive
 
 pytestmark = pytest.mark.xdist_group("peers")
 
@@ -190,12 +193,47 @@ def test_who_is_forgotten_takes_no_mark_from_their_team(course, capsys):
         book.db.commit()
     before = {mark.student: mark for mark in marks_of(course, NAME)}["bob"]
     assert before.author == "ada" and before.score > 0
+    page = course.root / f"feedback/bob/{NAME}/{NAME}.html"
+    assert typed(course, "feedback", NAME, "--unmarked") == 0
+    assert "Handed in by ada" in page.read_text()
     capsys.readouterr()
     for more, says in ([], "would move"), (["--yes"], "moved"):
         assert typed(course, "term", "forget", "--student", "ada", *more) == 0
-        said = f"{says} to bob, with its mark, which is the team's: submitted/ada/{NAME}\n"
-        assert said in capsys.readouterr().out
+        said = capsys.readouterr().out
+        assert f"{says} to bob, with its mark, which is the team's: submitted/ada/{NAME}\n" in said
+        assert f": feedback/bob/{NAME}/{NAME}.html\n" in said
+        assert f"write it again: labkit feedback {NAME} --student bob\n" in said
+    assert not page.exists()
+    assert typed(course, "feedback", NAME, "--unmarked", "--student", "bob") == 0
+    assert "Handed in by" not in page.read_text()
     marks = {mark.student: mark for mark in marks_of(course, NAME)}
     assert (marks["bob"].score, marks["bob"].author) == (before.score, "")
     assert marks["bob"].lines == before.lines and "ada" not in marks
     assert not list(course.root.glob("[!s]*/ada")) and not (course.submitted / "ada").exists()
+
+
+def test_who_is_forgotten_after_the_term_takes_no_mark_from_their_team(tmp_path, capsys):
+    """Report and mark become the mate's own, even if the archive's rules cannot be read."""
+    course = copied(tmp_path)
+    release(course, NAME, 7)
+    (course.root / "class.csv").write_text(CLASS)
+    assert typed(course, "students", "import", str(course.root / "class.csv")) == 0
+    notebook = json.loads((course.release / NAME / f"{NAME}.ipynb").read_text())
+    hand_in(course, NAME, "ada", notebook)
+    result = rejection("", "ada", Bundle.of(course, NAME), "made by hand", raw(notebook))
+    blank = [all_alike(q, Outcome.NOT_ATTEMPTED) for q in Bundle.of(course, NAME).questions]
+    result = replace(result, questions=tuple(Answer(verdict, source="") for verdict in blank))
+    Results(course, NAME).keep(result)
+    record(course, NAME, [result])
+    assert typed(course, "feedback", NAME, "--unmarked", "--student", "ada") == 0
+    archived = Course(archive(course))
+    (archived.root / "course.toml").write_text("late = 3 =")
+    capsys.readouterr()
+    for more, says in ([], "would move"), (["--yes"], "moved"):
+        assert typed(course, "term", "forget", "--student", "ada", *more) == 0
+        assert f"{says} to bob, with its mark, which is the team's: " in capsys.readouterr().out
+    assert Results(archived, NAME).students() == students(archived, NAME) == ["bob"]
+    with open_gradebook(archived) as book:
+        assert [x.student.id for x in book.assignment_submissions(NAME)] == ["bob"]
+        assert "ada" not in {one.id for one in book.students}
+    assert not list(archived.root.glob("feedback/*/*/*")), "not Ada's page in Bob's folder"

@@ -169,7 +169,7 @@ def _autograder(course: Course, assignment: str | None, to: Path | None) -> int:
 
 def _board(course: Course, final: bool, to: Path | None) -> int:
     """Run the new entries of the cup and print the board; write it as a page too."""
-    from ..cup.entries import latest, play
+    from ..cup.entries import latest, play, tied
     from ..cup.table import as_text, give_bonus, page
     from ..seeds import public_warning, seed_of
     from ..submission import misnamed
@@ -181,6 +181,7 @@ def _board(course: Course, final: bool, to: Path | None) -> int:
             print(f"run: {entry.handle}", flush=True)
         found = latest(course, final)
         tell(as_text(found), sys.stdout)
+        tell(tied(course, found), sys.stderr)
         if to is not None:
             write(page(course, found, final), to)
         if final:

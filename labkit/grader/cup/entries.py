@@ -28,7 +28,7 @@ from ...errors import LabkitError
 from ...run import Controller
 from ...trajectory import AnySample
 from ..atomic import write
-from ..clean import clean_line
+from ..clean import clean_line, few
 from ..each import Failure, for_student
 from ..grading.grade import parse
 from ..grading.public_evidence import encode_to_fit, motion
@@ -40,6 +40,7 @@ from ..sandbox.protocol import Disconnected
 from ..sandbox.session import RemoteFunction, Session, Step
 from ..seeds import seed_of
 from ..submission import Submission, digest, students
+from ..timestamp import read_stamp, read_time
 from ..whys import rank
 
 FOLDER = "cup"
@@ -161,14 +162,40 @@ def latest(course: Course, final: bool) -> list[Entry]:
 
     Of the entries of a team, the one whose notebook was handed in last.
     """
-
-    def handed_in(one: Entry) -> float:
-        folder = Submission.of(course, CUP, one.student).folder
-        return max((path.stat().st_mtime for path in folder.glob("*.ipynb")), default=0.0)
-
-    found = sorted(entries(course), key=handed_in)
+    found = sorted(entries(course), key=partial(_handed_in, course))
     last = {x.handle: x for x in found if x.final is final}
     return sorted(last.values(), key=lambda x: (x.score, x.handle))
+
+
+def tied(course: Course, found: Sequence[Entry]) -> Iterator[str]:
+    """A sentence for each entry of a team of which another notebook may be the later one.
+
+    Args:
+        course: The course.
+        found: What `latest` returned.
+    """
+    mine = {x.student: x for x in entries(course)}
+    for one in found:
+        at = _handed_in(course, one)
+        others = [
+            x.student
+            for x in mine.values()
+            if (x.handle, _handed_in(course, x)) == (one.handle, at) and x.notebook != one.notebook
+        ]
+        if others:
+            yield (
+                f"{one.handle}: the notebook of {one.student} counts, and {few(others)} handed in "
+                f"another at the same time, as far as the download says; for the exact times type: "
+                f"labkit students import WORKSHEET.csv --assignment {CUP}"
+            )
+
+
+def _handed_in(course: Course, one: Entry) -> float:
+    """When the student's present notebook was handed in; without a file, before all others."""
+    folder = Submission.of(course, CUP, one.student).folder
+    if stated := read_time(read_stamp(folder)):
+        return stated.timestamp()
+    return max((path.stat().st_mtime for path in folder.glob("*.ipynb")), default=0.0)
 
 
 def _run(new: Entry, data: bytes, limits: Limits, on: Sequence[int], sandbox: Sandbox) -> Entry:

@@ -7,7 +7,7 @@ from collections.abc import Iterator, Mapping
 from pathlib import Path
 from typing import Any
 
-from ...course.authoring.layout import Course
+from ...course.authoring.layout import CUP, Course
 from ..each import Failure
 from ..grading.results import Results
 from ..nbgrader.gradebook import open_gradebook
@@ -107,7 +107,7 @@ def _move_marks(course: Course, assignment: str, moves: Mapping[str, str]) -> No
     results = Results(course, assignment)
     for old, new in moves.items():
         results.rename(old, new)
-        _move_pages(course, old, new)
+        _move_pages(course, assignment, old, new)
     if not moves or not (course.root / "gradebook.db").exists():
         return
     with open_gradebook(course) as book:
@@ -121,11 +121,14 @@ def _move_marks(course: Course, assignment: str, moves: Mapping[str, str]) -> No
             _move_the_rest(course, book, old, new)
 
 
-def _move_pages(course: Course, old: str, new: str) -> None:
+def _move_pages(course: Course, assignment: str, old: str, new: str) -> None:
     """Move pages about a student whose folder has no work left; the cup runs its entries again."""
-    if old in read_roster(course) or any((course.root / base / old).exists() for base in _WORK):
+    left = any((course.root / base / old).exists() for base in _WORK)
+    stays = left or old in read_roster(course)
+    if assignment == CUP or not stays:
+        (course.results / "cup" / f"{old}.json").unlink(missing_ok=True)
+    if stays:
         return
-    (course.results / "cup" / f"{old}.json").unlink(missing_ok=True)
     made = (course.build / "explain", course.build / "defence", *map(course.root.joinpath, _MADE))
     for folder in made:
         if (folder / old).is_dir():

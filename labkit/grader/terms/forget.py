@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 import glob
+import shlex
 import shutil
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import replace
 from functools import partial
 from pathlib import Path
 
+from markupsafe import escape
 from nbgrader.api import Gradebook
 
 from ...course.authoring.bundle import Bundle
@@ -16,7 +18,7 @@ from ...course.authoring.layout import Course
 from ...course.own_arm import HANDLES, Arms
 from ...errors import LabkitError
 from ..atomic import write
-from ..marks.table import marks_of
+from ..grading.results import Results
 from ..nbgrader.gradebook import quiet_database
 from ..pseudonyms import FILE as KEY
 from ..pseudonyms import pseudonym
@@ -27,7 +29,7 @@ from ..students.identity import all_lms_users, identity_lock, save_lms_users
 from ..students.move import move_work
 from ..students.roster import FILE as ROSTER
 from ..students.roster import Roster, read_roster, same_name, save_roster
-from ..submission import did_you_mean, is_name
+from ..submission import did_you_mean, is_name, students
 from .older import relocate
 from .term import archives
 
@@ -42,7 +44,7 @@ _OF_A_STUDENT = (
 
 
 def files_of(course: Course, student: str) -> list[Path]:
-    """One student's files and folders, in this term and in earlier ones.
+    """One student's files and folders, and pages that name them, in this term and in earlier ones.
 
     Raises:
         LabkitError: No student can have this name.
@@ -55,7 +57,7 @@ def files_of(course: Course, student: str) -> list[Path]:
         for term in _terms(course)
         for pattern in patterns
         for found in sorted(glob.glob(pattern, root_dir=term.root, include_hidden=True))
-    ]
+    ] + [page for term in _terms(course) for page in _pages_of_mates(term, student)]
 
 
 def entries_of(course: Course, student: str) -> list[Path]:
@@ -71,16 +73,20 @@ def shared_reports(course: Course, student: str) -> list[tuple[Course, str, str]
     """Reports that a student handed in for a team: term, assignment, and new owner.
 
     Raises:
-        LabkitError: The marks that depend on this student's report cannot be read.
+        LabkitError: The roster or the release of a term is damaged.
     """
     found = []
     for term in _terms(course):
-        one = read_roster(term).get(student)
-        names = [path.stem for path in sorted(term.bundle.glob("*.json"))] if one else []
-        for name in names if one and one.team else ():
+        roster = read_roster(term)
+        one = roster.get(student)
+        if one is None or not one.team:
+            continue
+        team = {mate.id for mate in roster.students if mate.team == one.team}
+        for name in sorted(path.stem for path in term.bundle.glob("*.json")):
             if Bundle.of(term, name).is_report:
-                mates = [mark.student for mark in marks_of(term, name) if mark.author == student]
-                found += [(term, name, mate) for mate in mates[:1]]
+                own = team & {*students(term, name), *Results(term, name).students()}
+                if own and min(own) == student and team - own:
+                    found.append((term, name, min(team - own)))
     return found
 
 
@@ -102,6 +108,7 @@ def forget(
                     f"{student} handed in {name} for {mate} too, who has other files in "
                     f"{term.root / 'attempts' / mate / name}; move these away, then try again"
                 )
+            shutil.rmtree(term.root / "feedback" / mate / name, ignore_errors=True)  # names both
         for path in found:
             if path.is_dir() and not path.is_symlink():
                 shutil.rmtree(path)
@@ -130,6 +137,12 @@ def left_by_hand(course: Course, student: str) -> Iterator[str]:
                 f"in {where}, perhaps theirs too: {', '.join(alike)}; look, and for each that is "
                 "theirs type: labkit term forget --student FOLDER"
             )
+    for page in _pages_of_mates(course, student):
+        mate, assignment = page.parts[-3:-1]
+        yield (
+            f"{page.relative_to(course.root)} says that {student} handed in; once it is deleted, "
+            f"write it again: labkit feedback {assignment} --student {shlex.quote(mate)}"
+        )
     sheets = [str(path.relative_to(course.root)) for path in _read_by_others(course, student)]
     if sheets:
         yield f"the sheets of their readers still hold their report: {', '.join(sheets)}"
@@ -157,6 +170,19 @@ def _perhaps_theirs(term: Course, student: str) -> list[str]:
     return sorted(
         {x for x, name in known if name and name in names and x not in roster} - {student}
     )
+
+
+def _pages_of_mates(term: Course, student: str) -> list[Path]:
+    """Feedback pages of a team that say that this student handed in."""
+    roster, said = read_roster(term), f"Handed in by {escape(student)} for your team."
+    one = roster.get(student)
+    team = [x.id for x in roster.students if one and one.team and x.team == one.team]
+    pages = [
+        x
+        for mate in sorted({*team} - {student})
+        for x in (term.root / "feedback" / mate).glob("*/*.html")
+    ]
+    return [x for x in pages if said in x.read_text(encoding="utf-8", errors="replace")]
 
 
 def _read_by_others(course: Course, student: str) -> Iterator[Path]:

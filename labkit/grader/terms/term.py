@@ -142,6 +142,7 @@ def restore(course: Course, old: Path) -> tuple[Path | None, list[str]]:
             (course.root / name).unlink(missing_ok=True)  # the rules, which `archive` copied
             (course.root / name).parent.mkdir(parents=True, exist_ok=True)
             shutil.move(old / name, course.root / name)
+    (Course(old).build / ".gradebook").unlink(missing_ok=True)  # a lock of `open_gradebook`
     if not any(path.is_file() for path in old.rglob("*")):
         shutil.rmtree(old)
     released = sorted(path.stem for path in course.bundle.glob("*.json"))
