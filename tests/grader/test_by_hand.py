@@ -132,6 +132,16 @@ def test_no_page_before_all_is_marked(written, capsys):
     assert code == 1 and f"no mark: ada: no mark for {WHY}, {REPORT}; give it by hand" in err
 
 
+def test_a_students_page_waits_for_their_own_marks_alone(written, capsys):
+    """A contested mark is answered with the page of one, whatever of the others still waits."""
+    code, _, err = verb(written, capsys, "feedback", "--student", "bob")
+    assert code == 2 and f"bob ({REPORT}): answers of 1 student still wait" in err
+    give(written, "bob", REPORT, 0.0)
+    assert verb(written, capsys, "feedback", "--student", "bob")[0] == 0
+    assert "11 of 28 points." in page(written, "bob")
+    assert not (written.root / "feedback/carl").exists()
+
+
 def test_page_export_and_report_have_formgraders_mark(written, capsys):
     """Manual points, extra credit and comment are in all of them, and outlive grading again."""
     give(written, "ada", WHY, 1.5, "Say *why*.", extra=0.5)

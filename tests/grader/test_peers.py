@@ -125,6 +125,8 @@ def test_what_one_member_hands_in_counts_for_the_team(course, capsys):
     bob, ada = marks["bob"], marks["ada"]
     assert (bob.lines, bob.missing, bob.points) == (ada.lines, ada.missing, ada.points)
     assert bob.person.email == "bob@uni.org" and not bob.absent
+    assert typed(course, "feedback", NAME, "--student", "bob") == 2
+    assert "ada (" in capsys.readouterr().err, "the report that waits is Ada's"
     assert typed(course, "feedback", NAME, "--unmarked", "--student", "bob") == 0
     html = (course.root / "feedback/bob" / NAME / f"{NAME}.html").read_text()
     assert "feedback for Bob Bobson (bob)</h1>" in html
