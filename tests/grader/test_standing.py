@@ -225,7 +225,21 @@ def test_a_fall_in_per_cent_alone_is_listed(course):
     line, count, _ = summary([Change(full, less)])
     of = full.points
     assert line == f"ada: {of:g} of {of:g} -> {of:g} of {of + 1:g}"
-    assert count == "1 of 1 marks would change, 1 of them only with --lower"
+    assert count == "1 of 1 mark would change, 1 of them only with --lower"
+
+
+def test_diff_tells_a_new_file_from_a_new_test(course):
+    """A mark that another file earned is said to be; whoever is new is counted apart."""
+    full = result_of(course, "ada")
+    less = result_of(course, "ada", share=0.5, data=b"another file")
+    new = Change(None, result_of(course, "bob"))
+    first, second, count = summary([Change(full, less), Change(full, full), new])
+    assert first.startswith("ada: 22 -> 11, -11 (handed in again; ")
+    assert second == "bob: new, 22 of 22"
+    assert count == "1 of 2 marks would change, none of them needs --lower; 1 new"
+    assert list(summary([Change(full, full), Change(full, full), new]))[-1] == (
+        "0 of 2 marks would change; 1 new"
+    )
 
 
 def test_nbgraders_own_button_lowers_no_mark_of_an_unchanged_submission(marked, monkeypatch):
