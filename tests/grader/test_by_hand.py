@@ -21,6 +21,7 @@ from labkit.course.authoring.layout import Course
 from labkit.errors import LabkitError
 from labkit.grader.grading.plan import plan
 from labkit.grader.grading.results import Results
+from labkit.grader.marks.mark import MarkLine
 from labkit.grader.nbgrader import gradebook
 from labkit.grader.nbgrader.gradebook import open_gradebook, record
 from labkit.grader.sandbox.parse import read
@@ -129,7 +130,7 @@ def test_no_page_before_all_is_marked(written, capsys):
     assert "Not marked in full yet." in page(written, "ada")
     assert "It is not marked yet." in page(written, "ada")
     code, _, err = verb(written, capsys, "export")
-    assert code == 1 and f"no mark: ada: no mark for {WHY}, {REPORT}; give it by hand" in err
+    assert code == 1 and f"no mark: ada: still to be marked: {WHY}, {REPORT}; mark by hand" in err
 
 
 def test_a_students_page_waits_for_their_own_marks_alone(written, capsys):
@@ -156,10 +157,12 @@ def test_page_export_and_report_have_formgraders_mark(written, capsys):
     assert "13 of 28 points." in page(written, "bob")
     assert "1.5 by hand; 0.5 extra credit" in page(written, "ada")
     assert "4 by hand, instead of 2" in page(written, "bob")
+    line = MarkLine("circle", 4.0, automatic=4.0, by_hand=4.0)
+    assert line.origin == "4 by hand", "instead of nothing else"
     assert "Say *why*." in page(written, "ada")
     assert "Because <em>friction</em> <b>eats</b> it." in page(written, "ada")
     report = verb(written, capsys, "class-report")[1]
-    assert "Mean 14.5, median 14.5 of 28 points; 13 to 16." in report
+    assert "Mean of the 2 graded: 14.5, median 14.5 of 28 points; 13 to 16." in report
 
 
 def test_another_answer_is_looked_at_again(written, capsys):

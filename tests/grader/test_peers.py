@@ -134,7 +134,7 @@ def test_what_one_member_hands_in_counts_for_the_team(course, capsys):
     capsys.readouterr()
     typed(course, "export", NAME, "--absent-zero")
     said = capsys.readouterr()
-    assert "1 have the mark of a report that their team handed in: bob (ada)" in said.err
+    assert "1 has the mark of a report that their team handed in: bob (ada)" in said.err
     assert "handed in nothing" not in said.err and "bob,0" not in said.out
 
 

@@ -265,11 +265,11 @@ def test_tables_of_a_class_that_is_whole_say_nothing(marked, capsys):
         code, _, err = verb(marked, capsys, "export", "--layout", layout)
         nobody = "nobody can import this table: it has no participant's number" in err
         assert code == nobody == (layout == "moodle-worksheet")
-        assert "carl: rejected: the file is empty" in err.splitlines()
+        assert "carl: rejected: the file is empty; ask for the file again" in err.splitlines()
         assert not [x for x in err.splitlines() if x.startswith("no mark")]
     rows = table(verb(marked, capsys, "export")[1])
     assert rows["carl"]["score"] == "0.0"
-    assert rows["carl"]["remark"] == "rejected: the file is empty"
+    assert rows["carl"]["remark"] == "rejected: the file is empty; ask for the file again"
     assert rows["ada"]["remark"] == ""
 
 
@@ -349,7 +349,9 @@ def test_a_submission_that_vanished_keeps_its_mark(marked, capsys):
     assert "ada: nothing of theirs is in submitted/; the mark stays as it was" in err
     assert verb(marked, capsys, "feedback")[0] == 0
     assert (marked.root / "feedback" / "ada" / NAME / f"{NAME}.html").exists()
-    assert "3 handed in, 2 graded, 1 rejected." in verb(marked, capsys, "class-report")[1]
+    report = verb(marked, capsys, "class-report")[1]
+    assert "3 handed in, 2 graded, 1 rejected." in report
+    assert "\nMean of the 2 graded: " in report, "a file that was rejected is not in the mean"
     Results(marked, NAME).path("ada").write_text("{")
     code, out, err = verb(marked, capsys, "export")
     assert (code, table(out)["ada"]["score"]) == (1, "")
@@ -382,7 +384,7 @@ def test_a_mark_by_hand_counts_and_a_question_without_one_is_missing(marked, cap
         book.db.commit()
     code, out, err = verb(marked, capsys, "export")
     assert (code, table(out)["ada"]["score"], table(out)["bob"]["score"]) == (1, "", "15.0")
-    assert "no mark: ada: no mark for essay; give it by hand, in formgrader" in err
+    assert "no mark: ada: still to be marked: essay; mark by hand, in formgrader" in err
 
 
 @pytest.mark.parametrize("again", [False, True])

@@ -50,7 +50,8 @@ def feedback(
     """Write a feedback page for each student.
 
     Some answers are marked by hand, in formgrader. No page is written until they are all marked,
-    with --student those of this student; --unmarked writes the pages before. What readers said of a report is on its authors' page.
+    with --student those of this student; --unmarked writes the pages before. What readers said of
+    a report is on its authors' page.
     """
     from ..feedback.page import moodle_zip, write_feedback
     from ..marks.table import marks_of
