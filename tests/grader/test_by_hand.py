@@ -21,6 +21,7 @@ from labkit.course.authoring.layout import Course
 from labkit.errors import LabkitError
 from labkit.grader.grading.plan import plan
 from labkit.grader.grading.results import Results
+from labkit.grader.marks.mark import MarkLine
 from labkit.grader.nbgrader import gradebook
 from labkit.grader.nbgrader.gradebook import open_gradebook, record
 from labkit.grader.sandbox.parse import read
@@ -130,7 +131,17 @@ def test_no_page_before_all_is_marked(written, capsys):
     assert "Not marked in full yet." in page(written, "ada")
     assert "It is not marked yet." in page(written, "ada")
     code, _, err = verb(written, capsys, "export")
-    assert code == 1 and f"no mark: ada: no mark for {WHY}, {REPORT}; give it by hand" in err
+    assert code == 1 and f"no mark: ada: still to be marked: {WHY}, {REPORT}; mark by hand" in err
+
+
+def test_a_students_page_waits_for_their_own_marks_alone(written, capsys):
+    """A contested mark is answered with the page of one, whatever of the others still waits."""
+    code, _, err = verb(written, capsys, "feedback", "--student", "bob")
+    assert code == 2 and f"bob ({REPORT}): answers of 1 student still wait" in err
+    give(written, "bob", REPORT, 0.0)
+    assert verb(written, capsys, "feedback", "--student", "bob")[0] == 0
+    assert "11 of 28 points." in page(written, "bob")
+    assert not (written.root / "feedback/carl").exists()
 
 
 def test_page_export_and_report_have_formgraders_mark(written, capsys):
@@ -147,10 +158,12 @@ def test_page_export_and_report_have_formgraders_mark(written, capsys):
     assert "13 of 28 points." in page(written, "bob")
     assert "1.5 by hand; 0.5 extra credit" in page(written, "ada")
     assert "4 by hand, instead of 2" in page(written, "bob")
+    line = MarkLine("circle", 4.0, automatic=4.0, by_hand=4.0)
+    assert line.origin == "4 by hand", "instead of nothing else"
     assert "Say *why*." in page(written, "ada")
     assert "Because <em>friction</em> <b>eats</b> it." in page(written, "ada")
     report = verb(written, capsys, "class-report")[1]
-    assert "Mean 14.5, median 14.5 of 28 points; 13 to 16." in report
+    assert "Mean of the 2 graded: 14.5, median 14.5 of 28 points; 13 to 16." in report
 
 
 def test_another_answer_is_looked_at_again(written, capsys):
@@ -161,6 +174,8 @@ def test_another_answer_is_looked_at_again(written, capsys):
     assert said == (
         f"ada: {WHY} was marked 1 by hand, and the answer has changed since; look at it again"
     )
+    (said,) = graded(written, "ada", b'{"cells": [], "again": 1}', **{WHY: "No.", REPORT: ""})
+    assert said.startswith(f"ada: {WHY} was") and said.endswith("look at it again"), "until it is"
     assert f"ada ({WHY})" in verb(written, capsys, "feedback")[2]
     assert row(written, capsys, "ada")["score"] == "", "it waits, as the page does"
     code, _, err = verb(written, capsys, "export")

@@ -128,6 +128,8 @@ def test_what_one_member_hands_in_counts_for_the_team(course, capsys):
     bob, ada = marks["bob"], marks["ada"]
     assert (bob.lines, bob.missing, bob.points) == (ada.lines, ada.missing, ada.points)
     assert bob.person.email == "bob@uni.org" and not bob.absent
+    assert typed(course, "feedback", NAME, "--student", "bob") == 2
+    assert "ada (" in capsys.readouterr().err, "the report that waits is Ada's"
     assert typed(course, "feedback", NAME, "--unmarked", "--student", "bob") == 0
     html = (course.root / "feedback/bob" / NAME / f"{NAME}.html").read_text()
     assert "feedback for Bob Bobson (bob)</h1>" in html
@@ -135,7 +137,7 @@ def test_what_one_member_hands_in_counts_for_the_team(course, capsys):
     capsys.readouterr()
     typed(course, "export", NAME, "--absent-zero")
     said = capsys.readouterr()
-    assert "1 have the mark of a report that their team handed in: bob (ada)" in said.err
+    assert "1 has the mark of a report that their team handed in: bob (ada)" in said.err
     assert "handed in nothing" not in said.err and "bob,0" not in said.out
 
 

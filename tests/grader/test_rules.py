@@ -140,7 +140,8 @@ def test_no_zero_is_written_where_work_is_kept_apart(late, tmp_path, capsys):
     assert verb(late, capsys, "students", "import", str(people))[0] == 0
     for words in (["export", NAME], ["export"]):
         code, out, err = verb(late, capsys, *words, "--absent-zero")
-        assert code == 1 and f"{NAME}: no 0 is written, because cleo handed in" in err
+        assert code == 1 and f"{NAME}: no 0 is written: cleo handed in without being in" in err
+        assert "if they are not in the class, type: labkit term forget --student cleo\n" in err
         (row,) = [line for line in out.splitlines() if line.startswith("frank")]
         assert "0.0" not in row
 

@@ -225,7 +225,21 @@ def test_a_fall_in_per_cent_alone_is_listed(course):
     line, count, _ = summary([Change(full, less)])
     of = full.points
     assert line == f"ada: {of:g} of {of:g} -> {of:g} of {of + 1:g}"
-    assert count == "1 of 1 marks would change, 1 of them only with --lower"
+    assert count == "1 of 1 mark would change, 1 of them only with --lower"
+
+
+def test_diff_tells_a_new_file_from_a_new_test(course):
+    """A mark that another file earned is said to be; whoever is new is counted apart."""
+    full = result_of(course, "ada")
+    less = result_of(course, "ada", share=0.5, data=b"another file")
+    new = Change(None, result_of(course, "bob"))
+    first, second, count = summary([Change(full, less), Change(full, full), new])
+    assert first.startswith("ada: 22 -> 11, -11 (handed in again; ")
+    assert second == "bob: new, 22 of 22"
+    assert count == "1 of 2 marks would change, none of them needs --lower; 1 new"
+    assert list(summary([Change(full, full), Change(full, full), new]))[-1] == (
+        "0 of 2 marks would change; 1 new"
+    )
 
 
 def test_nbgraders_own_button_lowers_no_mark_of_an_unchanged_submission(marked, monkeypatch):
@@ -251,11 +265,11 @@ def test_tables_of_a_class_that_is_whole_say_nothing(marked, capsys):
         code, _, err = verb(marked, capsys, "export", "--layout", layout)
         nobody = "nobody can import this table: it has no participant's number" in err
         assert code == nobody == (layout == "moodle-worksheet")
-        assert "carl: rejected: the file is empty" in err.splitlines()
+        assert "carl: rejected: the file is empty; ask for the file again" in err.splitlines()
         assert not [x for x in err.splitlines() if x.startswith("no mark")]
     rows = table(verb(marked, capsys, "export")[1])
     assert rows["carl"]["score"] == "0.0"
-    assert rows["carl"]["remark"] == "rejected: the file is empty"
+    assert rows["carl"]["remark"] == "rejected: the file is empty; ask for the file again"
     assert rows["ada"]["remark"] == ""
 
 
@@ -335,7 +349,9 @@ def test_a_submission_that_vanished_keeps_its_mark(marked, capsys):
     assert "ada: nothing of theirs is in submitted/; the mark stays as it was" in err
     assert verb(marked, capsys, "feedback")[0] == 0
     assert (marked.root / "feedback" / "ada" / NAME / f"{NAME}.html").exists()
-    assert "3 handed in, 2 graded, 1 rejected." in verb(marked, capsys, "class-report")[1]
+    report = verb(marked, capsys, "class-report")[1]
+    assert "3 handed in, 2 graded, 1 rejected." in report
+    assert "\nMean of the 2 graded: " in report, "a file that was rejected is not in the mean"
     Results(marked, NAME).path("ada").write_text("{")
     code, out, err = verb(marked, capsys, "export")
     assert (code, table(out)["ada"]["score"]) == (1, "")
@@ -368,7 +384,7 @@ def test_a_mark_by_hand_counts_and_a_question_without_one_is_missing(marked, cap
         book.db.commit()
     code, out, err = verb(marked, capsys, "export")
     assert (code, table(out)["ada"]["score"], table(out)["bob"]["score"]) == (1, "", "15.0")
-    assert "no mark: ada: no mark for essay; give it by hand, in formgrader" in err
+    assert "no mark: ada: still to be marked: essay; mark by hand, in formgrader" in err
 
 
 @pytest.mark.parametrize("again", [False, True])

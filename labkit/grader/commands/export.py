@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import shlex
 import sys
 from dataclasses import replace
 from datetime import UTC, datetime
@@ -107,8 +108,9 @@ def export(
             return marks
         if strangers:
             doubts.append(
-                f"{name}: no 0 is written, because {few(strangers)} handed in and are not in the "
-                "roster, and may be somebody who is; import a list that has them"
+                f"{name}: no 0 is written: {few(strangers)} handed in without being in the roster, "
+                "and may be one of those listed; import a list that has them or, if they are not "
+                f"in the class, type: labkit term forget --student {shlex.quote(strangers[0])}"
             )
             return marks
         return [replace(m, raw=0.0) if m.absent else m for m in marks]

@@ -49,8 +49,9 @@ def feedback(
 ) -> int:
     """Write a feedback page for each student.
 
-    Some answers are marked by hand, in formgrader. No page is written until they are all marked;
-    --unmarked writes the pages before. What readers said of a report is on its authors' page.
+    Some answers are marked by hand, in formgrader. No page is written until they are all marked,
+    with --student those of this student; --unmarked writes the pages before. What readers said of
+    a report is on its authors' page.
     """
     from ..feedback.page import moodle_zip, write_feedback
     from ..marks.table import marks_of
@@ -119,9 +120,8 @@ def class_report(
 
 def _wait_for_marks(marks: Iterable[Mark]) -> None:
     """Raise a LabkitError if a person still has something to mark."""
-    open_ones = [mark for mark in marks if mark.open and not mark.author]
-    waiting = [f"{mark.student} ({', '.join(mark.open)})" for mark in open_ones]
-    if waiting:
+    open_ones = {mark.author or mark.student: ", ".join(mark.open) for mark in marks if mark.open}
+    if waiting := [f"{student} ({names})" for student, names in open_ones.items()]:
         raise LabkitError(
             f"{few(waiting)}: answers of {how_many(len(waiting), 'student')} still wait for a mark "
             "by hand; mark them in formgrader, or add --unmarked to write the pages without these "

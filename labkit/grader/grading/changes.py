@@ -9,6 +9,7 @@ from functools import partial
 from ...course.authoring.bundle import Bundle
 from ...course.authoring.layout import Course
 from ...errors import LabkitError
+from ..clean import how_many
 from ..each import Failure, for_student
 from ..submission import Submission
 from .batch import GradeOptions, grade_without_saving, reusable
@@ -33,6 +34,11 @@ class Change:
         return round(self.after.score - (self.before.score if self.before else 0.0), 4)
 
     @property
+    def moves(self) -> bool:
+        """Whether a mark that counts now would become another; a first mark moves nothing."""
+        return self.before is not None and (self.by != 0.0 or self.falls)
+
+    @property
     def falls(self) -> bool:
         """Whether the new mark counts only with ``--lower``."""
         return self.before is not None and self.after.falls_from(self.before)
@@ -41,7 +47,9 @@ class Change:
         if self.before is None:
             return f"{self.after.student}: new, {self.after.score:g} of {self.after.points:g}"
         each = {q.verdict.name: q.verdict.earned for q in self.before.questions}
-        parts = [
+        same = self.falls or self.before.hashes["submission"] == self.after.hashes["submission"]
+        parts = [] if same else ["handed in again"]
+        parts += [
             f"{v.name} {each.get(v.name, 0.0):g} -> {v.earned:g}"
             for v in (q.verdict for q in self.after.questions)
             if v.earned != each.get(v.name, 0.0)
@@ -104,12 +112,13 @@ def _refuse_unreleased(course: Course, assignment: str) -> None:
 def summary(found: Sequence[Change]) -> Iterator[str]:
     """A sentence for each mark that moves, and one that counts them."""
     for change in sorted(found, key=lambda m: m.by):
-        if change.by or change.falls or change.before is None:
+        if change.moves or change.before is None:
             yield str(change)
-    changed = sum(bool(m.by) or m.falls for m in found)
+    had, changed = sum(m.before is not None for m in found), sum(m.moves for m in found)
     lower = sum(m.falls for m in found)
-    would = f"{changed} of {len(found)} marks would change, {lower} of them only with --lower"
-    yield would if changed else f"none of the {len(found)} marks would change"
+    only = f", {lower} of them only with --lower" if lower else ", none of them needs --lower"
+    new = f"; {len(found) - had} new" if len(found) > had else ""
+    yield f"{changed} of {how_many(had, 'mark')} would change{only if changed else ''}{new}"
     before = {m.before.points for m in found if m.before} - {m.after.points for m in found}
     if before:
         full = ", ".join(f"{points:g}" for points in sorted(before))

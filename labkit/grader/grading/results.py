@@ -181,8 +181,8 @@ class Result:
             raise _damaged(name, f"the score is {self.score:g}, and {whole_sum}")
 
     def __str__(self) -> str:
-        came = f"{self.score:g} of {self.points:g}"
-        return f"{self.student}: {f'rejected; {self.rejected}' if self.rejected else came}"
+        no = f"rejected; {self.rejected}; ask for the file again" if self.rejected else ""
+        return f"{self.student}: {no or f'{self.score:g} of {self.points:g}'}"
 
     @property
     def asked(self) -> dict[str, float]:

@@ -147,13 +147,15 @@ def remarks(layout: str, marks: Sequence[Mark], assignment: str = "") -> Iterato
         elif mark.remark and not (mark.absent or mark.author):
             yield f"{mark.student}: {mark.remark}"
     if team := [f"{mark.student} ({mark.author})" for mark in marks if mark.author]:
-        yield f"{len(team)} have the mark of a report that their team handed in: {few(team)}"
+        have = f"{len(team)} {'has' if len(team) == 1 else 'have'}"
+        yield f"{have} the mark of a report that their team handed in: {few(team)}"
     if absent := [mark.student for mark in marks if mark.absent]:
         nothing = "with no defence yet" if assignment == DEFENCE else "handed in nothing"
         yield f"{len(absent)} {nothing}: {few(absent)}"
     if layout == "canvas" and (lost := [m.student for m in marks if not (m.absent or m.canvas)]):
+        have = f"{len(lost)} {'has' if len(lost) == 1 else 'have'}"
         yield (
-            f"{len(lost)} have no Canvas ID, so Canvas must find them by SIS ID or login: "
+            f"{have} no Canvas ID, so Canvas must find them by SIS ID or login: "
             f"{few(lost)}; import Canvas's own list (Grades, Export), which has the IDs"
         )
     yield from filter(None, [left_out(layout, marks)])

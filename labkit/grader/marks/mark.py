@@ -44,7 +44,8 @@ class MarkLine:
         """Where the score comes from, in words; empty if it is the grader's alone."""
         said = []
         if self.by_hand is not None:
-            instead = "" if self.automatic is None else f", instead of {self.automatic:g}"
+            same = self.automatic in {None, self.by_hand}
+            instead = "" if same else f", instead of {self.automatic:g}"
             said.append(f"{self.by_hand:g} by hand{instead}")
         if self.extra:
             said.append(f"{self.extra:g} extra credit")

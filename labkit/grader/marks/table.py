@@ -108,7 +108,9 @@ def _remark(row: Mark, handed_in: bool) -> str:
     if row.missing or row.result is None:
         return ""
     if row.result.unanswered:
-        return f"{'rejected: ' if row.result.rejected else ''}{row.result.unanswered}"
+        if row.result.rejected:
+            return f"rejected: {row.result.rejected}; ask for the file again"
+        return f"{row.result.unanswered}; ask for the right one"
     return "" if handed_in else "nothing of theirs is in submitted/; the mark stays as it was"
 
 
@@ -156,10 +158,10 @@ def _marked(row: Mark, submission: Any, one: Result | Failure | None, assignment
         return replace(row, missing=missing)
     row = replace(row, lines=lines, late=_span(submission.total_seconds_late))
     if none := [line.name for line in lines if line.score is None]:
-        how = "give it by hand, in formgrader"
+        how = "mark by hand, in formgrader"
         if assignment == DEFENCE:
             how = f"type: labkit defence {shlex.quote(row.student)} --mark A,B,C"
-        why = f"no mark for {', '.join(none)}; {how}"
+        why = f"still to be marked: {', '.join(none)}; {how}"
         return replace(row, missing=why)
     if row.open:
         why = f"changed after the mark by hand: {', '.join(row.open)}; look at it in formgrader"

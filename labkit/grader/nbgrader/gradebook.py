@@ -228,18 +228,17 @@ def _write_scores(
     for notebook in submission.notebooks:
         for grade in notebook.grades:
             score, given = scores.get(grade.name, missing), grade.manual_score
+            name, why = question_of(grade.name), ""
             if given is None:
                 grade.needs_manual_grade = score is None
             elif grade.name in changed:
-                yield (
-                    f"{result.student}: {grade.name} was marked {given:g} by hand, and the answer "
-                    "has changed since; look at it again"
-                )
-                grade.needs_manual_grade = True
+                why = "the answer has changed since"
             elif score is not None and grade.auto_score not in {None, score}:
-                yield (
-                    f"{result.student}: {grade.name} was marked {given:g} by hand, and the grader "
-                    f"gives {score:g} now; look at it again"
-                )
+                why = f"the grader gives {score:g} now"
+            elif grade.needs_manual_grade:
+                why = "has changed since"
+            if why:
                 grade.needs_manual_grade = True
+                says = f"was marked {given:g} by hand, and {why}; look at it again"
+                yield f"{result.student}: {name} {says}"
             grade.auto_score = score
