@@ -26,7 +26,8 @@ JOINT_ERROR = Problem(
     name="joint_error",
     points=2,
     outcomes=("frames",),
-    asks="Give the error of the seven joint angles, target minus actual, in rad and of shape (7,).",
+    asks="Return the errors of the seven joint angles, target minus actual, in rad, as an array "
+    "of shape (7,).",
     answer=answers.joint_error,
     judge=Close(rtol=1e-9, atol=1e-12),
     trials=(
@@ -36,7 +37,8 @@ JOINT_ERROR = Problem(
             weight=0.0,
         ),
         Trial(
-            "seven different errors, on a moving arm; a wrist from one stop to the other",
+            "seven different errors on a moving arm; a wrist that must turn from one stop to the "
+            "other",
             (
                 call(
                     _sample(READY + 0.01 * np.arange(-3, 4), 0.2 * np.ones(7)),
@@ -49,11 +51,12 @@ JOINT_ERROR = Problem(
         ),
     ),
     hints=(
-        "Where should the joints be, and where are they? Both are arrays with names: look at what "
-        "`target` and `state` hold.",
-        "The angles wanted are `target.position`, the angles that are `state.q`, each of shape (7,).",
-        "Put the two side by side in the order in which the course's definition of an error "
-        "names them. Nothing else is needed: no reshape, no sum.",
+        "Where should the joints be, and where are they? Look at what `target` and `state` hold: "
+        "both answers are in their named arrays.",
+        "The desired angles are `target.position` and the actual angles are `state.q`, each of "
+        "shape (7,).",
+        "Combine the two arrays in the order in which the course's definition of an error names "
+        "them. Nothing else is needed: no reshape, no sum.",
     ),
     wrong=(
         Wrong(
@@ -65,15 +68,15 @@ JOINT_ERROR = Problem(
         ),
         Wrong(
             "a table of 49 numbers",
-            "A (7, 1) column minus a (7,) vector is a 7 by 7 table of all differences: numpy "
-            "stretches both without a warning. Keep vectors 1-D.",
+            "A (7, 1) column minus a (7,) vector is a 7 by 7 table of all differences, because "
+            "numpy stretches both without a warning. Keep vectors 1-D.",
             mistakes.a_column,
             "Broadcasting makes shapes fit that do not belong together.",
         ),
         Wrong(
             "one number for seven joints",
-            "In a sum the error of one joint can hide that of another. Give one error for each "
-            "joint.",
+            "In a sum, the error of one joint can hide that of another. Return one error for "
+            "each joint.",
             mistakes.the_sum,
             "Errors of opposite sign cancel in a sum.",
         ),
@@ -85,20 +88,22 @@ JOINT_ERROR = Problem(
         ),
         Wrong(
             "the error wrapped to half a turn",
-            "A joint has stops: from -2.9 to 2.9 rad the only way is back through zero, 5.8 rad, "
-            "because the short turn ends at the stop. Do not wrap the error.",
+            "A joint has stops: from -2.9 to 2.9 rad it can only turn back through zero, by 5.8 "
+            "rad, because the shorter turn would run into a stop. Do not wrap the error.",
             mistakes.wrapped,
-            "Wrap what can go round and round; a joint with stops cannot.",
+            "Wrap only an angle that can turn without end; a joint with stops cannot.",
         ),
         Wrong(
             "without its sign",
-            "The size of the error does not say in which direction the joint must go. Keep the sign.",
+            "The absolute value of the error does not say in which direction the joint must "
+            "turn. Keep the sign.",
             mistakes.without_its_sign,
             "Feedback needs a sign.",
         ),
         Wrong(
             "the target itself",
-            "This is where the joints should be. The error is how far they are from there: take state.q off.",
+            "You returned the angles at which the joints should be. The error is how far the "
+            "joints are from these angles: subtract state.q.",
             mistakes.no_error,
             "Error: target minus actual.",
         ),
@@ -114,8 +119,8 @@ TRANSFORM_POINT = Problem(
     name="transform_point",
     points=2,
     outcomes=("frames",),
-    asks="A point has the coordinates `p_b` in frame b, and frame b has the pose `T_ab` in frame a. "
-    "Give the point's coordinates in a, of shape (3,).",
+    asks="A point has the coordinates `p_b` in frame b, and frame b has the pose `T_ab` in frame "
+    "a. Return the point's coordinates in frame a, as an array of shape (3,).",
     answer=answers.transform_point,
     judge=Close(rtol=1e-9, atol=1e-9),
     trials=(
@@ -139,11 +144,11 @@ TRANSFORM_POINT = Problem(
         ),
     ),
     hints=(
-        "First turn the little vector from b's axes into a's axes; then go from a's origin to b's "
-        "origin and from there along the turned vector.",
-        "The rotation is R_ab = T_ab[:3, :3], the origin of b in a is T_ab[:3, 3].",
-        "Try it on a frame that is not turned: the answer is then one vector plus another. "
-        "Now turn the right one of the two first.",
+        "First express the vector p_b in a's axes. Then go from a's origin to b's origin, and "
+        "from there along the turned vector.",
+        "The rotation is R_ab = T_ab[:3, :3], and the origin of b in a is T_ab[:3, 3].",
+        "Try a frame that is not turned: the answer is then the sum of two vectors. If the frame "
+        "is turned, decide which of the two vectors must be turned first.",
     ),
     wrong=(
         Wrong(
@@ -154,22 +159,22 @@ TRANSFORM_POINT = Problem(
         ),
         Wrong(
             "the translation left out",
-            "The rotation alone is right for a direction. For a point, also add the vector from "
-            "a's origin to b's.",
+            "The rotation alone is correct for a direction. For a point, also add the vector "
+            "from a's origin to b's.",
             mistakes.only_turns,
             "Points and directions transform differently.",
         ),
         Wrong(
             "the shift before the turn",
-            "T_ab[:3, 3] is in a's axes already, so it must not be turned. Turn p_b first, then "
+            "T_ab[:3, 3] is already in a's axes, so it must not be turned. Turn p_b first, then "
             "add the translation.",
             mistakes.shifts_first,
-            "Every vector has axes; add only vectors in the same ones.",
+            "Add two vectors only if both are in the same axes.",
         ),
         Wrong(
             "the rotation the wrong way round",
-            "The rotation is transposed: that is R_ba, which takes vectors from a to b. Do not "
-            "transpose it; p @ R transposes it too.",
+            "Your rotation is R_ba, which takes vectors from a to b. Do not transpose R_ab; p @ "
+            "R also transposes it.",
             mistakes.turns_backwards,
             "R_ab takes components in b to components in a.",
         ),
@@ -178,13 +183,14 @@ TRANSFORM_POINT = Problem(
             "The components of p_b are along b's axes. Turn them into a's axes with R_ab before "
             "you add the translation.",
             mistakes.only_shifts,
-            "Every vector has axes; add only vectors in the same ones.",
+            "Add two vectors only if both are in the same axes.",
         ),
         Wrong(
-            "the translation taken off",
-            "From a's origin to the point: first to b's origin, then along p_b. Both ways are added.",
+            "the translation subtracted",
+            "To reach the point from a's origin, go first to b's origin and then along p_b: add "
+            "the two vectors.",
             mistakes.translation_subtracted,
-            "Draw the three arrows.",
+            "Draw the three vectors as arrows.",
         ),
     ),
     variants=(variants.point_homogeneous, variants.point_by_einsum),
@@ -194,7 +200,8 @@ INVERSE_TRANSFORM = Problem(
     name="inverse_transform",
     points=2,
     outcomes=("frames",),
-    asks="Give `T_ba`, the pose of a in b, from `T_ab`, the pose of b in a; of shape (4, 4).",
+    asks="Return `T_ba`, the pose of a in b, computed from `T_ab`, the pose of b in a. Its shape "
+    "is (4, 4).",
     answer=answers.inverse_transform,
     judge=Close(rtol=1e-5, atol=1e-5),
     trials=(
@@ -212,47 +219,47 @@ INVERSE_TRANSFORM = Problem(
         "T_ba must undo T_ab: p_a = R_ab p_b + t. Solve this for p_b.",
         "A rotation is undone by its transpose: p_b = R_abᵀ (p_a - t). What multiplies p_a, and what "
         "is added?",
-        "Write p_a = R p_b + t and solve it for p_b. What stands before p_a is the new "
-        "rotation, the rest is the new translation.",
+        "Write p_a = R p_b + t and solve it for p_b. The factor of p_a is the new rotation, and "
+        "the rest is the new translation.",
     ),
     wrong=(
         Wrong(
             "the translation only negated",
-            "-t is still in a's axes. Turn it into b's axes: -R_abᵀ t.",
+            "The vector -t is still in a's axes. Turn it into b's axes: -R_abᵀ t.",
             mistakes.minus_the_translation,
             "Every vector has axes.",
         ),
         Wrong(
             "the whole matrix transposed",
-            "Only the rotation is inverted by transposing. Here the translation ends up in the "
-            "last row, where a pose has (0, 0, 0, 1): compute it separately.",
+            "Transposing inverts only the rotation. Here the translation ends up in the last "
+            "row, where a pose has (0, 0, 0, 1): compute the translation separately.",
             mistakes.transposed,
             "A pose is not an orthogonal matrix.",
         ),
         Wrong(
             "the rotation not inverted",
             "The translation is right, but the rotation is still the one from b to a. Transpose "
-            "it.",
+            "the rotation.",
             mistakes.rotation_kept,
             "Test an inverse by multiplying: T_ab T_ba = I.",
         ),
         Wrong(
             "the translation turned by R, not by its transpose",
-            "R_ab turns components along b's axes into a's axes. t is along a's axes already, and "
-            "the answer should be along b's: turn it by R_abᵀ.",
+            "R_ab turns components along b's axes into components along a's axes. But t is "
+            "already along a's axes, and the answer should be along b's: turn t by R_abᵀ.",
             mistakes.turned_forwards,
             "Let the subscripts cancel: R_ba t_a.",
         ),
         Wrong(
             "the minus left out",
-            "R_abᵀ t leads from a to b, seen in b's axes. The inverse leads from b back to a: "
-            "-R_abᵀ t.",
+            "R_abᵀ t is the vector from a to b in b's axes. The inverse needs the vector from b "
+            "to a: -R_abᵀ t.",
             mistakes.minus_forgotten,
             "Test an inverse by multiplying: T_ab T_ba = I.",
         ),
         Wrong(
             "minus the pose",
-            "A minus undoes a sum, not a product. The rotation is undone by its transpose.",
+            "A minus sign inverts a sum, not a product. The transpose inverts the rotation.",
             mistakes.minus_the_pose,
             "Test an inverse by multiplying: T_ab T_ba = I.",
         ),
@@ -272,20 +279,21 @@ ORIENTATION_ERROR = Problem(
     name="orientation_error",
     points=4,
     outcomes=("frames",),
-    asks="Give the turn, as a rotation vector in world axes, that takes the tip from its actual "
-    "orientation `R_wt` to the desired one `R_wd`: shape (3,), in rad.",
+    asks="Return the rotation that turns the tip from its actual orientation `R_wt` to the "
+    "desired orientation `R_wd`, as a rotation vector in world axes: shape (3,), in rad.",
     answer=answers.orientation_error,
     judge=Close(rtol=1e-5, atol=1e-5),
     trials=(
         Trial(
-            "a level tool turned about the vertical by 20 degrees, and a gripper not turned at all",
+            "a level tool turned about the vertical by 20 degrees, and a gripper without error",
             (call(_turned(30.0, 2), _turned(10.0, 2)), call(DOWN, DOWN)),
             hidden.turns_about_z,
             "other angles, and none",
             weight=0.0,
         ),
         Trial(
-            "gripper down, 5 degrees of roll; then turned about the vertical, -5 degrees",
+            "gripper down, 5 degrees of roll; then also turned about the vertical, -5 degrees of "
+            "roll",
             (call(DOWN, DOWN @ _turned(5.0, 0)), call(SIDE, SIDE @ _turned(-5.0, 0))),
             hidden.rolls,
             "rolls at other yaws",
@@ -308,51 +316,52 @@ ORIENTATION_ERROR = Problem(
     ),
     withheld=("labkit.se3.orientation_error", "labkit.Model.pose_error"),
     hints=(
-        "For numbers the error is target minus actual. For rotations the minus is: undo the actual "
-        "one, then do the target. Which product of R_wd and R_wt does that?",
-        "You look for the rotation E with E R_wt = R_wd, in world axes. Solve for E; a rotation's "
-        "inverse is its transpose. Then lk.se3.rotation_log reads axis and angle from E.",
-        "Solve E R_wt = R_wd for E; the inverse of a rotation is its transpose. To see on "
-        "which side the transpose belongs, try two poses that are both tilted: for one that is not "
-        "turned at all, both products are the same.",
+        "For numbers, the error is target minus actual. For rotations, a product replaces the "
+        "subtraction: undo the actual rotation, then apply the desired one. Which product of "
+        "R_wd and R_wt does that?",
+        "Find the rotation E, in world axes, with E R_wt = R_wd. Solve this for E; the inverse "
+        "of a rotation is its transpose. lk.se3.rotation_log then returns the rotation vector of "
+        "E.",
+        "Solve E R_wt = R_wd for E; the inverse of a rotation is its transpose. To see on which "
+        "side the transpose belongs, try two orientations that are both tilted: if one of them "
+        "is not turned at all, both products are the same.",
     ),
     wrong=(
         Wrong(
             "roll, pitch and yaw subtracted",
-            "Euler angles are not a vector. With the gripper down and a yaw beyond 90 degrees, as in "
-            "the ready pose, feedback of roll and pitch tips the hand over, and at ±180 degrees they "
-            "jump. Take "
-            "the logarithm of one rotation instead.",
+            "Euler angles are not a vector. With the gripper down and a yaw beyond 90 degrees, "
+            "as in the ready pose, feedback of roll and pitch tips the hand over, and at ±180 "
+            "degrees the angles jump. Take the logarithm of one rotation instead.",
             mistakes.euler_subtracted,
             "Orientations are compared by a product, never by a difference of angles.",
         ),
         Wrong(
             "the turn in the tool's axes",
             "The turn is right, but its components are along the tool's axes, and the question "
-            "asks for the world's. Which frame do the neighbouring letters of your product leave "
-            "over?",
+            "asks for world axes. Write the subscripts of your product: which frame does the "
+            "first letter name?",
             mistakes.in_tool_axes,
             "R_wtᵀ R_wd is in the tool's axes, R_wd R_wtᵀ in the world's.",
         ),
         Wrong(
             "the turn from the desired to the actual orientation",
-            "The turn goes the wrong way. It should lead from the actual orientation to the "
+            "The turn has the wrong direction. It should lead from the actual orientation to the "
             "desired one.",
             mistakes.from_wanted_to_actual,
             "One convention for the whole course: target minus actual.",
         ),
         Wrong(
             "the sine of the angle",
-            "The skew part of a rotation gives the axis times the sine of the angle. For small "
-            "angles the difference cannot be seen; at 90 degrees it is large, and beyond that the "
-            "sine shrinks again. Take the angle itself.",
+            "The skew part of a rotation matrix gives the axis times the sine of the angle. For "
+            "small angles the difference is too small to notice; at 90 degrees it is large, and "
+            "beyond that the sine decreases again. Use the angle itself.",
             mistakes.sine_of_the_angle,
             "sin x and x agree only for small x.",
         ),
         Wrong(
             "the matrices subtracted",
-            "R_wd - R_wt is not a rotation, and its skew part is not the turn between them. "
-            "Multiply one with the transpose of the other.",
+            "R_wd - R_wt is not a rotation, and its skew part is not the turn between the two. "
+            "Multiply one matrix by the transpose of the other.",
             mistakes.matrices_subtracted,
             "Orientations are compared by a product.",
         ),
@@ -365,70 +374,79 @@ ORIENTATION_ERROR = Problem(
         ),
         Wrong(
             "the wrong rotation transposed",
-            "Your product goes from the desired to the actual orientation, and in the tool's axes. "
-            "Solve E R_wt = R_wd for E, and see which one is undone, and on which side.",
+            "Your product turns from the desired to the actual orientation, in the tool's axes. "
+            "Solve E R_wt = R_wd for E, and note which rotation is transposed, and on which "
+            "side.",
             mistakes.backwards_in_tool_axes,
             "E R_wt = R_wd: multiply from the right by R_wtᵀ.",
         ),
         Wrong(
             "0/0 where there is no turn",
-            "Angle over sine is 0/0 as soon as the arm has arrived, and every command after it is "
-            "not a number. Return zero where there is no turn, as lk.se3.rotation_log does.",
+            "The angle divided by its sine is 0/0 as soon as the arm has arrived, and every "
+            "command after that is not a number. Return zero where there is no turn, as "
+            "lk.se3.rotation_log does.",
             mistakes.zero_by_zero,
-            "Try a formula where the error is zero: there the arm should spend its life.",
+            "Try a formula where the error is zero: a good controller spends most of its time "
+            "there.",
         ),
         Wrong(
             "the arcsine of the turn",
-            "An arcsine never exceeds 90 degrees: 133 degrees come out as 47. Read the turn with "
-            "lk.se3.rotation_log, or take the angle from sine and cosine, np.arctan2.",
+            "An arcsine never exceeds 90 degrees: 133 degrees come out as 47. Use "
+            "lk.se3.rotation_log, or compute the angle from its sine and cosine with np.arctan2.",
             mistakes.TurnOf(lambda angle: np.arcsin(np.sin(angle))),
-            "A sine belongs to two angles.",
+            "Two angles have the same sine.",
         ),
         Wrong(
             "the quaternion's vector",
-            "sin(θ/2) times the axis is the vector part of the quaternion. The rotation vector is angle times axis.",
+            "sin(θ/2) times the axis is the vector part of the quaternion. The rotation vector "
+            "is the angle times the axis.",
             mistakes.TurnOf(lambda angle: np.sin(angle / 2.0)),
-            "A rotation vector is angle times axis.",
+            "A rotation vector is the angle times the axis.",
         ),
         Wrong(
             "half of the sine",
-            "The skew part is halved twice: vee takes (E - Eᵀ)/2 already. And it is a sine, not the angle.",
+            "You halved the skew part twice: vee already computes (E - Eᵀ)/2. Besides, its "
+            "length is the sine of the angle, not the angle.",
             mistakes.TurnOf(lambda angle: 0.5 * np.sin(angle)),
-            "A rotation vector is angle times axis.",
+            "A rotation vector is the angle times the axis.",
         ),
         Wrong(
             "twice the sine",
-            "E - Eᵀ holds 2 sin θ times the axis. The rotation vector is angle times axis.",
+            "E - Eᵀ contains 2 sin θ times the axis. The rotation vector is the angle times the "
+            "axis.",
             mistakes.half_the_cross_products,
-            "A rotation vector is angle times axis.",
+            "A rotation vector is the angle times the axis.",
         ),
         Wrong(
             "the axis without the angle",
-            "The vector has the right direction, and the length 1. Its length should be the angle.",
+            "The vector has the right direction, but its length is 1. Its length should be the "
+            "angle.",
             mistakes.TurnOf(lambda angle: 1.0),
-            "A rotation vector is angle times axis.",
+            "A rotation vector is the angle times the axis.",
         ),
         Wrong(
             "the tangent for the angle",
-            "The axis is right, its length is not the angle but a tangent of it.",
+            "The axis is right, but the vector's length is a tangent, 2 tan(θ/2), not the angle.",
             mistakes.TurnOf(lambda angle: 2.0 * np.tan(angle / 2.0)),
-            "A rotation vector is angle times axis.",
+            "A rotation vector is the angle times the axis.",
         ),
         Wrong(
             "one minus the cosine",
-            "The axis is right, its length is 1 - cos θ. The angle itself is asked for.",
+            "The axis is right, but the vector's length is 1 - cos θ. It should be the angle "
+            "itself.",
             mistakes.TurnOf(lambda angle: 1.0 - np.cos(angle)),
-            "A rotation vector is angle times axis.",
+            "A rotation vector is the angle times the axis.",
         ),
         Wrong(
             "Euler angles of the turn",
-            "The rotation is right. But roll, pitch and yaw are not a rotation vector: read it with lk.se3.rotation_log.",
+            "The rotation is right, but roll, pitch and yaw are not a rotation vector: use "
+            "lk.se3.rotation_log.",
             mistakes.euler_of_the_turn,
-            "A rotation vector is angle times axis.",
+            "A rotation vector is the angle times the axis.",
         ),
         Wrong(
             "one axis alone",
-            "The cross product of the x axes does not see a turn about x. All three axes count.",
+            "The cross product of the two x axes does not show a turn about x. Use all three axes.",
             mistakes.one_axis_alone,
             "An axis does not show a turn about itself.",
         ),
