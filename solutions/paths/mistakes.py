@@ -173,7 +173,7 @@ def runs_out_of_segments(durations: Sequence[float], t: float) -> tuple[int, flo
 
 
 def an_end_point(theta: float, duration: float) -> float:
-    """The end of the motion, where the printed formula is right."""
+    """The end of the motion, where the angle is wrong but does not jump."""
     return duration
 
 

@@ -17,8 +17,8 @@ BANG_BANG = Problem(
     name="bang_bang",
     points=3,
     outcomes=("motion",),
-    asks="Give `(s, ds, dds)` at time `t` for a motion that speeds up evenly for half of its "
-    "duration and brakes evenly for the other half.",
+    asks="Return `(s, ds, dds)` at time `t` for a motion with constant acceleration in the first "
+    "half of its duration and constant deceleration in the second half.",
     answer=answers.bang_bang,
     judge=SCALING,
     trials=(
@@ -50,118 +50,133 @@ BANG_BANG = Problem(
     ),
     withheld=OWN_WORK,
     hints=(
-        "Draw the acceleration first: a step up, a step down. Integrate it once for the speed (a "
-        "roof) and again for s. How high must the step be for s to end at 1?",
-        "In the first half s = a t²/2, and at T/2 it must be 1/2, so a = 4/T². The second half is "
-        "the first one run backwards from the end: use the time that is left, T - t.",
-        "With the time that is left, the second half is the first one seen from the other "
-        "end. Differentiate what you have twice and look at each sign. Then two cases are "
-        "missing: before and after.",
+        "Draw the acceleration first: constant and positive, then constant and negative. "
+        "Integrate it once for the speed, which has the shape of a roof, and again for s. How "
+        "large must the acceleration be for s to end at 1?",
+        "In the first half s = a t²/2, and at T/2 it must be 1/2, so a = 4/T². The second half "
+        "is the first one run backwards from the end: use the time until the end, T - t.",
+        "As a function of the time until the end, the second half mirrors the first. "
+        "Differentiate your s twice and check each sign. Then add the two remaining cases: "
+        "before the start and after the end.",
     ),
     wrong=(
         Wrong(
             "the second half still uses a·t for the speed",
-            "The speed grows to the end and then drops to zero at once. While braking, the speed "
-            "is a times the time that is left.",
+            "Your speed grows until the end and then drops to zero at once. While braking, the "
+            "speed is a times the time until the end.",
             mistakes.accelerates_on,
-            "The speed is the integral of the acceleration from the start, not a·t for ever.",
+            "The speed is the integral of the acceleration from the start; a·t is right only "
+            "while the acceleration is a.",
         ),
         Wrong(
             "no rest before the start and after the end",
-            "The formulas go on where the motion does not: s is above 0 before the start, and runs back from 1 after the end. Hold the "
-            "start before t = 0 and the goal from t = T on, both at rest.",
+            "Your formulas continue outside the motion: s is above 0 before the start, and "
+            "decreases from 1 after the end. Return the start before t = 0 and the goal from t = "
+            "T on, both at rest.",
             mistakes.runs_past_the_ends,
-            "A reference is asked at any time; outside the motion it stands still.",
+            "A reference can be evaluated at any time; outside the motion it is at rest.",
         ),
         Wrong(
             "an acceleration of 2/T²",
-            "With this, s reaches only 1/4 by the middle, where it should be 1/2. Speeding up lasts T/2, so choose a "
-            "such that a (T/2)²/2 = 1/2.",
+            "With this acceleration, s reaches only 1/4 by the middle, where it should be 1/2. "
+            "Speeding up lasts T/2, so choose a such that a (T/2)²/2 = 1/2.",
             mistakes.twice_too_slow,
             "Check the middle of every symmetric motion: s(T/2) = 1/2.",
         ),
         Wrong(
             "at rest, but still accelerating",
-            "Before the start and from T on nothing moves: s is right there and ds is 0, so dds "
-            "must be 0 as well.",
+            "Before the start and from T on nothing moves: your s is right there and ds is 0, so "
+            "dds must be 0 as well.",
             mistakes.still_but_accelerated,
             "The derivative of a constant is zero.",
         ),
         Wrong(
             "no hold after the end",
-            "After the end the formula goes on, and s runs back from 1. From t = T on the motion rests at s = 1.",
+            "After the end your formula continues, and s decreases from 1. From t = T on, the "
+            "motion rests at s = 1.",
             mistakes.Bang(after=False),
-            "A reference is asked at any time; outside the motion it stands still.",
+            "A reference can be evaluated at any time; outside the motion it is at rest.",
         ),
         Wrong(
             "no hold before the start",
-            "Before t = 0 the parabola goes on to the left, and s is above 0. Before the start the motion rests at s = 0.",
+            "Before t = 0 your parabola continues, so s is above 0. Before the start, the motion "
+            "rests at s = 0.",
             mistakes.Bang(before=False),
-            "A reference is asked at any time; outside the motion it stands still.",
+            "A reference can be evaluated at any time; outside the motion it is at rest.",
         ),
         Wrong(
             "back to 0 after the end",
-            "After the end the motion rests where it arrived, at s = 1. With 0 the arm would jump back to the start.",
+            "After the end, the motion rests where it arrived, at s = 1. With s = 0 the arm "
+            "would jump back to the start.",
             mistakes.Bang(end=0.0),
-            "After a motion comes its end, not its start.",
+            "After the end, a motion rests at its end, not at its start.",
         ),
         Wrong(
             "still speeding up in the second half",
-            "dds keeps its plus while the speed falls. Braking is a negative acceleration: -a.",
+            "Your dds stays positive while the speed decreases. Braking is a negative "
+            "acceleration: -a.",
             mistakes.Bang(dds=-1.0),
             "The second derivative is the slope of the first.",
         ),
         Wrong(
             "a negative speed while braking",
-            "Braking makes the speed smaller, not negative: s still grows. The speed is a times the time that is left.",
+            "Braking makes the speed smaller, not negative, because s still grows. The speed is "
+            "a times the time until the end.",
             mistakes.Bang(ds=-1.0),
             "Slowing down is not going back.",
         ),
         Wrong(
-            "t where the time that is left belongs",
-            "The second half is the first one seen from the end. It needs T - t, the time that is left, not t.",
+            "t in place of the time until the end",
+            "The second half mirrors the first, seen from the end. It needs T - t, the time "
+            "until the end, not t.",
             mistakes.Bang(left=lambda t, T: t),
             "Use the symmetry of the motion: put the origin of time at the end.",
         ),
         Wrong(
-            "the time since the middle for the time that is left",
-            "t - T/2 counts from the middle. In 1 - a r²/2 the r is the time that is left until the end, T - t.",
+            "the time since the middle in place of the time until the end",
+            "t - T/2 is the time since the middle. In 1 - a r²/2, the r is the time until the "
+            "end, T - t.",
             mistakes.Bang(left=lambda t, T: t - T / 2.0),
-            "Say for each time from where it is counted.",
+            "Say for each time from which instant it is measured.",
         ),
         Wrong(
             "the braking half begins at rest",
-            "In the middle the motion has the speed a T/2, and this is forgotten: what is left only goes back.",
+            "In the middle, the motion has the speed a T/2. Your second half begins at rest, so "
+            "s decreases.",
             mistakes.Bang(brake=mistakes.from_rest_in_the_middle),
-            "Position and speed at the end of one phase are the start of the next.",
+            "Each phase starts with the position and speed at the end of the phase before.",
         ),
         Wrong(
             "the speed of the middle kept",
-            "While braking the speed falls by a for each second since the middle. Yours stays at its peak.",
+            "While braking, the speed decreases by a in each second since the middle. Your speed "
+            "stays at its peak.",
             mistakes.Bang(brake=mistakes.speed_of_the_middle_kept),
             "The speed is the integral of the acceleration.",
         ),
         Wrong(
-            "the first half of the way forgotten",
-            "In the second half s starts at 1/2, where the first half ended. Yours starts again at 0.",
+            "the distance of the first half forgotten",
+            "In the second half, s starts at 1/2, where the first half ended. Your s starts "
+            "again at 0.",
             mistakes.Bang(brake=mistakes.half_the_way_lost),
-            "Position and speed at the end of one phase are the start of the next.",
+            "Each phase starts with the position and speed at the end of the phase before.",
         ),
         Wrong(
-            "the one half of a t²/2 forgotten",
-            "The integral of a t is a t²/2. Without the one half s and ds do not fit together.",
+            "the factor 1/2 of a t²/2 forgotten",
+            "The integral of a t is a t²/2. Without the factor 1/2, s and ds do not fit together.",
             mistakes.Bang(half=2.0),
             "Check that ds is the slope of s.",
         ),
         Wrong(
             "an acceleration of 4/T",
-            "The acceleration has T squared below: (4/T²)(T/2)²/2 = 1/2. With 4/T the middle is right only for T = 1.",
+            "The acceleration has T² in the denominator: (4/T²)(T/2)²/2 = 1/2. With 4/T, s is "
+            "1/2 in the middle only for T = 1.",
             mistakes.Bang(power=1.0),
-            "Try a second duration: what is right for 1 s alone has lost a unit.",
+            "Try a second duration: a formula that is right only for 1 s has lost a unit.",
         ),
         Wrong(
             "an acceleration of 8/T²",
-            "That goes the whole distance in half of the time. In T/2 only half of it is done: a (T/2)²/2 = 1/2.",
+            "With 8/T² the motion covers the whole distance in half of the time. Only half of "
+            "the distance is covered in T/2: a (T/2)²/2 = 1/2.",
             mistakes.Bang(a=2.0),
             "Check the middle of every symmetric motion: s(T/2) = 1/2.",
         ),
@@ -179,8 +194,8 @@ TRAPEZOID = Problem(
     name="trapezoid",
     points=4,
     outcomes=("motion",),
-    asks="Give `(s, ds, dds)` at time `t` for a path of `distance` metres, as fast as `v_max` in m/s "
-    "and `a_max` in m/s² allow: speed up, cruise, brake.",
+    asks="Return `(s, ds, dds)` at time `t` for a motion along a path of `distance` metres that "
+    "is as fast as `v_max` in m/s and `a_max` in m/s² allow: speed up, cruise, brake.",
     answer=answers.trapezoid,
     judge=SCALING,
     trials=(
@@ -209,107 +224,117 @@ TRAPEZOID = Problem(
     ),
     withheld=OWN_WORK,
     hints=(
-        "Work in metres: find the way gone, its speed and its acceleration, and divide all three by "
-        "the distance at the very end.",
-        "The speed reached is v = min(v_max, √(distance·a_max)): over a short distance the two ramps meet "
-        "before v_max. Then ramp = v/a_max and duration = distance/v + ramp.",
-        "The ramp lasts v/a, or the square root of d/a where v is never reached. Write the "
-        "way in metres in each of the three phases, the last one by the time that is left; "
-        "divide everything by d at the end.",
+        "Work in metres: find the distance covered, the speed and the acceleration, and divide "
+        "all three by `distance` at the very end.",
+        "The top speed is v = min(v_max, √(distance·a_max)): over a short distance, braking must "
+        "begin before v_max is reached. Then ramp = v/a_max and duration = distance/v + ramp.",
+        "A ramp lasts v_max/a_max, or √(distance/a_max) if v_max is never reached. Write the "
+        "distance covered in metres for each of the three phases, the last one as a function of "
+        "the time until the end; divide everything by `distance` at the end.",
     ),
     wrong=(
         Wrong(
             "no triangular case",
-            "On a short distance the ramps of a long one overlap: s passes 1 or comes back. Use "
-            "the smaller of v_max and √(distance·a_max) as the top speed.",
+            "On a short distance, the ramps of a long one overlap, so s passes 1 or jumps back. "
+            "Use the smaller of v_max and √(distance·a_max) as the top speed.",
             mistakes.always_cruises,
-            "A trapezoid with a negative cruise is a triangle.",
+            "A trapezoid whose cruise would last less than zero seconds is a triangle.",
         ),
         Wrong(
             "limits taken for limits of s",
-            "v_max and a_max are in metres, and s has no unit. Divide both limits by the distance "
-            "before you use them.",
+            "v_max is in m/s and a_max in m/s², but s has no unit. Divide both limits by the "
+            "distance before you use them as limits of s.",
             mistakes.limits_on_s,
             "Units: a limit in m/s bounds distance·ds, not ds.",
         ),
         Wrong(
             "metres in place of s",
-            "This is the distance travelled, in metres. s goes from 0 to 1: divide way, speed and "
-            "acceleration by the distance.",
+            "You returned the distance covered, in metres. s goes from 0 to 1: divide distance "
+            "covered, speed and acceleration by `distance`.",
             mistakes.way_for_s,
             "s has no unit.",
         ),
         Wrong(
             "a triangle that is too high",
-            "√(2·distance·a_max) is the speed after speeding up all the way. Only half of the way "
-            "is there to speed up, the other half to brake: √(distance·a_max).",
+            "√(2·distance·a_max) is the speed after speeding up over the whole distance. Only "
+            "half of the distance is available for speeding up, because the other half is for "
+            "braking: √(distance·a_max).",
             mistakes.speeds_up_all_the_way,
             "A triangle has two halves.",
         ),
         Wrong(
             "one ramp taken for two",
-            "v_max**2/(2 a_max) is the distance of one ramp. To speed up to v_max and brake again takes "
-            "twice that, so that a way shorter than v_max**2/a_max is a triangle.",
+            "v_max²/(2 a_max) is the distance of one ramp. Speeding up to v_max and braking "
+            "again takes twice that distance, so the motion is a triangle if the distance is "
+            "shorter than v_max²/a_max.",
             mistakes.Ramps(reach=0.5),
-            "Both ramps need room.",
+            "Both ramps need distance.",
         ),
         Wrong(
             "a duration of distance/v",
-            "The ramps are slower than the cruise, so that the motion lasts distance/v + v/a. distance/v alone ends too early.",
+            "The ramps are slower than the cruise, so the motion lasts distance/v + v/a. With "
+            "distance/v alone it ends too early.",
             mistakes.Ramps(ramp=0.0),
-            "The area under the speed is the way.",
+            "The area under the speed is the distance.",
         ),
         Wrong(
             "both ramps added to the duration",
-            "The ramps are not added whole. The area under the trapezoid of the speed is v (T - v/a), so that T = distance/v + v/a.",
+            "You added both ramps in full. The area under the trapezoid of the speed is v (T - "
+            "v/a), so T = distance/v + v/a.",
             mistakes.Ramps(ramp=2.0),
-            "The area under the speed is the way.",
+            "The area under the speed is the distance.",
         ),
         Wrong(
             "the cruise begins where the ramp did not end",
-            "At the end of the ramp the distance is v·ramp/2, so that the cruise is v (t - ramp/2). v·t jumps there.",
+            "At the end of the ramp, the distance covered is v·ramp/2, so the cruise is v (t - "
+            "ramp/2). Your v·t jumps there.",
             mistakes.Ramps(offset=0.0),
-            "Position and speed at the end of one phase are the start of the next.",
+            "Each phase starts with the position and speed at the end of the phase before.",
         ),
         Wrong(
             "the distance of the ramp forgotten",
-            "v (t - ramp) starts the cruise at 0, although the ramp has gone v·ramp/2 already.",
+            "v (t - ramp) starts the cruise at 0, although the ramp has already covered v·ramp/2.",
             mistakes.Ramps(offset=2.0),
-            "Position and speed at the end of one phase are the start of the next.",
+            "Each phase starts with the position and speed at the end of the phase before.",
         ),
         Wrong(
             "still speeding up in the last phase",
-            "dds keeps its plus while the speed falls. Braking is a negative acceleration.",
+            "Your dds stays positive while the speed decreases. Braking is a negative "
+            "acceleration.",
             mistakes.Ramps(dds=-1.0),
             "The second derivative is the slope of the first.",
         ),
         Wrong(
             "a negative speed while braking",
-            "Braking makes the speed smaller, not negative. It is a_max times the time that is left.",
+            "Braking makes the speed smaller, not negative. The speed is a_max times the time "
+            "until the end.",
             mistakes.Ramps(ds=-1.0),
             "Slowing down is not going back.",
         ),
         Wrong(
-            "the one half of a t²/2 forgotten",
-            "The integral of a t is a t²/2. Without the one half, way and speed do not fit together.",
+            "the factor 1/2 of a t²/2 forgotten",
+            "The integral of a t is a t²/2. Without the factor 1/2, distance and speed do not "
+            "fit together.",
             mistakes.Ramps(half=2.0),
             "Check that ds is the slope of s.",
         ),
         Wrong(
             "a triangle that is too low",
-            "Half of the distance is there to speed up: v²/(2 a) = distance/2, so that v = √(distance·a_max), without a 2 below.",
+            "Half of the distance is available for speeding up: v²/(2 a) = distance/2, so v = "
+            "√(distance·a_max), without a 2 in the denominator.",
             mistakes.Ramps(top=0.5**0.5),
             "A triangle has two halves.",
         ),
         Wrong(
             "it never brakes",
-            "Speeding up and cruising are there; the last phase is not. From T - ramp on the speed is a_max times the time that is left.",
+            "Your motion speeds up and cruises, but the last phase is missing. From T - ramp on, "
+            "the speed is a_max times the time until the end.",
             mistakes.Ramps(brakes=False),
             "Draw the speed: a trapezoid has three sides above its base.",
         ),
         Wrong(
             "an acceleration while cruising",
-            "While cruising the speed stays the same, so that dds is 0.",
+            "While cruising, the speed stays the same, so dds is 0.",
             mistakes.Ramps(cruise=1.0),
             "The derivative of a constant is zero.",
         ),
@@ -321,9 +346,10 @@ CIRCLE = Problem(
     name="circle",
     points=4,
     outcomes=("motion",),
-    asks="Give the `lk.Sample` (point and derivatives with respect to `s`) of the level circle that "
-    "begins at `start`, goes once round the vertical axis through `centre`, counter-clockwise seen "
-    "from above, and comes back to `start` at `s` = 1. It keeps the height of `start`.",
+    asks="Return the `lk.Sample` (point and derivatives with respect to `s`) of a level circle. "
+    "It begins at `start`, goes once round the vertical axis through `centre`, "
+    "counter-clockwise seen from above, and comes back to `start` at `s` = 1. It keeps the "
+    "height of `start`.",
     answer=answers.circle,
     judge=Close(rtol=1e-6, atol=1e-8, parts=("position", "velocity", "acceleration")),
     trials=(
@@ -372,40 +398,40 @@ CIRCLE = Problem(
     ),
     withheld=("labkit.Circle",),
     hints=(
-        "Think of a spoke from the axis to the point. It starts as start - centre, laid flat, and "
-        "turns by 2πs. Its length never changes.",
-        "Turning a flat vector (x, y) by an angle φ gives (cos φ x - sin φ y, sin φ x + cos φ y). No "
-        "arctangent is needed. The height is start[2].",
-        "Call the level vector from the axis to the start the spoke. Turn it by 2πs, and each "
-        "derivative turns it by a right angle and brings one factor 2π. The axis passes at "
-        "the height of the start.",
+        "Think of a level spoke from the vertical axis to the point. It starts as start - centre "
+        "without the difference in height, and turns by 2πs. Its length never changes.",
+        "Turning a level vector (x, y) by an angle φ gives (cos φ x - sin φ y, sin φ x + cos φ "
+        "y). You do not need an arctangent. The height is start[2].",
+        "Call the level vector from the vertical axis to the start the spoke. Turn it by 2πs. "
+        "Each derivative turns it by another right angle and multiplies it by 2π. The circle's "
+        "middle is on the axis, at the height of the start.",
     ),
     wrong=(
         Wrong(
             "the radius measured in space",
-            "With the centre at another height, the distance in space is longer than the radius "
-            "in the plane, and the circle misses its own start. Measure the radius in the plane. "
-            "The report's equation 12 has this mistake.",
+            "If the centre is at another height than the start, the distance in space is longer "
+            "than the radius, and the circle misses its own start. Measure the radius in the "
+            "circle's plane. The report's equation 12 has this mistake.",
             mistakes.radius_in_space,
             "A radius is measured in the circle's plane.",
         ),
         Wrong(
             "the height of the centre",
-            "The circle jumps to the centre's height. Keep the height of its start.",
+            "Your circle jumps to the centre's height. Keep the height of the start.",
             mistakes.height_of_the_centre,
             "A reference must begin where the arm is.",
         ),
         Wrong(
             "begins at angle zero",
-            "Every circle begins in the direction of x, wherever the start stands: the arm would "
-            "jump. Turn the spoke that goes to the start.",
+            "Your circle always begins in the direction of x, wherever the start is, so the arm "
+            "would jump. Turn the spoke that goes to the start.",
             mistakes.starts_at_angle_zero,
             "A reference must begin where the arm is.",
         ),
         Wrong(
             "derivatives with respect to the angle",
-            "These are the derivatives with respect to the angle. With respect to s the first has one "
-            "more factor 2π, and the second has two.",
+            "These are the derivatives with respect to the angle. With respect to s, the first "
+            "derivative has one more factor 2π, and the second has two.",
             mistakes.rates_without_two_pi,
             "The chain rule again: dφ/ds = 2π.",
         ),
@@ -418,90 +444,96 @@ CIRCLE = Problem(
         ),
         Wrong(
             "an acceleration that points outwards",
-            "The second derivative should point to the axis: differentiating a cosine twice gives "
-            "minus a cosine.",
+            "The second derivative should point towards the axis: differentiating a cosine twice "
+            "gives minus a cosine.",
             mistakes.accelerates_outwards,
-            "What goes round is pulled inwards.",
+            "A point on a circle accelerates towards the centre.",
         ),
         Wrong(
             "the arctangent of y/x",
-            "y/x is the same for opposite points, so a start on the side of smaller x lands on the other side. "
-            "Use np.arctan2(y, x), or turn the spoke without any angle.",
+            "y/x is the same for opposite points, so a start at a smaller x than the centre's is "
+            "moved to the opposite side. Use np.arctan2(y, x), or turn the spoke without any "
+            "angle.",
             mistakes.half_an_arctangent,
             "atan2 knows the quadrant, atan does not.",
         ),
         Wrong(
             "the arccosine of the start",
-            "An arccosine is never negative: a start at a smaller y than the centre's lands on the "
-            "other side. Use np.arctan2(y, x), or turn the spoke without any angle.",
+            "An arccosine is never negative, so a start at a smaller y than the centre's is "
+            "moved to the other side. Use np.arctan2(y, x), or turn the spoke without any angle.",
             mistakes.arccosine_of_the_start,
             "atan2 knows the quadrant, acos does not.",
         ),
         Wrong(
             "the start's angle twice",
-            "The start's angle is added twice, so that the circle begins elsewhere. The report's circle does this in its second half. At s = 0 the answer must be start.",
+            "You added the start's angle twice, so the circle begins elsewhere. The report's "
+            "circle does this in its second half. At s = 0 the answer must be start.",
             mistakes.Spoke(start=2.0, rates=2.0),
-            "Put s = 0 into every path: it must begin at the start.",
+            "Evaluate every path at s = 0: it must begin at the start.",
         ),
         Wrong(
             "the start's angle with the wrong sign",
-            "The circle begins at minus the start's angle. The angle of the spoke is θ₀ + 2πs, with a plus.",
+            "Your circle begins at minus the start's angle. The angle of the spoke is θ₀ + 2πs, "
+            "with a plus.",
             mistakes.Spoke(start=-1.0, rates=-1.0),
-            "Put s = 0 into every path: it must begin at the start.",
+            "Evaluate every path at s = 0: it must begin at the start.",
         ),
         Wrong(
             "no start angle in the derivatives",
-            "The point starts at the right angle, its derivatives do not: they need θ₀ + 2πs too.",
+            "Your point has the right angle, but its derivatives do not: they need θ₀ + 2πs too.",
             mistakes.Spoke(rates=0.0),
-            "A derivative keeps what stands inside the cosine.",
+            "Differentiating does not change the angle inside the cosine.",
         ),
         Wrong(
             "half a turn",
-            "The angle grows by π, not 2π, so that s = 1 is on the other side.",
+            "Your angle grows by π, not 2π, so s = 1 is on the other side.",
             mistakes.Spoke(turn=0.5),
-            "Put s = 1 into every closed path: it must come back.",
+            "Evaluate every closed path at s = 1: it must come back to its start.",
         ),
         Wrong(
             "s taken for the angle",
-            "The angle grows by 1 rad over the whole path. Once round is 2πs.",
+            "Your angle grows by 1 rad over the whole path. Once round is 2πs.",
             mistakes.Spoke(turn=0.5 / np.pi),
-            "Put s = 1 into every closed path: it must come back.",
+            "Evaluate every closed path at s = 1: it must come back to its start.",
         ),
         Wrong(
             "sine and cosine exchanged",
-            "x goes with the cosine and y with the sine of an angle that is measured from x.",
+            "For an angle measured from the x axis, x has the cosine and y has the sine.",
             mistakes.Spoke(mirrored=True),
             "Angles about z grow from x to y.",
         ),
         Wrong(
             "round the start",
-            "The circle goes round the start. Its middle is the centre; the start lies on it.",
+            "Your circle goes round the start. Its middle should be on the axis through the "
+            "centre, and the start is a point of the circle.",
             mistakes.Spoke(about_start=True),
             "A path has a start and a shape: say which point is which.",
         ),
         Wrong(
             "round the origin",
-            "The centre is not added, so that the circle goes round the origin.",
+            "You did not add the centre, so the circle goes round the origin.",
             mistakes.Spoke(centre=0.0),
             "A vector from the centre is not yet a point.",
         ),
         Wrong(
             "the diameter for the radius",
-            "The circle is twice as wide. The spoke from the axis to the start is the radius.",
+            "Your circle is twice as wide as it should be. The length of the spoke from the axis "
+            "to the start is the radius.",
             mistakes.Spoke(radius=2.0),
-            "Put s = 0 into every path: it must begin at the start.",
+            "Evaluate every path at s = 0: it must begin at the start.",
         ),
         Wrong(
             "the radius squared",
-            "x² + y² is the square of the radius; its root is missing.",
+            "x² + y² is the square of the radius: take its square root.",
             mistakes.Spoke(power=2.0),
-            "Units: square metres are not length.",
+            "Units: an area is not a length.",
         ),
         Wrong(
             "a radius of 1 m",
-            "Your circle has the radius 1. It should be the level distance from the axis to the start.",
+            "The radius of your circle is 1 m. It should be the level distance from the axis to "
+            "the start.",
             mistakes.Spoke(power=0.0),
-            "Put s = 0 into every path: it must begin at the start.",
+            "Evaluate every path at s = 0: it must begin at the start.",
         ),
     ),
     variants=(variants.circle_by_rotation, variants.circle_tuple),
@@ -514,8 +546,9 @@ COMPOSE = Problem(
     name="compose",
     points=4,
     outcomes=("motion",),
-    asks="Combine a path `path(s)` with a schedule `scaling(t)`: give the `lk.Sample` of position, velocity "
-    "and acceleration at time `t`, now with respect to time.",
+    asks="Combine a path `path(s)` with a schedule `scaling(t)`: return the `lk.Sample` of "
+    "position, velocity and acceleration at time `t`, with derivatives with respect to "
+    "time.",
     answer=answers.compose,
     judge=Close(rtol=1e-6, atol=1e-9, parts=("position", "velocity", "acceleration")),
     trials=(
@@ -527,13 +560,13 @@ COMPOSE = Problem(
             weight=0.0,
         ),
         Trial(
-            "a line that speeds up: only it shows whether dds is there",
+            "a line that speeds up, which shows whether dds is used",
             (call(LINE, lk.Quintic(3.0), 0.8), call(LINE, lk.BangBang(3.0), 2.0)),
             hidden.compose_line,
             "lines that speed up and brake",
         ),
         Trial(
-            "a circle at constant speed: only it shows whether ds is squared",
+            "a circle at constant speed, which shows whether ds is squared",
             (call(RING, lk.Trapezoid(RING.length, 0.3, 0.6), 2.2),),
             hidden.compose_circle,
             "circles",
@@ -548,18 +581,18 @@ COMPOSE = Problem(
     ),
     withheld=("labkit.Trajectory",),
     hints=(
-        "The position is path(s(t)). Differentiate that once, with the chain rule; then the result "
-        "once more, with the product rule.",
-        "Ask the scaling first: s, ds, dds = scaling(t). Then the path at s, not at t. The velocity "
-        "is dx·ds.",
-        "Differentiate p'(s(t))·s'(t) as a product. One factor of it is a function of a "
-        "function again: that brings the square.",
+        "The position is path(s(t)). Differentiate it once with the chain rule; then "
+        "differentiate the result with the product rule.",
+        "Evaluate the scaling first: s, ds, dds = scaling(t). Then evaluate the path at s, not "
+        "at t. The velocity is dx·ds.",
+        "Differentiate p'(s(t))·s'(t) as a product. Its first factor is again a function of "
+        "s(t), so the chain rule applies to it once more: that gives the square.",
     ),
     wrong=(
         Wrong(
             "the term dx·dds left out",
-            "The acceleration along the path is lost; on a line none would remain. The product "
-            "rule has two terms.",
+            "Your acceleration along the path is missing; on a line nothing would remain. The "
+            "product rule has two terms.",
             mistakes.drops_the_ramp,
             "Product rule: d/dt (dx ds) = ddx ds² + dx dds.",
         ),
@@ -568,20 +601,20 @@ COMPOSE = Problem(
             "The centripetal term grows with the square of the speed: write ds². A line cannot "
             "show this, because its ddx is zero; a circle does.",
             mistakes.forgets_the_square,
-            "The inner derivative comes out twice.",
+            "The inner derivative appears twice.",
         ),
         Wrong(
             "the path evaluated at t",
-            "A path knows nothing of time. Evaluate it at s, which the schedule gives.",
+            "A path does not depend on time. Evaluate it at s, which the schedule returns.",
             mistakes.time_for_s,
-            "s is where, t is when.",
+            "s says where, t says when.",
         ),
         Wrong(
             "still the derivatives with respect to s",
             "These are dx and ddx of the path. For derivatives with respect to time use the chain "
             "rule: what is d/dt of x(s(t))?",
             mistakes.still_by_s,
-            "A derivative has a variable; say it aloud.",
+            "Say with respect to which variable each derivative is taken.",
         ),
         Wrong(
             "the second derivatives multiplied",
@@ -591,57 +624,61 @@ COMPOSE = Problem(
         ),
         Wrong(
             "the term ddx·ds² is missing",
-            "What bends the path is lost: on a circle the pull towards the centre. The product rule has two terms.",
+            "The acceleration that bends the path is missing: on a circle, the one towards the "
+            "centre. The product rule has two terms.",
             mistakes.Chained(bend=0.0),
             "Product rule: d/dt (dx ds) = ddx ds² + dx dds.",
         ),
         Wrong(
             "the velocity not scaled",
-            "The velocity is still dx, by s. With respect to time it is dx·ds.",
+            "Your velocity is still dx, the derivative with respect to s. With respect to time "
+            "it is dx·ds.",
             mistakes.Chained(velocity=0.0),
-            "A derivative has a variable; say it aloud.",
+            "Say with respect to which variable each derivative is taken.",
         ),
         Wrong(
             "the velocity scaled twice",
             "The velocity is dx·ds: one derivative, one factor ds.",
             mistakes.Chained(velocity=2.0),
-            "The inner derivative comes out once for each derivative.",
+            "The inner derivative appears once for each derivative.",
         ),
         Wrong(
             "the acceleration not scaled",
-            "The acceleration is still ddx, by s. Differentiate dx·ds by time: the product rule gives two terms.",
+            "Your acceleration is still ddx, the derivative with respect to s. Differentiate "
+            "dx·ds with respect to time: the product rule gives two terms.",
             mistakes.Chained(plain=True),
-            "A derivative has a variable; say it aloud.",
+            "Say with respect to which variable each derivative is taken.",
         ),
         Wrong(
             "dx·dds with a minus",
-            "Both terms of the product rule are added.",
+            "The product rule adds its two terms.",
             mistakes.Chained(along=-1.0),
             "Product rule: d/dt (dx ds) = ddx ds² + dx dds.",
         ),
         Wrong(
             "dx·dds twice",
-            "The product dx·ds has two factors, so that dx·dds comes once.",
+            "The product dx·ds has two factors, so its derivative has two different terms; "
+            "dx·dds occurs once.",
             mistakes.Chained(along=2.0),
             "Product rule: d/dt (dx ds) = ddx ds² + dx dds.",
         ),
         Wrong(
             "dx·ds where dx·dds belongs",
-            "In the second term the schedule is differentiated: dds, not ds.",
+            "In the second term, ds is differentiated, which gives dds.",
             mistakes.Chained(along=0.0, late=1.0),
             "Product rule: d/dt (dx ds) = ddx ds² + dx dds.",
         ),
         Wrong(
             "ddx·dds where dx·dds belongs",
-            "In the second term it is the schedule that is differentiated, and the path only once: dx·dds.",
+            "In the second term only ds is differentiated, and dx stays as it is: dx·dds.",
             mistakes.Chained(along=0.0, cross=1.0),
             "Product rule: d/dt (dx ds) = ddx ds² + dx dds.",
         ),
         Wrong(
             "ds and dds exchanged",
-            "A scaling gives (s, ds, dds) in this order; yours takes dds for ds.",
+            "A scaling returns (s, ds, dds) in this order; you used dds as ds.",
             mistakes.Chained(dds_first=True),
-            "Read in which order a function gives its results.",
+            "Read in which order a function returns its results.",
         ),
     ),
     variants=(variants.compose_matrix,),
@@ -654,9 +691,10 @@ SEGMENT_AT = Problem(
     points=3,
     core=False,
     outcomes=("motion",),
-    asks="Segments of the given `durations` follow one another. Give `(index, local_time)`: which "
-    "segment is active at time `t`, counted from 0, and how long ago it began. At the instant where two "
-    "segments meet, the later one is active; before the start it is the first, after the end the last.",
+    asks="Segments of the given `durations` follow one another. Return `(index, local_time)`: "
+    "the index, counted from 0, of the segment that is active at time `t`, and the time "
+    "since this segment began. At the instant where two segments meet, the later one is "
+    "active. Before the start the first is active, and after the end the last.",
     answer=answers.segment_at,
     judge=Close(rtol=1e-9, atol=1e-9, parts=("index", "local_time")),
     trials=(
@@ -674,7 +712,7 @@ SEGMENT_AT = Problem(
             "before the start",
         ),
         Trial(
-            "the joints",
+            "the instants where two segments meet",
             (call(TOUR, 1.0), call(TOUR, 3.0)),
             hidden.segment_joints,
             "the instants at which segments of other paths meet",
@@ -688,100 +726,108 @@ SEGMENT_AT = Problem(
     ),
     withheld=("labkit.Chain",),
     hints=(
-        "When does each segment begin? The first at 0, the next when the first is over. The one that "
-        "is on is the last that has begun.",
-        "Sum the durations of the segments before it, not its own: that sum is when it began, and "
-        "local_time = t - begun.",
-        "Go through the segments and add up when each begins. Stop at the first that ends "
-        "later than t; think about what should happen when none does, and about t exactly on "
-        "a joint.",
+        "When does each segment begin? The first begins at 0, the next when the first is over. "
+        "The active segment is the last one that has begun.",
+        "Sum the durations of the segments before the active one, without its own. This sum is "
+        "the time at which it began, and local_time = t - begun.",
+        "Go through the segments and add up when each begins. Stop at the first that ends later "
+        "than t. Think about what should happen when none does, and about a t at which two "
+        "segments meet.",
     ),
     wrong=(
         Wrong(
             "a sum that includes the current segment",
-            "The local time comes out negative, because the sum includes the segment's own "
-            "duration, as in the report's equation 15. Subtract only the durations before it.",
+            "Your local time is negative inside a segment, because the sum includes the "
+            "segment's own duration, as in the report's equation 15. Subtract only the durations "
+            "before it.",
             mistakes.sums_through_the_segment,
             "Sum over j < k, not over j <= k.",
         ),
         Wrong(
             "index -1 at the start",
-            "At t = 0 the index is -1, which Python takes for the last segment: the arm would "
+            "At t = 0 your index is -1, which Python takes for the last segment: the arm would "
             "start at the last corner, as in the authors' program. Return index 0 there.",
             mistakes.one_segment_early,
-            "Python's index -1 is valid, and wrong.",
+            "Python accepts the index -1, but it is wrong here.",
         ),
         Wrong(
             "no segment left at the end",
-            "At the end no segment is left, and the index runs past the list. After the end stay "
-            "in the last segment.",
+            "At the end, your loop finds no segment, and the index runs past the list. After the "
+            "end, stay in the last segment.",
             mistakes.runs_out_of_segments,
-            "A reference is asked at any time.",
+            "A reference can be evaluated at any time.",
         ),
         Wrong(
             "the last segment begins again",
-            "After the end the last segment goes on and its local time keeps growing. Do not "
-            "subtract its duration.",
+            "After the end, the last segment stays active and its local time keeps growing. Do "
+            "not subtract its duration.",
             mistakes.starts_anew_after_the_end,
             "Say what happens at the ends before you write the loop.",
         ),
         Wrong(
             "the earlier one where two meet",
-            "At the instant where two segments meet, the later one is on, and its local time is 0. A segment holds its start but not its end: begun <= t < begun + duration.",
+            "At the instant where two segments meet, the later one is active, and its local time "
+            "is 0. A segment contains its start but not its end: begun <= t < begun + duration.",
             mistakes.Segments(joint=True),
-            "An interval holds its start and not its end.",
+            "Each interval contains its start but not its end.",
         ),
         Wrong(
             "an index too large after the end",
-            "After the end no other segment begins: the last one stays on, with index n - 1.",
+            "After the end no other segment begins: the last one stays active, with index n - 1.",
             mistakes.Segments(after=lambda n, t, d: (n, t)),
-            "The last index is one less than the number.",
+            "The last index is one less than the number of segments.",
         ),
         Wrong(
             "the local time stops at the end",
-            "After the end the last segment is still on, and its local time goes on: t minus when it began.",
+            "After the end, the last segment is still active and its local time keeps growing: t "
+            "minus the time at which it began.",
             mistakes.Segments(local=lambda t, begun, d: min(t - begun, d)),
             "Let the segment itself decide what it does after its end.",
         ),
         Wrong(
             "the local time is 0 after the end",
-            "After the end the last segment is still on, and its local time goes on: t minus when it began.",
+            "After the end, the last segment is still active and its local time keeps growing: t "
+            "minus the time at which it began.",
             mistakes.Segments(after=lambda n, t, d: (n - 1, 0.0)),
             "Let the segment itself decide what it does after its end.",
         ),
         Wrong(
-            "the time of the whole tour",
-            "The local time counts from when the segment began, not from the start of the tour.",
+            "the time since the start of the tour",
+            "The local time is measured from the instant at which the segment began, not from "
+            "the start of the tour.",
             mistakes.Segments(local=lambda t, begun, d: t),
-            "Say for each time from where it is counted.",
+            "Say for each time from which instant it is measured.",
         ),
         Wrong(
-            "the time that is left",
-            "The local time is how long ago the segment began, not how long it still lasts.",
+            "the time until the segment ends",
+            "The local time is the time since the segment began, not the time until it ends.",
             mistakes.Segments(local=lambda t, begun, d: begun + d - t),
-            "Say for each time from where it is counted.",
+            "Say for each time from which instant it is measured.",
         ),
         Wrong(
-            "a share of the segment",
-            "The local time is in seconds; yours is divided by the segment's duration.",
+            "a fraction of the segment's duration",
+            "The local time is in seconds; you divided it by the segment's duration.",
             mistakes.Segments(local=lambda t, begun, d: (t - begun) / d),
-            "A time has a unit, a share has none.",
+            "A time has a unit; a fraction of a duration has none.",
         ),
         Wrong(
-            "no time before the start",
-            "Before the start the first segment is on with a negative local time, t itself. Yours is 0.",
+            "a local time of 0 before the start",
+            "Before the start, the first segment is active and its local time is negative: t "
+            "itself. Yours is 0.",
             mistakes.Segments(local=lambda t, begun, d: max(t - begun, 0.0)),
             "Let the segment itself decide what it does before its start.",
         ),
         Wrong(
             "the last segment before the start",
-            "Index -1 is the last segment in Python: before the start the arm would jump to the end. The first one is on.",
+            "Before the start you returned the index of the last segment, so the arm would jump "
+            "to the end. The first segment is active there.",
             mistakes.Segments(before=lambda n, t, d: (n - 1, t)),
             "An index below 0 counts from the end.",
         ),
         Wrong(
             "index -1 before the start",
-            "Before the start the first segment is on, with index 0. In Python -1 is the last one.",
+            "Before the start, the first segment is active, with index 0. In Python, index -1 "
+            "means the last one.",
             mistakes.Segments(before=lambda n, t, d: (-1, t)),
             "An index below 0 counts from the end.",
         ),
@@ -795,7 +841,7 @@ SEGMENT_AT = Problem(
             "index and time exchanged",
             "The index comes first, then the local time.",
             mistakes.Segments(swapped=True),
-            "Read in which order results are asked for.",
+            "Read in which order the question asks for the results.",
         ),
     ),
     variants=(variants.segment_by_searchsorted, variants.segment_by_walking),
@@ -806,9 +852,10 @@ WITNESS = Problem(
     points=2,
     core=False,
     outcomes=("motion",),
-    asks="The report's equation 8 for the angle of a circle adds the start angle `theta` in the first "
-    "half of the motion and once more in the second. Give one time at which the angle by this equation "
-    "does what the joints of no arm can do; any such time counts.",
+    asks="The report's equation 8 for the angle of a circle adds the start angle `theta` in the "
+    "first half of the motion and adds it once more in the second half. Return one time at "
+    "which the angle by this equation does what no arm's joints can do. Any such time is "
+    "accepted.",
     answer=answers.witness,
     expected=lambda theta, duration: [[0.499 * duration, 0.501 * duration]],
     judge=Within(),
@@ -821,43 +868,46 @@ WITNESS = Problem(
         ),
     ),
     hints=(
-        "An arm cannot jump. Where could a motion that is put together from two formulas jump?",
-        "Put a time just before and just after the seam into both formulas and subtract.",
-        "The seam is where speeding up ends and braking begins.",
+        "An arm cannot jump. At which time could a motion that consists of two formulas jump?",
+        "Evaluate both formulas at a time just before and just after the change from one to the "
+        "other, and subtract.",
+        "One formula replaces the other where speeding up ends and braking begins.",
     ),
     wrong=(
         Wrong(
             "a time at the end of the motion",
-            "At its end the printed motion stands still, at a wrong angle, but it does not jump "
+            "At its end, the printed motion stands still at a wrong angle, but it does not jump "
             "there. Look for the time of the jump.",
             mistakes.an_end_point,
-            "A witness is a place where the law fails, not where the number looks odd.",
+            "A witness is a time at which the rule is broken, not one at which the number looks "
+            "odd.",
         ),
         Wrong(
             "a time in the second half",
-            "The whole second half is shifted, but it moves smoothly. Look for the jump where the "
-            "shift begins.",
+            "The whole second half is shifted, but it moves smoothly. Look for the jump at the "
+            "time where the shift begins.",
             mistakes.a_late_time,
-            "Shifted is not broken: look at the seam.",
+            "A shifted motion can still be smooth: look where one formula replaces the other.",
         ),
         Wrong(
             "the start",
-            "At the start the printed formula is right: the angle is theta, as it should be. Look "
-            "for a time at which the formula changes its branch.",
+            "At the start, the printed formula is right: the angle is theta, as it should be. "
+            "Look for the time at which the second formula replaces the first.",
             mistakes.the_start,
-            "A counterexample is a place where the formula is wrong.",
+            "A counterexample is a case in which the formula is wrong.",
         ),
         Wrong(
             "an angle",
-            "A time is asked for, in seconds; this is the angle.",
+            "The question asks for a time in seconds, and you returned the angle.",
             mistakes.an_angle,
             "Units: rad is not s.",
         ),
         Wrong(
             "a time in the first half",
-            "In the first half the printed formula is right. Look at where the second branch begins.",
+            "In the first half, the printed formula is right. Look at the time at which the "
+            "second formula begins.",
             mistakes.a_time_in_the_first_half,
-            "A counterexample is a place where the formula is wrong.",
+            "A counterexample is a case in which the formula is wrong.",
         ),
     ),
     variants=(variants.Witness(),),

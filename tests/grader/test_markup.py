@@ -250,7 +250,7 @@ def test_a_prediction_in_the_class_report_has_its_text_and_its_truth(course, cap
     assert main(["class-report", NAME, "--course", str(course.root)]) == 0
     lines = capsys.readouterr().out.splitlines()
     asked = next(k for k, line in enumerate(lines) if line.startswith("**`peak_acceleration`**"))
-    assert lines[asked].endswith("Which of them asks for the higher peak of acceleration?")
+    assert lines[asked].endswith("Which of them has the higher peak of acceleration?")
     assert [line for line in lines[asked + 1 : asked + 8] if line] == [
         "The truth: (b) the quintic.",
         "- 6 x (a) bang-bang",
@@ -258,4 +258,4 @@ def test_a_prediction_in_the_class_report_has_its_text_and_its_truth(course, cap
         "- 1 other, fewer than 5 of them alike, or no answer",
     ]
     row = next(line for line in lines if line.startswith("| bang_bang |"))
-    assert "| Give `(s, ds, dds)` at time `t` for a motion that speeds up" in row
+    assert "| Return `(s, ds, dds)` at time `t` for a motion with constant" in row
