@@ -5,9 +5,9 @@ from labkit.course import Choose, Prediction, Rank
 PREDICTIONS = (
     Prediction(
         "heaviest_direction",
-        "You tap the resting arm's tip along x (forwards), y (sideways) and z (upwards). In which "
-        "direction does the tip feel heaviest? The arm rests in its ready pose; its weight is "
-        "compensated, and its motors do nothing else.",
+        "You tap the resting arm's tip along x (forwards), y (sideways) and z (upwards). In "
+        "which direction does the tip feel heaviest? The arm rests in its ready pose. Its motors "
+        "compensate its weight and do nothing else.",
         Rank({"x": "forwards", "y": "sideways", "z": "upwards"}, "the heaviest"),
         truth="zyx",
     ),

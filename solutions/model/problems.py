@@ -18,14 +18,14 @@ JACOBIAN = Problem(
     name="jacobian",
     points=4,
     outcomes=("model",),
-    asks="Give the Jacobian of the tip in world axes, of shape (6, 7): column k holds the velocity "
-    "of the tip (3 numbers, first) and the angular velocity (3 numbers) while joint k alone turns "
-    "at 1 rad/s.",
+    asks="Return the Jacobian of the tip in world axes, of shape (6, 7): column k contains the "
+    "velocity of the tip (the first 3 numbers) and its angular velocity (the last 3) while "
+    "joint k alone turns at 1 rad/s.",
     answer=answers.jacobian,
     judge=Close(rtol=1e-8, atol=1e-9),
     trials=(
         Trial(
-            "the ready pose: six rows, seven columns, the angular rows below",
+            "the ready pose: six rows, seven columns, the angular rows last",
             (call(*joints(READY)),),
             hidden.jacobians,
             weight=0.0,
@@ -44,20 +44,23 @@ JACOBIAN = Problem(
         "pinocchio",
     ),
     hints=(
-        "Freeze six joints and turn one. The whole hand then turns about that joint's axis like a "
-        "door on its hinge. Which way, and how fast, does the tip go?",
-        "A point at the arm r from the axis z moves with z × r. The arm goes from the axis to the "
-        "tip: r = tip - origins[k]. The angular velocity of the hand is z itself.",
-        "Each column has two parts of three numbers, as a door's handle and the door. Build "
-        "one column, then put seven side by side.",
+        "Freeze six joints and turn one. The whole hand then turns about that joint's axis like "
+        "a door on its hinge. In which direction, and how fast, does the tip move?",
+        "If a joint turns about its axis z, a point at the vector r from the axis moves with z × "
+        "r. This vector, the moment arm, goes from the axis to the tip: r = tip - origins[k]. "
+        "The angular velocity of the hand is z itself.",
+        "Each column has two parts of three numbers: like a door that turns, it has the velocity "
+        "of the handle and the angular velocity of the door. Build one column, then put seven "
+        "side by side.",
     ),
     wrong=(
         Wrong(
             "the moment arm from the world's origin",
-            "The linear rows are the velocity of a point of the hand that is passing the world's "
-            "origin: that is the spatial Jacobian. Measure the arm from the joint to the tip.",
+            "Your linear rows are the velocity of the point of the hand that is passing the "
+            "world's origin: that is the spatial Jacobian. Measure the moment arm from the joint "
+            "to the tip.",
             mistakes.arm_from_the_base,
-            "Three Jacobians exist; say which.",
+            "There are three Jacobians; say which one you mean.",
         ),
         Wrong(
             "the cross product reversed",
@@ -68,8 +71,8 @@ JACOBIAN = Problem(
         ),
         Wrong(
             "rows (w, v)",
-            "The angular rows come first. In this course a twist is (v, w), with the linear part "
-            "first; books differ.",
+            "Your angular rows come first. In this course a twist is (v, w), with the linear "
+            "part first; books differ.",
             mistakes.turns_first,
             "Twist order is a convention: settle it once.",
         ),
@@ -82,44 +85,49 @@ JACOBIAN = Problem(
         ),
         Wrong(
             "every axis through the origin",
-            "The arm r goes from the joint's axis to the tip, so it is tip minus the joint's "
-            "origin, not the tip alone.",
+            "The moment arm r goes from the joint's axis to the tip, so it is tip minus the "
+            "joint's origin, not the tip alone.",
             mistakes.arm_of_the_tip,
             "A moment arm begins at the axis.",
         ),
         Wrong(
             "the origin of the joint before",
-            "Joint k turns about its own axis, through origins[k]. Yours takes the origin of the joint before it.",
+            "Joint k turns about its own axis, through origins[k]. You used the origin of the "
+            "joint before it.",
             mistakes.origin_before,
             "Say which index belongs to which joint.",
         ),
         Wrong(
-            "a distance for the cross product",
-            "A turning joint moves the tip across its axis: z × (tip - p). Yours moves it along the axis.",
+            "a distance in place of the cross product",
+            "A turning joint moves the tip at right angles to its axis: z × (tip - p). Your "
+            "columns move it along the axis.",
             mistakes.distance_for_product,
-            "Turning about an axis moves nothing along it.",
+            "A turn about an axis moves no point along this axis.",
         ),
         Wrong(
             "the product element by element",
-            "* multiplies element by element. The tip moves by the cross product z × (tip - p), np.cross.",
+            "* multiplies element by element. The tip moves with the cross product z × (tip - "
+            "p): use np.cross.",
             mistakes.product_by_element,
-            "Turning about an axis moves nothing along it.",
+            "A turn about an axis moves no point along this axis.",
         ),
         Wrong(
-            "moment arms made one long",
-            "The farther the tip is from the axis, the faster it goes. Do not divide the arm by its length.",
+            "moment arms scaled to length 1",
+            "The farther the tip is from the axis, the faster it moves. Do not divide the moment "
+            "arm by its length.",
             mistakes.unit_arms,
             "Speed is angular speed times distance.",
         ),
         Wrong(
             "every axis vertical",
-            "Only the first axis is vertical in every pose. Each joint has its own, axes[k].",
+            "Your linear rows use a vertical axis for every joint, but only the first axis is "
+            "vertical in every pose. Each joint has its own axis, axes[k].",
             mistakes.vertical_axes,
             "Say which index belongs to which joint.",
         ),
         Wrong(
-            "the joints in the other order",
-            "Column k belongs to joint k, from the base on. Yours begins at the hand.",
+            "the joints in reverse order",
+            "Column k belongs to joint k, counted from the base. Your columns begin at the hand.",
             mistakes.joints_reversed,
             "Say which index belongs to which joint.",
         ),
@@ -131,13 +139,14 @@ MASS_MATRIX = Problem(
     name="mass_matrix",
     points=4,
     outcomes=("model",),
-    asks="Give the mass matrix M of the arm, of shape (7, 7): the matrix with kinetic energy "
-    "½ dqᵀ M dq, summed over the seven links, each of which moves and turns.",
+    asks="Return the mass matrix M of the arm, of shape (7, 7): the matrix for which ½ dqᵀ M dq "
+    "is the arm's kinetic energy, summed over the seven links. Each link both moves and "
+    "turns.",
     answer=answers.mass_matrix,
     judge=Close(rtol=1e-8, atol=1e-9),
     trials=(
         Trial(
-            "links that are points: no inertia of their own",
+            "links that are points, without inertia of their own",
             (call(*(0.0 * x if k == 1 else x for k, x in enumerate(bodies(READY)))),),
             hidden.points_of_mass,
             weight=0.0,
@@ -153,35 +162,37 @@ MASS_MATRIX = Problem(
     ),
     withheld=("labkit.Model.mass_matrix", "labkit.Model.kinetic_energy", "pinocchio"),
     hints=(
-        "A link's kinetic energy is ½ m |v|² of its centre of mass plus ½ wᵀ I w of its turning. "
-        "Both v and w are a Jacobian times dq. Put that in, and read off what stands between dqᵀ "
-        "and dq.",
-        "With J the Jacobian of the centre, v = J[:3] dq and w = J[3:] dq. So the link adds "
-        "m J[:3]ᵀ J[:3] + J[3:]ᵀ I J[3:], with I and w in the same axes.",
-        "Write the energy of one body as ½ dq' (...) dq. Both of its parts have a Jacobian on "
-        "each side; between them stands a mass, or an inertia that must be turned into world "
-        "axes on both sides.",
+        "A link's kinetic energy is ½ m |v|² for the motion of its centre of mass plus ½ wᵀ I w "
+        "for its rotation. Both v and w are a Jacobian times dq. Insert that, and collect what "
+        "is between dqᵀ and dq.",
+        "With J the Jacobian of the centre of mass, v = J[:3] dq and w = J[3:] dq. So the link "
+        "adds m J[:3]ᵀ J[:3] + J[3:]ᵀ I J[3:], with I and w in the same axes.",
+        "Write the kinetic energy of one link as ½ dqᵀ (...) dq. Both of its parts have a "
+        "Jacobian on each side. Between the Jacobians is the mass in one part, and in the other "
+        "the inertia, which needs a rotation on both sides to be in world axes.",
     ),
     wrong=(
         Wrong(
             "the inertia left in the link's axes",
-            "w is in world axes and the inertia in the link's: turn it with R I Rᵀ first.",
+            "w is in world axes and the inertia is in the link's axes: turn the inertia with R I "
+            "Rᵀ first.",
             mistakes.inertia_not_turned,
             "A product needs both factors in the same axes.",
         ),
         Wrong(
             "the inertia turned the wrong way",
-            "Rᵀ I R takes an inertia from the world into the link. Take it the other way, with R "
-            "I Rᵀ.",
+            "Rᵀ I R turns an inertia from world axes into the link's axes. Turn it in the other "
+            "direction, with R I Rᵀ.",
             mistakes.inertia_turned_back,
             "R_wl takes vectors from the link to the world, so I_w = R I_l Rᵀ.",
         ),
         Wrong(
             "links treated as points",
-            "The links' own turning is left out, so the last joint, which turns the hand about "
-            "itself, has almost no inertia. Add the part of the angular velocities.",
+            "The kinetic energy of the links' rotation is missing, so the last joint, which "
+            "turns the hand about itself, has almost no inertia. Add the part with the angular "
+            "velocities.",
             mistakes.points_only,
-            "The smallest eigenvalue of M tells: it is close to zero.",
+            "The smallest eigenvalue of M shows it: it is close to zero.",
         ),
         Wrong(
             "half of the mass matrix",
@@ -198,79 +209,84 @@ MASS_MATRIX = Problem(
         ),
         Wrong(
             "R I without the second R",
-            "A matrix changes its axes by R I Rᵀ: one rotation on each side. Yours has only the left one.",
+            "To change the axes of a matrix, multiply it on both sides: R I Rᵀ. You multiplied "
+            "only on the left.",
             mistakes.Kinetic(inertia=lambda I_l, R: R @ I_l),
             "Vectors turn with one R, matrices with two.",
         ),
         Wrong(
             "Rᵀ I without the second R",
-            "A matrix changes its axes by R I Rᵀ: one rotation on each side.",
+            "To change the axes of a matrix, multiply it on both sides: R I Rᵀ. You multiplied "
+            "only on the left, and by Rᵀ.",
             mistakes.Kinetic(inertia=lambda I_l, R: R.T @ I_l),
             "Vectors turn with one R, matrices with two.",
         ),
         Wrong(
             "the masses left out",
-            "The linear part is m Jᵥᵀ Jᵥ: each link's velocity counts with its mass.",
+            "The linear part is m Jᵥᵀ Jᵥ: multiply the part of each link by its mass.",
             mistakes.Kinetic(power=0.0),
             "Kinetic energy: m v²/2.",
         ),
         Wrong(
             "the masses squared",
-            "The linear part is m Jᵥᵀ Jᵥ, with the mass once.",
+            "The linear part is m Jᵥᵀ Jᵥ: the mass occurs only once.",
             mistakes.Kinetic(power=2.0),
             "Kinetic energy: m v²/2.",
         ),
         Wrong(
-            "the mass on the inertia",
-            "The inertia of a link holds its mass already, in kg m².",
+            "the inertia multiplied by the mass",
+            "The inertia of a link, in kg m², already includes its mass.",
             mistakes.Kinetic(mass=True),
             "Units: kg m² times kg is not an inertia.",
         ),
         Wrong(
             "rotation alone",
-            "The links' centres of mass move as well: m Jᵥᵀ Jᵥ is missing.",
+            "The links' centres of mass move as well: the part m Jᵥᵀ Jᵥ is missing.",
             mistakes.Kinetic(linear=0.0),
             "Kinetic energy has two parts.",
         ),
         Wrong(
             "half of the linear part",
-            "The one half of m v²/2 is that of the quadratic form; it does not enter the matrix.",
+            "The factor 1/2 of m v²/2 is already in ½ dqᵀ M dq; leave it out of the matrix.",
             mistakes.Kinetic(linear=0.5),
-            "T = q̇ᵀ M q̇ / 2.",
+            "T = ½ dqᵀ M dq.",
         ),
         Wrong(
             "half of the angular part",
-            "The one half of ω·Iω/2 is that of the quadratic form; it does not enter the matrix.",
+            "The factor 1/2 of wᵀ I w/2 is already in ½ dqᵀ M dq; leave it out of the matrix.",
             mistakes.Kinetic(angular=0.5),
-            "T = q̇ᵀ M q̇ / 2.",
+            "T = ½ dqᵀ M dq.",
         ),
         Wrong(
             "the two parts subtracted",
-            "Both parts of the kinetic energy are added.",
+            "Add the two parts of the kinetic energy; do not subtract them.",
             mistakes.Kinetic(angular=-1.0),
             "Kinetic energy has two parts.",
         ),
         Wrong(
-            "the mass with all six rows",
-            "The mass goes with the linear rows J[:3] alone. For the angular ones there is the inertia.",
+            "all six rows multiplied by the mass",
+            "The mass belongs only to the linear rows, J[:3]. The angular rows are multiplied by "
+            "the inertia.",
             mistakes.Kinetic(whole=True),
             "Kinetic energy has two parts.",
         ),
         Wrong(
             "the inertia as a number",
-            "A link's inertia differs from axis to axis: keep the matrix, do not take its trace or mean.",
+            "A link's inertia differs from axis to axis: keep the matrix; do not replace it by "
+            "its trace or by a mean.",
             mistakes.Kinetic(inertia=lambda I_l, R: np.trace(I_l) / 3.0 * np.eye(3)),
             "An inertia is a matrix.",
         ),
         Wrong(
             "the last link only",
-            "The sum over the links keeps only its last one: add with += and start from zeros.",
+            "Your result contains only the last link: start from zeros and add each link with +=.",
             mistakes.last_link_only,
             "Every link moves.",
         ),
         Wrong(
             "the diagonal only",
-            "The joints shake one another: what is beside the diagonal belongs to M.",
+            "Each joint's motion affects the other joints: the entries beside the diagonal "
+            "belong to M.",
             mistakes.beside_left_out,
             "A mass matrix couples the joints.",
         ),
@@ -282,14 +298,15 @@ GRAVITY = Problem(
     name="gravity",
     points=4,
     outcomes=("model",),
-    asks="Give the torques, of shape (7,) and in N m, that hold the arm still against its weight: the "
-    "slope of the potential energy along each joint. The world's z axis points up; take 9.81 m/s².",
+    asks="Return the torques, of shape (7,) and in N m, that hold the arm still against its "
+    "weight: the slope of the potential energy along each joint angle. The world's z axis "
+    "points up; use 9.81 m/s².",
     answer=answers.gravity,
     judge=Close(rtol=1e-8, atol=1e-9),
     trials=(
         Trial("the ready pose", (call(*weights(READY)),), weight=0.0),
         Trial(
-            "two bent poses, and any other",
+            "two bent poses",
             (call(*weights(BENT)), call(*weights(REACHING))),
             hidden.gravities,
             "any poses",
@@ -299,41 +316,41 @@ GRAVITY = Problem(
     hints=(
         "The potential energy is the sum of m·9.81·height over the links. How does the height of one "
         "centre of mass change when joint k turns a little?",
-        "The slope of the height of a centre along the joints is a row of its Jacobian: the third, "
-        "that of z.",
-        "Of each body's Jacobian only the row of its height matters. Weigh each by what the "
-        "body weighs, in newtons, and add.",
+        "The slope of a centre's height along each joint angle is a row of its Jacobian: the "
+        "third row, that of z.",
+        "From each link's Jacobian you need only the row that describes height. Multiply this "
+        "row by the link's weight, in newtons, and add the results of all links.",
     ),
     wrong=(
         Wrong(
             "the sign reversed",
-            "These are the torques of gravity itself. The question asks for those that hold "
-            "against it: positive where raising the arm takes work.",
+            "These are the torques of gravity itself. The question asks for the torques that "
+            "hold the arm against gravity: positive where raising the arm takes work.",
             mistakes.falls_faster,
-            "g(q) = +∂V/∂q is on the same side of the equation as the motors' torque.",
+            "g(q) = +∂V/∂q is equal to the motors' torque when the arm is at rest.",
         ),
         Wrong(
             "all the weight at the hand",
-            "With all the weight at the hand the arm seems heavier than it is. Every link has its "
-            "own centre of mass and its own Jacobian: use each.",
+            "You put all the weight at the hand, so the arm seems heavier than it is. Every link "
+            "has its own centre of mass and its own Jacobian: use each.",
             mistakes.all_at_the_hand,
-            "Each link pulls where it is.",
+            "The weight of each link acts at its own centre of mass.",
         ),
         Wrong(
             "only the hand has weight",
-            "Gravity pulls at the hand alone here, as in the report's formula. The hand has less than "
-            "a twentieth of the arm's mass: sum over all links.",
+            "In your formula gravity acts only on the hand, as in the report's formula. The hand "
+            "has less than a twentieth of the arm's mass: sum over all links.",
             mistakes.only_the_hand,
             "Sum over all links.",
         ),
         Wrong(
             "a tenth of the torques",
-            "The torques are ten times too small. The report has 0.981 where 9.81 belongs.",
+            "Your torques are ten times too small. The report has 0.981 in place of 9.81.",
             mistakes.a_tenth,
             "Print a number with its unit, and ask whether you believe it.",
         ),
         Wrong(
-            "masses for weights",
+            "masses in place of weights",
             "These numbers are in kg m, not in N m. The weight of a mass is the mass times 9.81 "
             "m/s².",
             mistakes.without_g,
@@ -341,91 +358,96 @@ GRAVITY = Problem(
         ),
         Wrong(
             "the row of x",
-            "Weight pulls along z: the third row of each Jacobian, J[2]. Yours is the row of x.",
+            "Weight acts along z, so use the third row of each Jacobian, J[2]. You used the row "
+            "of x.",
             mistakes.Weights(lambda J: J[0]),
-            "Only height has potential energy.",
+            "The potential energy depends only on height.",
         ),
         Wrong(
             "the row of y",
-            "Weight pulls along z: the third row of each Jacobian, J[2]. Yours is the row of y.",
+            "Weight acts along z, so use the third row of each Jacobian, J[2]. You used the row "
+            "of y.",
             mistakes.Weights(lambda J: J[1]),
-            "Only height has potential energy.",
+            "The potential energy depends only on height.",
         ),
         Wrong(
             "an angular row, the first",
-            "Rows 3 to 5 are angular. Weight does work along z, row J[2].",
+            "Rows 3 to 5 are angular. Weight does work only along z: use row J[2].",
             mistakes.Weights(lambda J: J[3]),
-            "Rows (v, w).",
+            "The rows of a Jacobian are (v, w), linear part first.",
         ),
         Wrong(
             "the angular row of z",
-            "Row 5 is the turning about z. Weight does work along z, row J[2].",
+            "Row 5 is the angular velocity about z. Weight does work only along z: use row J[2].",
             mistakes.Weights(lambda J: J[5]),
-            "Rows (v, w).",
+            "The rows of a Jacobian are (v, w), linear part first.",
         ),
         Wrong(
             "all rows added",
-            "Weight pulls along z only: take the row J[2], not the sum of rows.",
+            "Weight acts only along z: use row J[2], not the sum of the rows.",
             mistakes.Weights(lambda J: J.sum(axis=0)),
-            "Only height has potential energy.",
+            "The potential energy depends only on height.",
         ),
         Wrong(
             "the length of the velocity",
-            "How fast a link moves does not matter to its weight, only how fast it rises: the row J[2].",
+            "The power that a weight needs depends only on how fast the link rises, not on its "
+            "speed: use row J[2].",
             mistakes.Weights(lambda J: np.linalg.norm(J[:3], axis=0)),
-            "Only height has potential energy.",
+            "The potential energy depends only on height.",
         ),
         Wrong(
             "the whole mass on every link",
-            "Each link carries its own mass at its own centre of mass.",
+            "Multiply each link's Jacobian by the mass of this link, not by the mass of the "
+            "whole arm.",
             mistakes.Weights(mass=lambda m, masses: float(np.sum(masses))),
             "Every link has its own weight.",
         ),
         Wrong(
             "the mean mass for every link",
-            "Each link has its own mass.",
+            "Use each link's own mass, not their mean.",
             mistakes.Weights(mass=lambda m, masses: float(np.mean(masses))),
             "Every link has its own weight.",
         ),
         Wrong(
             "the masses left out",
-            "A weight is m g: the masses are missing.",
+            "A weight is m g: multiply by the masses, which are missing.",
             mistakes.Weights(mass=lambda m, masses: 1.0),
             "Every link has its own weight.",
         ),
         Wrong(
             "the masses squared",
-            "A weight is m g, with the mass once.",
+            "A weight is m g: the mass occurs only once.",
             mistakes.Weights(mass=lambda m, masses: m**2),
             "Every link has its own weight.",
         ),
         Wrong(
             "9.8 for g",
-            "g is 9.81 m/s² here, and yours is 9.8.",
+            "In this question g is 9.81 m/s²; you used 9.8.",
             mistakes.Weights(g=9.8),
-            "Constants: take them from where they are defined.",
+            "Use the value of a constant that the question states.",
         ),
         Wrong(
             "10 for g",
-            "g is 9.81 m/s² here, and yours is 10.",
+            "In this question g is 9.81 m/s²; you used 10.",
             mistakes.Weights(g=10.0),
-            "Constants: take them from where they are defined.",
+            "Use the value of a constant that the question states.",
         ),
         Wrong(
             "g squared",
-            "A weight is m g, with g once.",
+            "A weight is m g: g occurs only once.",
             mistakes.Weights(g=9.81**2),
             "A weight is m g.",
         ),
         Wrong(
-            "the sizes added",
-            "Weights on both sides of an axis balance each other: keep the signs.",
+            "the absolute values added",
+            "Weights on opposite sides of an axis balance each other: keep the signs of their "
+            "torques.",
             mistakes.Weights(size=True),
             "A torque has a sign.",
         ),
         Wrong(
             "without the last link",
-            "The sum ends one link too early.",
+            "Your sum ends one link too early: include the last link.",
             mistakes.Weights(last=-1),
             "Every link has its own weight.",
         ),
@@ -440,8 +462,9 @@ CORIOLIS = Problem(
     points=5,
     core=False,
     outcomes=("model",),
-    asks="Give the Coriolis matrix C of shape (7, 7), made of Christoffel's symbols, at the angles "
-    "`q` and speeds `dq`, from a function `mass_matrix(q)`; take its slopes by central differences.",
+    asks="Return the Coriolis matrix C of shape (7, 7), computed from Christoffel's symbols, at "
+    "the angles `q` and speeds `dq`. You are given a function `mass_matrix(q)`; find its "
+    "slopes by central differences.",
     answer=answers.coriolis,
     judge=Close(rtol=1e-4, atol=2e-5),
     trials=(
@@ -460,39 +483,39 @@ CORIOLIS = Problem(
     withheld=("labkit.Model.coriolis", "labkit.Model.bias", "pinocchio"),
     hints=(
         "First make the table of slopes dM[i, j, k] = ∂M_ij/∂q_k: shift one joint at a time by a "
-        "small h, both ways. Then it is bookkeeping.",
-        "C_ij = ½ Σ_k (∂M_ij/∂q_k + ∂M_ik/∂q_j - ∂M_jk/∂q_i) dq_k. Three loops will do; h = 1e-5 rad "
-        "is a good step.",
-        "Make one array of three indices with all slopes of M. The three terms are that array "
-        "with its indices exchanged; add them with their signs, and let the speeds take away "
-        "the last index.",
+        "small h, once up and once down. The rest is choosing the right indices.",
+        "C_ij = ½ Σ_k (∂M_ij/∂q_k + ∂M_ik/∂q_j - ∂M_jk/∂q_i) dq_k. You can use three loops; h = "
+        "1e-5 rad is a good step.",
+        "Make one array with three indices that contains all slopes of M. The three terms are "
+        "this array with its indices exchanged. Add them with their signs, and sum over the last "
+        "index with the speeds.",
     ),
     wrong=(
         Wrong(
             "half of the rate of M",
             "C = Ṁ/2 passes the skew test, because Ṁ - 2C is then zero, and zero is skew. But C "
-            "dq is not the Coriolis torque. Use Christoffel's symbols.",
+            "dq is then not the Coriolis torque. Use Christoffel's symbols.",
             mistakes.half_the_rate,
             "A test that zero passes says little.",
         ),
         Wrong(
             "the right torque, but not skew",
-            "C dq is right, but there are many such matrices, and for this one Ṁ - 2C is not "
-            "skew, on which the proofs of notebook 04 rely. Use Christoffel's symbols.",
+            "C dq is right, but many matrices give this product, and for yours Ṁ - 2C is not "
+            "skew. The proofs of notebook 04 need it to be skew. Use Christoffel's symbols.",
             mistakes.not_skew,
             "C dq does not fix C; Christoffel's choice does.",
         ),
         Wrong(
             "twice the right matrix",
-            "Either Christoffel's one half is missing, or a difference between q + h and q - h was "
-            "divided by h: it spans 2h.",
+            "Either the factor 1/2 in Christoffel's symbols is missing, or you divided a "
+            "difference between q + h and q - h by h: it spans 2h.",
             mistakes.without_the_half,
-            "The half comes from the kinetic energy; the 2h from a difference taken both ways.",
+            "The factor 1/2 comes from the kinetic energy, and the 2h from a central difference.",
         ),
         Wrong(
             "the minus on the wrong term",
-            "This is the transpose of C. Either the entry is stored in C[j, i], or the minus is on the "
-            "wrong term: it belongs to the slope along the row's own joint, ∂M_jk/∂q_i.",
+            "This is the transpose of C. Either you stored the entry in C[j, i], or the minus is "
+            "on the wrong term: it belongs to the slope along the row's own joint, ∂M_jk/∂q_i.",
             mistakes.signs_mixed,
             "The minus is the slope of the kinetic energy along q_i.",
         ),
@@ -522,28 +545,29 @@ CORIOLIS = Problem(
             "Three slopes, one minus.",
         ),
         Wrong(
-            "both others with a minus",
-            "Only the slope of M_jk along i has a minus.",
+            "two slopes with a minus",
+            "Only the slope of M_jk along q_i has a minus.",
             mistakes.Slopes((1.0, -1.0, -1.0)),
             "Three slopes, one minus.",
         ),
         Wrong(
-            "times the speed of j",
-            "The symbol of i, j, k is multiplied with the speed of k, and summed over k.",
+            "multiplied by the speed of j",
+            "Multiply the symbol of i, j, k by the speed of joint k, and sum over k.",
             mistakes.Slopes(along="j"),
-            "Sum over the index that is not left.",
+            "Sum over the index that does not occur in the result.",
         ),
         Wrong(
-            "times the speed of i",
-            "The symbol of i, j, k is multiplied with the speed of k, and summed over k.",
+            "multiplied by the speed of i",
+            "Multiply the symbol of i, j, k by the speed of joint k, and sum over k.",
             mistakes.Slopes(along="i"),
-            "Sum over the index that is not left.",
+            "Sum over the index that does not occur in the result.",
         ),
         Wrong(
             "steps too large",
-            "The differences are taken over steps so large that M is not a straight line there. Take about 1e-5 rad.",
+            "Your steps are so large that M is not a straight line between q + h and q - h. Use "
+            "about 1e-5 rad.",
             mistakes.Slopes(h=0.3),
-            "A difference is a slope for small steps only.",
+            "A difference approximates a slope only for small steps.",
         ),
     ),
     variants=(variants.coriolis_in_loops,),
@@ -554,94 +578,97 @@ POWER_BALANCE = Problem(
     points=3,
     core=False,
     outcomes=("model",),
-    asks="Give, at each tick of a run, the rate of change of the arm's total energy minus the power of its "
-    "motors, in W and of shape (N,). The remainder is power from other sources. `np.gradient(x, log.t)` "
-    "takes slopes.",
+    asks="Return, at each tick of a run, the rate of change of the arm's total energy minus the "
+    "power of its motors, in W and of shape (N,). This difference is the power from other "
+    "sources. `np.gradient(x, log.t)` computes slopes.",
     answer=answers.power_balance,
     judge=Close(rtol=0.0, atol=1.5),
     trials=(
         Trial(
-            "a slow lift with friction, and a hand that helps",
+            "a slow lift with friction and a helping hand",
             (call(lift(0.35, 0.8, 400.0, 10.0), ROUGH_MODEL),),
             hidden.gentle_lifts,
             "other lifts, helped and hindered",
             weight=0.0,
         ),
         Trial(
-            "a quick lift, cut by the torque limits",
+            "a quick lift during which the torque limits act",
             (call(lift(0.55, 0.42, 400.0), ROUGH_MODEL),),
             hidden.lifts,
             "quick lifts",
         ),
     ),
     hints=(
-        "Energy comes in two kinds. What the motors do per second is torque times speed, summed over "
-        "the joints. Which torque does the log hold, and which is only wished for?",
-        "At each row: model.kinetic_energy(q, dq) + model.potential_energy(q). Its slope over time is "
-        "np.gradient(energy, log.t).",
-        "Two curves over time: how fast the energy grows (numpy has a gradient that knows the "
-        "times), and what the motors give, joint by joint, summed.",
+        "The arm has two kinds of energy. The power of the motors is torque times speed, summed "
+        "over the joints. Which torque in the log did the motors give, and which was only "
+        "commanded?",
+        "For each row of the log, compute model.kinetic_energy(q, dq) + "
+        "model.potential_energy(q). Its slope over time is np.gradient(energy, log.t).",
+        "Compute two curves over time: how fast the energy grows (numpy has a gradient that uses "
+        "the times), and the power of the motors, summed over the joints.",
     ),
     wrong=(
         Wrong(
             "kinetic energy only",
             "Lifting the arm stores energy too. Add the potential energy; without it the balance "
-            "shows the power that gravity takes.",
+            "includes the power that gravity takes.",
             mistakes.kinetic_only,
             "Energy is T + V.",
         ),
         Wrong(
             "the torque that was commanded",
-            "`log.command` is what the controller asked for. Where a limit cut it, the motors "
-            "gave less: use `log.tau`.",
+            "`log.command` is the torque that the controller commanded. Where a limit reduced "
+            "it, the motors gave less: use `log.tau`.",
             mistakes.commanded_torque,
-            "What was commanded is not what was done.",
+            "The command and the torque that acts can differ.",
         ),
         Wrong(
             "the sign reversed",
-            "Take the growth of the energy minus the power of the motors: friction then shows as "
-            "a loss, below zero, and a helping hand as a gain.",
+            "Compute the growth of the energy minus the power of the motors: friction is then a "
+            "loss, below zero, and a helping hand is a gain.",
             mistakes.motors_minus_energy,
             "Say in words what a positive number means.",
         ),
         Wrong(
             "a slope that is not per second",
-            "The energy seems hardly to grow, so its slope is not per second. Give np.gradient the "
-            "log's times as well, in seconds.",
+            "Your energy hardly seems to grow, so its slope is not per second. Also pass the "
+            "log's times, in seconds, to np.gradient.",
             mistakes.steps_not_seconds,
-            "J and W differ by seconds.",
+            "A watt is a joule per second.",
         ),
         Wrong(
             "the absolute value",
-            "An absolute value hides whether energy came or went. Keep the sign: friction is a "
-            "loss, below zero, and a helping hand a gain.",
+            "An absolute value hides whether energy was added or removed. Keep the sign: "
+            "friction is a loss, below zero, and a helping hand is a gain.",
             mistakes.absolute,
             "Say in words what a positive number means.",
         ),
         Wrong(
             "the power of friction instead",
-            "This is the power of the plant's friction alone; a helping hand is missing in it. "
-            "Subtract the motors' power from the growth of the energy.",
+            "This is the power of the plant's friction alone; the power of a helping hand is "
+            "missing. Subtract the motors' power from the growth of the energy.",
             mistakes.friction_alone,
-            "A balance finds what nobody told you of.",
+            "A balance also finds the sources that you do not know of.",
         ),
         Wrong(
             "the power of only some joints",
-            "The wrist turns too, and its motor works: sum torque times speed over all seven joints.",
+            "The last wrist joint turns too, and its motor does work: sum torque times speed "
+            "over all seven joints.",
             mistakes.without_the_last_joint,
             "Count the motors.",
         ),
         Wrong(
             "the motors' power added",
-            "What grows in the arm without what the motors put in: their power is taken off.",
+            "The question asks for the growth of the energy without what the motors supply: "
+            "subtract their power.",
             mistakes.Balance(power=-1.0),
-            "Energy balance: growth minus what comes in.",
+            "Energy balance: growth minus what is supplied.",
         ),
         Wrong(
             "the motors' power left out",
-            "This is the growth of the energy alone. Take off what the motors put in.",
+            "This is the growth of the energy alone. Subtract the power of the motors.",
             mistakes.Balance(power=0.0),
-            "Energy balance: growth minus what comes in.",
+            "Energy balance: growth minus what is supplied.",
         ),
         Wrong(
             "potential energy only",
@@ -663,31 +690,33 @@ POWER_BALANCE = Problem(
         ),
         Wrong(
             "torque times angle",
-            "A power is torque times speed: log.dq, not log.q.",
+            "Power is torque times speed: use log.dq, not log.q.",
             mistakes.Balance(by=lambda log: log.q),
             "Units: joules are not watts.",
         ),
         Wrong(
             "half of the kinetic energy",
-            "model.kinetic_energy holds its one half already.",
+            "model.kinetic_energy already includes the factor 1/2.",
             mistakes.Balance(kinetic=0.5),
             "Energy has two parts.",
         ),
         Wrong(
             "the mean of the joints' powers",
-            "The powers of the joints are added, not averaged.",
+            "Add the powers of the joints; do not average them.",
             mistakes.mean_power,
             "Power adds up.",
         ),
         Wrong(
             "the powers without their signs",
-            "A motor that brakes takes energy out: its power is below zero. Keep the signs.",
+            "A motor that brakes removes energy from the arm: its power is below zero. Keep the "
+            "signs.",
             mistakes.sizes_of_power,
             "A power has a sign.",
         ),
         Wrong(
             "energies, not powers",
-            "This is the growth since the start without the work since the start. The rate at each time is asked for.",
+            "This is the growth of the energy since the start minus the work since the start. "
+            "The question asks for the rate at each time.",
             mistakes.as_energies,
             "Units: joules are not watts.",
         ),
