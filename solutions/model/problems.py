@@ -264,7 +264,7 @@ MASS_MATRIX = Problem(
             "Kinetic energy has two parts.",
         ),
         Wrong(
-            "the mass multiplied by all six rows",
+            "all six rows multiplied by the mass",
             "The mass belongs only to the linear rows, J[:3]. The angular rows are multiplied by "
             "the inertia.",
             mistakes.Kinetic(whole=True),

@@ -148,7 +148,8 @@ def main(arguments: Sequence[str] | None = None) -> int:
     print(f"{len(new)} known answers marked, {len(found)} verdicts changed.", *found, sep="\n")
     if options.check:
         return bool(found)
-    rows = sorted({**old, **new}.items()) if options.names else sorted(new.items())
+    kept = {key: row for key, row in old.items() if options.names and key not in asked}
+    rows = sorted({**kept, **new}.items())
     lines = ",\n".join(f"{json.dumps(key)}: {json.dumps(row)}" for key, row in rows)
     VERDICTS.write_text(f"{{\n{lines}\n}}\n")
     return 0

@@ -28,9 +28,9 @@ JOINT_VELOCITY_PD = Problem(
     name="joint_velocity_pd",
     points=5,
     outcomes=("control",),
-    asks="Command joint speeds that follow a joint trajectory: the target's own speed, plus `kp` "
-    "times the error of the angles, plus `kd` times the error of the speeds. Gains are numbers or "
-    "arrays of shape (7,).",
+    asks="Return a command of joint speeds that follows a joint trajectory: the target's own "
+    "speed, plus `kp` times the error of the angles, plus `kd` times the error of the "
+    "speeds. Gains are numbers or arrays of shape (7,).",
     answer=answers.joint_velocity_pd,
     judge=COMMAND,
     trials=(
@@ -47,7 +47,7 @@ JOINT_VELOCITY_PD = Problem(
             "other speeds",
         ),
         Trial(
-            "a target that moves, a gain for each joint",
+            "a target that moves, and a gain for each joint",
             (
                 call(state(READY), sample(READY, MOVING, 2.0 * MOVING), kp=4.0, kd=0.5),
                 call(
@@ -62,7 +62,7 @@ JOINT_VELOCITY_PD = Problem(
             weight=2.0,
         ),
         Trial(
-            "closed loop: it catches up from a wrong start and stays on",
+            "closed loop: the arm starts with an error, reaches the path and stays on it",
             (
                 joint_run(
                     0.1 * np.array([1, -1, 1, 1, -1, 1, 1]),
@@ -74,110 +74,114 @@ JOINT_VELOCITY_PD = Problem(
         ),
     ),
     hints=(
-        "Suppose there is no error at all: what should the arm do then? And which way should an "
-        "error push? (Target minus actual, always.)",
-        "e = target.position - state.q and de = target.velocity - state.dq. The command starts from "
-        "the target's speed, not from the measured one.",
-        "Three terms, each seven numbers. One needs no gain. The result is a command, not an "
-        "array.",
+        "Suppose there is no error at all: what should the arm do then? And in which direction "
+        "should an error push the arm? (The error is always target minus actual.)",
+        "e = target.position - state.q and de = target.velocity - state.dq. The first term of "
+        "the command is the target's speed, not the measured one.",
+        "Add three terms of seven numbers each; one of them needs no gain. Return a command, not "
+        "an array.",
     ),
     wrong=(
         Wrong(
             "the error with the other sign",
-            "Actual minus target pushes the arm away from its target; take target minus actual. "
-            "With feed-forward and a start on the path, the arm would hide this for a while.",
+            "Actual minus target pushes the arm away from its target: use target minus actual. "
+            "With feed-forward and a start on the path, the mistake would not be visible for a "
+            "while.",
             mistakes.pushes_away,
             "Start from an offset; feed-forward hides broken feedback.",
         ),
         Wrong(
             "a correction of the measured speed",
-            "The corrections are added to the measured speed, so they pile up two hundred times a "
-            "second: without kd the arm swings, and nothing damps it. Add them to the target's speed. The report's "
-            "equation 17 has this mistake.",
+            "You add the corrections to the measured speed, so they accumulate two hundred times "
+            "a second: without kd nothing damps the arm, and it swings. Add them to the target's "
+            "speed. The report's equation 17 has this mistake.",
             mistakes.adds_to_the_measured,
-            "An integrator too many.",
+            "Adding to the measured speed puts one more integrator in the loop.",
         ),
         Wrong(
             "no feed-forward",
-            "The arm follows, but stays behind by the target's speed over kp. The target says how "
-            "fast it moves: add its speed to the command.",
+            "The arm follows, but stays behind by the target's speed divided by kp. The target "
+            "includes its own speed: add this speed to the command.",
             mistakes.no_feedforward,
             "Feedback waits for an error; feed-forward does not.",
         ),
         Wrong(
             "damping of the motion, not of its error",
-            "kd brakes the arm even where the target moves equally fast. Multiply kd with the "
-            "error of the speeds.",
+            "Your kd brakes the arm even where the target moves at the same speed. Multiply kd "
+            "by the error of the speeds.",
             mistakes.damps_the_motion,
             "D acts on the derivative of the error.",
         ),
         Wrong(
             "kp and kd swapped",
-            "kp multiplies the error of the angles, and kd that of the speeds.",
+            "Multiply the error of the angles by kp, and the error of the speeds by kd.",
             mistakes.gains_swapped,
-            "Units tell: kp is in 1/s, kd has none.",
+            "The units show it: kp is in 1/s, kd has none.",
         ),
         Wrong(
             "the error of the angles reversed",
-            "The error of the angles has the wrong sign, so kp pushes the arm away. Take target "
+            "Your error of the angles has the wrong sign, so kp pushes the arm away. Use target "
             "minus actual.",
             mistakes.JointLaw(e=-1.0),
-            "One sign for every error.",
+            "Every error has the same sign convention: target minus actual.",
         ),
         Wrong(
             "the error of the speeds reversed",
-            "The error of the speeds has the wrong sign, so kd drives what it should brake. Take "
-            "target minus actual.",
+            "Your error of the speeds has the wrong sign, so kd accelerates what it should "
+            "brake. Use target minus actual.",
             mistakes.JointLaw(de=-1.0),
-            "One sign for every error.",
+            "Every error has the same sign convention: target minus actual.",
         ),
         Wrong(
             "kd left out",
             "The error of the speeds is missing. Add kd times this error.",
             mistakes.JointLaw(de=0.0),
-            "Try every gain by itself.",
+            "Test each gain by itself.",
         ),
         Wrong(
             "the target's acceleration added",
             "The command is a speed, and an acceleration has another unit. Leave the target's "
             "acceleration out.",
             mistakes.JointLaw(ddq=1.0),
-            "Only like units may be added.",
+            "Add only quantities of the same unit.",
         ),
         Wrong(
             "kp on the feed-forward too",
-            "The gain belongs to the error. The target's speed is commanded as it is.",
+            "Multiply only the error by the gain. The target's speed is commanded as it is.",
             mistakes.Fed(lambda ff, e, de, kp, kd, *_: kp * (ff + e) + kd * de),
-            "A gain with a unit turns a speed into something else.",
+            "A gain with a unit changes the unit of what it multiplies.",
         ),
         Wrong(
             "the feed-forward twice",
-            "The target's speed is added once as feed-forward, apart from the one inside the error of the speeds.",
+            "Add the target's speed only once as feed-forward. It also occurs in the error of "
+            "the speeds, where it belongs.",
             mistakes.Fed(lambda ff, e, de, kp, kd, *_: 2.0 * ff + kp * e + kd * de),
             "Write each term once.",
         ),
         Wrong(
-            "the feed-forward taken off",
-            "The target's speed is what the joint should do without any error: it is added.",
+            "the feed-forward subtracted",
+            "The target's speed is the speed that the joint should have when there is no error: "
+            "add it.",
             mistakes.Fed(lambda ff, e, de, kp, kd, *_: -ff + kp * e + kd * de),
             "With no error, the command is the target's speed.",
         ),
         Wrong(
-            "helps the motion",
-            "kd times the arm's own speed, with a plus, drives it on. The error of the speeds is target minus actual.",
+            "kd times the measured speed, with a plus",
+            "Your term, kd times the measured speed, makes the arm faster. The error of the "
+            "speeds is target minus actual.",
             mistakes.Fed(lambda ff, e, de, kp, kd, state, target: ff + kp * e + kd * state.dq),
             "One convention for the whole course: target minus actual.",
         ),
         Wrong(
             "the speeds added",
-            "The error of the speeds is target minus actual; yours is their sum.",
+            "You added the two speeds. The error of the speeds is target minus actual.",
             mistakes.Fed(
                 lambda ff, e, de, kp, kd, state, target: ff + kp * e + kd * (ff + state.dq)
             ),
             "One convention for the whole course: target minus actual.",
         ),
         Wrong(
-            "a position in a speed",
+            "the target's position as feed-forward",
             "The target's position is not a speed: the feed-forward is target.velocity.",
             mistakes.Fed(
                 lambda ff, e, de, kp, kd, state, target: target.position + kp * e + kd * de
@@ -186,9 +190,9 @@ JOINT_VELOCITY_PD = Problem(
         ),
         Wrong(
             "the gains multiplied",
-            "kd multiplies the error of the speeds by itself, without kp.",
+            "You multiplied the error of the speeds by kp and kd. Multiply it by kd alone.",
             mistakes.Fed(lambda ff, e, de, kp, kd, *_: ff + kp * e + kp * kd * de),
-            "Say which form of PD you write: kp e + kd de.",
+            "A PD law has more than one form; here it is kp e + kd de.",
         ),
         Wrong(
             "half of the feed-forward",
@@ -198,19 +202,20 @@ JOINT_VELOCITY_PD = Problem(
         ),
         Wrong(
             "the gain squared",
-            "kp comes once.",
+            "The error is multiplied by kp only once.",
             mistakes.Fed(lambda ff, e, de, kp, kd, *_: ff + kp**2 * e + kd * de),
             "Units: kp is in 1/s.",
         ),
         Wrong(
             "a scalar product for the gains",
-            "np.dot and @ add the seven joints to one number. * multiplies each joint by its own gain.",
+            "np.dot and @ add up the seven joints to one number. The operator * multiplies each "
+            "joint's error by its own gain.",
             mistakes.Fed(lambda ff, e, de, kp, kd, *_: ff + np.dot(kp * np.ones(7), e) + kd * de),
-            "Gains go joint by joint.",
+            "Each joint has its own gain.",
         ),
         Wrong(
-            "the error of the speeds once more",
-            "The error of the speeds is added without its gain as well.",
+            "the error of the speeds added twice",
+            "You also added the error of the speeds without its gain.",
             mistakes.Fed(lambda ff, e, de, kp, kd, *_: ff + de + kp * e + kd * de),
             "Write each term once.",
         ),
@@ -222,12 +227,13 @@ DECAY_RATE = Problem(
     name="decay_rate",
     points=2,
     outcomes=("control",),
-    asks="A joint moves at exactly the speed that is commanded, and its target stands still. Give the "
-    "rate, in 1/s, at which the error dies away under the gains `kp` and `kd`: the r in exp(-r t).",
+    asks="A joint moves at exactly the commanded speed, and its target stands still. Return the "
+    "rate, in 1/s, at which the error decays under the gains `kp` and `kd`: the r in exp(-r "
+    "t).",
     answer=answers.decay_rate,
     judge=Close(rtol=1e-6, atol=1e-9),
     trials=(
-        Trial("no D", (call(4.0, 0.0),), hidden.rates_without_d, weight=0.0),
+        Trial("kd = 0", (call(4.0, 0.0),), hidden.rates_without_d, weight=0.0),
         Trial(
             "kd = 1 and kd = 3",
             (call(4.0, 1.0), call(4.0, 3.0), call(2.0, 0.5)),
@@ -236,78 +242,79 @@ DECAY_RATE = Problem(
         ),
     ),
     hints=(
-        "The target stands still, so the speed of the joint is minus the rate of the error. Put the "
-        "command into that.",
-        "dq = kp e + kd (0 - dq), and dq = -de/dt. The speed is on both sides: collect it.",
-        "The joint moves at the commanded speed: put dq = u into the law, with a target at "
+        "The target stands still, so the joint's speed is minus the derivative of the error. "
+        "Insert the command for the speed.",
+        "dq = kp e + kd (0 - dq), and dq = -de/dt. The speed is on both sides: collect its terms.",
+        "The joint moves at the commanded speed: insert dq = u into the law, for a target at "
         "rest, and collect all terms with de/dt on one side.",
     ),
     wrong=(
         Wrong(
             "kd making the decay faster",
-            "It is the other way round: here kd slows the decay. The speed is on both sides: "
-            "(1 + kd) de/dt = -kp e.",
+            "kd does not make the decay faster: here it slows the decay. The speed is on both "
+            "sides: (1 + kd) de/dt = -kp e.",
             mistakes.faster_with_d,
-            "In a velocity loop D brakes the very speed that closes the error.",
+            "In a velocity loop, D brakes the very speed that reduces the error.",
         ),
         Wrong(
             "the frequency of a mass on a spring",
             "√kp is the frequency of a second-order system. Here the speed itself is commanded: "
-            "write the equation of the error, which is of first order.",
+            "write down the equation of the error, which is of first order.",
             mistakes.second_order,
-            "Count the integrators between command and angle.",
+            "Count the integrators between the command and the angle.",
         ),
         Wrong(
             "kd left out",
-            "kp alone is right only for kd = 0. The measured speed is the commanded one, so kd "
-            "feeds the command back into itself: solve for the speed.",
+            "kp alone is right only for kd = 0. The measured speed is the commanded one, so the "
+            "command depends on itself through kd: solve for the speed.",
             mistakes.without_d,
             "Write down the whole loop.",
         ),
         Wrong(
             "a rate with a minus",
-            "exp(-r t) already contains the minus, so the rate of an error that dies away is "
+            "exp(-r t) already contains the minus, so the rate of an error that decays is "
             "positive.",
             mistakes.minus_the_rate,
             "A pole and a decay rate differ by their sign.",
         ),
         Wrong(
             "kd with the wrong sign",
-            "The target is at rest, so the error of the speed is minus the speed, and kd brakes; "
-            "at kd = 1 your rate divides by zero.",
+            "The target is at rest, so the error of the speeds is minus the joint's speed, and "
+            "kd brakes. At kd = 1 your rate divides by zero.",
             mistakes.d_turned_round,
-            "Write down de/dt before you collect it.",
+            "Write down de/dt before you collect its terms.",
         ),
         Wrong(
             "the gains added",
             "kp is in 1/s and kd has no unit, so they cannot be added. Write down the equation of the "
             "error.",
             mistakes.gains_added,
-            "Units forbid sums.",
+            "Quantities of different units cannot be added.",
         ),
         Wrong(
-            "the part that is left after one second",
-            "This is exp(-r) itself. Give the r in it.",
+            "the part of the error that is left after one second",
+            "This is exp(-r), the part of the error that is left after one second. Return the r "
+            "in it.",
             mistakes.what_is_left,
-            "Read what is asked: a rate, in 1/s.",
+            "Read what the question asks for: a rate, in 1/s.",
         ),
         Wrong(
-            "turned over",
-            "The rate grows with kp: kp is in the numerator.",
+            "the fraction upside down",
+            "The rate grows with kp, so kp belongs in the numerator.",
             mistakes.Rate(lambda kp, kd: (1.0 + kd) / kp),
-            "Put kd = 0: what is left is kp.",
+            "Check the formula at kd = 0: the rate must be kp.",
         ),
         Wrong(
             "the gains multiplied",
-            "Put kd = 0: the rate is then kp, and a product would be 0.",
+            "At kd = 0 the rate is kp, but your product would be 0.",
             mistakes.Rate(lambda kp, kd: kp * kd),
-            "Put kd = 0: what is left is kp.",
+            "Check the formula at kd = 0: the rate must be kp.",
         ),
         Wrong(
             "kd over kp",
-            "Put kd = 0: the rate is then kp, and kd/kp would be 0.",
+            "At kd = 0 the rate is kp, but kd/kp would be 0.",
             mistakes.Rate(lambda kp, kd: kd / kp),
-            "Put kd = 0: what is left is kp.",
+            "Check the formula at kd = 0: the rate must be kp.",
         ),
         Wrong(
             "a damping ratio",
@@ -316,39 +323,42 @@ DECAY_RATE = Problem(
             "Count the derivatives: one derivative, one rate.",
         ),
         Wrong(
-            "a one too many above",
-            "Collect what stands before de/dt, 1 + kd, and what stands before e, which is kp alone.",
+            "1 + kp in the numerator",
+            "Collect the factor of de/dt, which is 1 + kd, and the factor of e, which is kp alone.",
             mistakes.Rate(lambda kp, kd: (1.0 + kp) / (1.0 + kd)),
             "Collect the terms of de/dt and of e.",
         ),
         Wrong(
-            "the root of it",
-            "A root belongs to an equation of second order. de/dt = -r e has r itself.",
+            "the square root of the rate",
+            "A square root belongs to an equation of second order. In de/dt = -r e, the rate is "
+            "r itself.",
             mistakes.Rate(lambda kp, kd: np.sqrt(kp / (1.0 + kd))),
             "Count the derivatives: one derivative, one rate.",
         ),
         Wrong(
-            "the bracket squared",
-            "1 + kd comes once.",
+            "1 + kd squared",
+            "The rate is divided by 1 + kd only once.",
             mistakes.Rate(lambda kp, kd: kp / (1.0 + kd) ** 2),
             "Collect the terms of de/dt and of e.",
         ),
         Wrong(
-            "D taken off",
-            "D does not act against P as a difference; it stands before de/dt: (1 + kd) de/dt = -kp e.",
+            "kd subtracted from kp",
+            "kd is not subtracted from kp; it belongs to the factor of de/dt: (1 + kd) de/dt = "
+            "-kp e.",
             mistakes.Rate(lambda kp, kd: kp - kd),
             "Collect the terms of de/dt and of e.",
         ),
         Wrong(
-            "the one forgotten",
-            "Before de/dt stand 1 and kd. With kd alone the rate would be infinite without D; at "
-            "kd = 0 yours divides by zero.",
+            "the 1 of 1 + kd forgotten",
+            "The factor of de/dt is 1 + kd. With kd alone the rate would be infinite without D: "
+            "at kd = 0 yours divides by zero.",
             mistakes.Rate(lambda kp, kd: kp / kd),
-            "Put kd = 0: what is left is kp.",
+            "Check the formula at kd = 0: the rate must be kp.",
         ),
         Wrong(
-            "the gains for the whole",
-            "kp is in 1/s and kd has no unit, so they cannot be added. Collect what stands before de/dt: 1 + kd.",
+            "the sum of the gains in the denominator",
+            "kp is in 1/s and kd has no unit, so they cannot be added. Collect the factor of "
+            "de/dt: 1 + kd.",
             mistakes.Rate(lambda kp, kd: kp / (kp + kd)),
             "Units: a rate is in 1/s.",
         ),
@@ -363,8 +373,9 @@ DAMPED_INVERSE = Problem(
         "control",
         "model",
     ),
-    asks="Give the damped pseudo-inverse of a Jacobian of shape (6, 7), of shape (7, 6): the matrix "
-    "that finds, for a twist V, the joint speeds with the least |V - J dq|² + `damping` |dq|².",
+    asks="Return the damped pseudo-inverse, of shape (7, 6), of a Jacobian of shape (6, 7). For "
+    "a twist V, this matrix finds the joint speeds with the least |V - J dq|² + `damping` "
+    "|dq|².",
     answer=answers.damped_inverse,
     judge=COMMAND,
     trials=(
@@ -387,11 +398,13 @@ DAMPED_INVERSE = Problem(
         ),
     ),
     hints=(
-        "Without damping it is the pseudo-inverse Jᵀ (J Jᵀ)⁻¹, which explodes where J Jᵀ has an "
-        "eigenvalue near zero. What could you add to J Jᵀ so that it has none?",
+        "Without damping, the answer is the pseudo-inverse Jᵀ (J Jᵀ)⁻¹, whose entries become "
+        "huge where J Jᵀ has an eigenvalue near zero. What could you add to J Jᵀ so that no "
+        "eigenvalue is near zero?",
         "Add damping times the identity of size 6 to J Jᵀ before you invert it.",
-        "Set the gradient to zero and solve. Of the two forms, one inverts a 7 by 7 matrix "
-        "and one a 6 by 6; both are right, and the damping belongs on the diagonal.",
+        "Set the gradient to zero and solve. The solution has two forms, one with the inverse of "
+        "a 7 by 7 matrix and one with that of a 6 by 6 matrix. Both are right, and in both the "
+        "damping belongs on the diagonal.",
     ),
     wrong=(
         Wrong(
@@ -403,11 +416,12 @@ DAMPED_INVERSE = Problem(
         ),
         Wrong(
             "no damping",
-            "This gives the plain pseudo-inverse, np.linalg.pinv(J), which asks for speeds that no "
-            "joint has when the elbow is nearly straight. Add the damping times the "
-            "identity to J Jᵀ; as a cut-off for small singular values it changes nothing here.",
+            "This is the plain pseudo-inverse, np.linalg.pinv(J): when the elbow is nearly "
+            "straight, it commands speeds that no joint can reach. Add the damping times the "
+            "identity to J Jᵀ. As a cut-off for small singular values the damping changes "
+            "nothing here.",
             mistakes.undamped,
-            "Where no exact inverse exists, its formula does not help.",
+            "Where no exact inverse exists, a formula for it does not help.",
         ),
         Wrong(
             "the damping squared",
@@ -418,14 +432,14 @@ DAMPED_INVERSE = Problem(
         ),
         Wrong(
             "the damping added to every number",
-            "numpy adds a number to every entry of a matrix. The damping belongs on the diagonal "
-            "alone: multiply it by an identity matrix.",
+            "numpy adds a number to every entry of a matrix. The damping belongs only on the "
+            "diagonal: multiply it by an identity matrix.",
             mistakes.damping_everywhere,
             "λ is not λ I.",
         ),
         Wrong(
             "the damping subtracted",
-            "With a minus the damping can make J Jᵀ singular. Add it.",
+            "If you subtract the damping, J Jᵀ can become singular. Add it.",
             mistakes.damping_taken_off,
             "Damping pushes eigenvalues away from zero.",
         ),
@@ -437,51 +451,55 @@ DAMPED_INVERSE = Problem(
         ),
         Wrong(
             "the inverse forgotten",
-            "J Jᵀ + damping I is multiplied where it should be inverted.",
+            "You multiplied by J Jᵀ + damping I; multiply by its inverse.",
             mistakes.no_inverse,
-            "Test an inverse by multiplying.",
+            "Test an inverse: multiply it by the matrix.",
         ),
         Wrong(
-            "s forgotten above",
-            "Each singular value becomes s/(s² + damping). Yours is 1/(s² + damping).",
+            "s missing in the numerator",
+            "Each singular value s must become s/(s² + damping). Yours becomes 1/(s² + damping).",
             mistakes.BySingularValues(lambda s, d: 1.0 / (s**2 + d)),
-            "Put the damping to 0: 1/s must remain.",
+            "Check a damping of 0: each factor must then be 1/s.",
         ),
         Wrong(
             "s where s² belongs",
-            "Each singular value becomes s/(s² + damping). Yours is 1/(s + damping): that damps less where s is small.",
+            "Each singular value s must become s/(s² + damping). Yours becomes 1/(s + damping), "
+            "which damps less where s is small.",
             mistakes.BySingularValues(lambda s, d: 1.0 / (s + d)),
-            "Units: a damping is added to s².",
+            "The damping has the unit of s².",
         ),
         Wrong(
             "the pseudo-inverse made smaller",
-            "Damping makes only what is nearly singular smaller. Dividing everything by 1 + damping slows all directions down.",
+            "Damping should reduce only the directions that are nearly singular. Dividing "
+            "everything by 1 + damping makes all directions slower.",
             mistakes.BySingularValues(lambda s, d: 1.0 / (s * (1.0 + d))),
             "Damping acts where s is small.",
         ),
         Wrong(
             "twice the damping",
-            "The damping is added once.",
+            "Add the damping only once.",
             mistakes.BySingularValues(lambda s, d: s / (s**2 + 2.0 * d)),
-            "From the gradient of a sum of squares both twos drop out.",
+            "In the gradient of a sum of squares, both factors 2 cancel.",
         ),
         Wrong(
             "half of the damping",
-            "The twos of the gradient drop out on both sides: the damping is added whole.",
+            "The factors 2 of the gradient cancel on both sides: add the whole damping.",
             mistakes.BySingularValues(lambda s, d: s / (s**2 + 0.5 * d)),
-            "From the gradient of a sum of squares both twos drop out.",
+            "In the gradient of a sum of squares, both factors 2 cancel.",
         ),
         Wrong(
             "a transpose, made smaller",
-            "This is the transpose with a factor. An inverse has s/(s² + damping) for each singular value.",
+            "This is the transpose times a number. In the damped inverse each singular value s "
+            "becomes s/(s² + damping).",
             mistakes.BySingularValues(lambda s, d: s / (1.0 + d)),
             "A transpose is not an inverse.",
         ),
         Wrong(
-            "the damping in the place of J Jᵀ",
-            "The damping is added to J Jᵀ before the inverse, and not multiplied or used alone.",
+            "the pseudo-inverse times the damping",
+            "You multiplied the pseudo-inverse by the damping, so without damping nothing "
+            "remains. Add the damping to J Jᵀ before you invert it.",
             mistakes.BySingularValues(lambda s, d: d / s),
-            "Put the damping to 0: 1/s must remain.",
+            "Check a damping of 0: each factor must then be 1/s.",
         ),
     ),
     variants=(variants.inverse_the_other_way, variants.inverse_by_svd),
@@ -494,9 +512,10 @@ WORKSPACE_VELOCITY_PD = Problem(
     name="workspace_velocity_pd",
     points=6,
     outcomes=("control",),
-    asks="Command joint speeds that make the tip follow a target of poses: the tip should move with "
-    "the target's twist plus `kp` times its error of position and orientation, both in world axes. "
-    "`kp` is a number or an array of shape (6,). Use the damped inverse of the tip Jacobian.",
+    asks="Return a command of joint speeds that makes the tip follow a target of poses. The tip "
+    "should move with the target's twist plus `kp` times the error of the tip's position "
+    "and orientation, both in world axes. `kp` is a number or an array of shape (6,). Use "
+    "the damped inverse of the tip Jacobian.",
     answer=answers.workspace_velocity_pd,
     judge=COMMAND,
     trials=(
@@ -517,7 +536,7 @@ WORKSPACE_VELOCITY_PD = Problem(
             weight=2.0,
         ),
         Trial(
-            "a target that moves, on it and off it",
+            "a target that moves, with the tip on the target and off it",
             (
                 call(
                     state(READY),
@@ -555,7 +574,7 @@ WORKSPACE_VELOCITY_PD = Problem(
             "other stretched poses",
         ),
         Trial(
-            "closed loop: from a shifted and tilted start after a circle",
+            "closed loop: the tip follows a circle from a shifted and tilted start",
             (pose_run(CENTIMETRES, (0.15, 0.1, -0.1)),),
             hidden.pose_runs,
             "other starts",
@@ -564,124 +583,131 @@ WORKSPACE_VELOCITY_PD = Problem(
     ),
     withheld=("labkit.Model.pose_error",),
     hints=(
-        "First say how the *tip* should move: six numbers, linear and angular. Only then ask which "
-        "joint speeds do that.",
-        "e has six numbers: target.pose[:3, 3] minus the tip's place, then the turn "
+        "First say how the *tip* should move: six numbers, linear and angular. Only then ask "
+        "which joint speeds produce this motion.",
+        "e has six numbers: target.pose[:3, 3] minus the tip's position, then the turn "
         "lk.se3.orientation_error(R_wd, R_wt) of notebook 00. V = target.twist + kp * e.",
-        "Work from the outside in: the twist that you want, six numbers, its feedback in "
-        "world axes in the order (v, w); then the joint speeds that give it, with the damped "
-        "inverse of this Jacobian.",
+        "Begin with the six numbers of the twist that the tip should have; its feedback is in "
+        "world axes, in the order (v, w). Then find the joint speeds that produce this twist, "
+        "with the damped inverse of this Jacobian.",
     ),
     wrong=(
         Wrong(
             "roll, pitch and yaw subtracted",
-            "With the gripper down and a yaw beyond 90 degrees, as in the ready pose, their difference "
-            "drives roll and pitch the wrong way, and it jumps at 180 degrees. Use the logarithm, as in notebook 00.",
+            "With the gripper down and a yaw beyond 90 degrees, as in the ready pose, the "
+            "difference of the angles drives roll and pitch in the wrong direction, and it jumps "
+            "at 180 degrees. Use the logarithm, as in notebook 00.",
             mistakes.euler_error,
             "Orientations are compared by a product.",
         ),
         Wrong(
             "the turn in the tool's axes",
-            "The tip Jacobian is in world axes, and this error is in the tool's. With the gripper "
-            "down, two components then have the wrong sign. Use R_wd R_wtᵀ.",
+            "The tip Jacobian is in world axes, but your error is in the tool's axes. With the "
+            "gripper down, two components then have the wrong sign. Use R_wd R_wtᵀ.",
             mistakes.turn_in_tool_axes,
-            "Error and Jacobian must speak of the same axes.",
+            "The error and the Jacobian must be in the same axes.",
         ),
         Wrong(
             "the body Jacobian with an error in world axes",
-            "The body Jacobian gives the twist in the tool's axes, so with the gripper down z is "
-            "upside down. Use tip_jacobian, in world axes like the error.",
+            "The body Jacobian gives the twist in the tool's axes, and with the gripper down the "
+            "tool's z axis points down. Use tip_jacobian, which is in world axes like the error.",
             mistakes.body_jacobian,
-            "Three Jacobians exist; use the one of your axes.",
+            "There are three Jacobians; use the one that is in the axes of your error.",
         ),
         Wrong(
-            "the orientation left to itself",
-            "The last three numbers of the error are zero, so the hand keeps any tilt. Fill them "
-            "with orientation_error; several teams left them out because their orientation error was wrong.",
+            "the orientation not controlled",
+            "The last three numbers of your error are zero, so the hand keeps any tilt. Fill "
+            "them with orientation_error. Several teams left them out because their orientation "
+            "error was wrong.",
             mistakes.position_only,
             "A gain of zero hides a wrong sign.",
         ),
         Wrong(
             "no feed-forward",
             "The target's twist is missing, so the tip stays behind by about the target's speed "
-            "over kp. What is added to the correction is target.twist itself, not target.dtwist.",
+            "divided by kp. Add target.twist itself to the correction, not target.dtwist.",
             mistakes.no_twist,
             "Feedback waits for an error; feed-forward does not.",
         ),
         Wrong(
-            "an error of the twist for the feed-forward",
-            "The measured twist, J q̇, is subtracted from the target's, so in steady motion the "
-            "tip is told to stand still. Command target.twist as it is; this law has no D.",
+            "the error of the twist as feed-forward",
+            "You subtracted the measured twist, J q̇, from the target's twist, so in steady "
+            "motion you command the tip to stand still. Command target.twist as it is; this law "
+            "has no D.",
             mistakes.Measured(lambda J_inv, V, e, J, dq: J_inv @ (V - J @ dq + e)),
             "A difference of speeds is feedback, and needs a gain.",
         ),
         Wrong(
             "a D without a gain",
-            "The error of the twist, target.twist - J q̇, is added with the factor 1, which halves "
-            "how fast the error dies away. This law has no D: leave it out.",
+            "You added the error of the twist, target.twist - J q̇, with the factor 1, which "
+            "halves the rate at which the error decays. This law has no D: leave this error out.",
             mistakes.Measured(lambda J_inv, V, e, J, dq: J_inv @ (2.0 * V - J @ dq + e)),
-            "In a velocity loop D brakes the very speed that closes the error.",
+            "In a velocity loop, D brakes the very speed that reduces the error.",
         ),
         Wrong(
-            "the measured speed for the feed-forward",
-            "The correction is added to the measured joint speeds, so it piles up at every tick. "
-            "The tip should move with the target's twist, not with the speed it has already.",
+            "the measured speed as feed-forward",
+            "You added the correction to the measured joint speeds, so it accumulates at every "
+            "tick. The tip should move with the target's twist, not with the speed that it "
+            "already has.",
             mistakes.Measured(lambda J_inv, V, e, J, dq: dq + J_inv @ e),
-            "An integrator too many.",
+            "Adding to the measured speed puts one more integrator in the loop.",
         ),
         Wrong(
             "the measured speed added",
-            "state.dq is added to the command, so the command piles up at every tick. The "
-            "target's twist already says how fast to move.",
+            "You added state.dq to the command, so the command accumulates at every tick. The "
+            "target's twist already says how fast the tip should move.",
             mistakes.Measured(lambda J_inv, V, e, J, dq: dq + J_inv @ (V + e)),
-            "An integrator too many.",
+            "Adding to the measured speed puts one more integrator in the loop.",
         ),
         Wrong(
             "the Jacobian of the ready pose",
-            "The Jacobian is taken at the ready pose, but it changes with the angles: take it at "
-            "state.q in every call.",
+            "You used the Jacobian of the ready pose, but the Jacobian changes with the angles: "
+            "compute it at state.q in every call.",
             mistakes.jacobian_of_ready,
             "A Jacobian belongs to one pose.",
         ),
         Wrong(
             "the damping ignored",
-            "This is the plain pseudo-inverse, which asks for speeds that no joint has when the "
-            "elbow is straight. Use the damped inverse.",
+            "This is the plain pseudo-inverse: when the elbow is straight, it commands speeds "
+            "that no joint can reach. Use the damped inverse.",
             mistakes.damping_ignored,
-            "Damping trades a little of the tip's error for possible speeds.",
+            "Damping accepts a small error of the tip in exchange for speeds that the joints can "
+            "reach.",
         ),
         Wrong(
             "the error of position reversed",
-            "The error of the position has the wrong sign, so the tip moves away from its target. "
-            "Take target minus actual.",
+            "Your error of the position has the wrong sign, so the tip moves away from its "
+            "target. Use target minus actual.",
             mistakes.WorkspaceLaw(place=-1.0),
-            "One sign for every error.",
+            "Every error has the same sign convention: target minus actual.",
         ),
         Wrong(
             "the turn reversed",
-            "This is the turn from the target to the tip. The target comes first: "
-            "orientation_error(R_wd, R_wt), and R_wd is on the left of the product.",
+            "This is the turn from the target to the tip. Name the target first: "
+            "orientation_error(R_wd, R_wt), with R_wd on the left of the product.",
             mistakes.WorkspaceLaw(turn=mistakes.turned_back),
             "Say from where to where a rotation turns.",
         ),
         Wrong(
             "the turn reversed, in the tool's axes",
             "R_wdᵀ R_wt turns from the target to the tip, and its components are along the "
-            "target's axes. Take the turn to the target, in the world's axes: R_wd R_wtᵀ.",
+            "target's axes. You need the turn from the tip to the target, in world axes: R_wd "
+            "R_wtᵀ.",
             mistakes.WorkspaceLaw(turn=mistakes.turned_back_in_tool_axes),
-            "Frames that cancel: R_wd R_tw is a turn in world axes.",
+            "R_wd R_tw is a turn in world axes: w is its first letter and its last.",
         ),
         Wrong(
             "position and turn both reversed",
-            "The feedback has the wrong sign in all six numbers. The error is target minus actual, "
-            "and kp times the error is added to the target's twist.",
+            "Your feedback has the wrong sign in all six numbers. The error is target minus "
+            "actual, and kp times the error is added to the target's twist.",
             mistakes.WorkspaceLaw(place=-1.0, turn=mistakes.turned_back),
-            "One sign for every error.",
+            "Every error has the same sign convention: target minus actual.",
         ),
         Wrong(
             "logarithms subtracted",
-            "The difference of two rotation vectors is a rotation vector only if both turn about the "
-            "same axis. First the product of the rotations, then its logarithm.",
+            "The difference of two rotation vectors is the rotation vector between them only if "
+            "both turn about the same axis. First multiply the rotations, then take the "
+            "logarithm of the product.",
             mistakes.WorkspaceLaw(turn=mistakes.logarithms_subtracted),
             "Orientations are compared by a product.",
         ),
@@ -701,7 +727,7 @@ WORKSPACE_VELOCITY_PD = Problem(
             "sin x is the same for x and 180° - x.",
         ),
         Wrong(
-            "the transpose for the inverse",
+            "the transpose in place of the inverse",
             "Jᵀ turns forces into torques. To get joint speeds from a twist, use the damped "
             "inverse.",
             mistakes.by_the_transpose,
@@ -709,17 +735,17 @@ WORKSPACE_VELOCITY_PD = Problem(
         ),
         Wrong(
             "the error in the tool's axes",
-            "Both parts of the error are in the tool's axes, while the twist and the tip Jacobian "
-            "are in the world's. Turn the error into world axes.",
+            "Both parts of your error are in the tool's axes, while the twist and the tip "
+            "Jacobian are in world axes. Turn the error into world axes.",
             mistakes.InToolAxes(body=False),
-            "Error and Jacobian must speak of the same axes.",
+            "The error and the Jacobian must be in the same axes.",
         ),
         Wrong(
             "everything in the tool's axes but the target's twist",
-            "Error and Jacobian are in the tool's axes, but the target's twist is in the world's. "
-            "Use world axes for all three.",
+            "Your error and Jacobian are in the tool's axes, but the target's twist is in world "
+            "axes. Use world axes for all three.",
             mistakes.InToolAxes(body=True),
-            "Add only vectors of the same axes.",
+            "Add only vectors in the same axes.",
         ),
         Wrong(
             "the damping squared",
@@ -729,81 +755,88 @@ WORKSPACE_VELOCITY_PD = Problem(
         ),
         Wrong(
             "the error of position in the tool's axes",
-            "The place's error is in world axes already. Turned into the tool's axes it does not fit the Jacobian.",
+            "The error of the position is already in world axes. You turned it into the tool's "
+            "axes, which are not those of the Jacobian.",
             mistakes.TwistLaw(tool=True),
-            "Error and Jacobian in the same axes.",
+            "The error and the Jacobian must be in the same axes.",
         ),
         Wrong(
-            "the turn before the place",
-            "A twist is (v, w) in this course: place first, then turn. Error and Jacobian must have the same order.",
+            "the turn before the position",
+            "In this course a twist is (v, w), so the error of the position comes first, then "
+            "the turn. The error and the Jacobian must have the same order.",
             mistakes.TwistLaw(turn_first=True),
-            "Rows (v, w).",
+            "The rows are (v, w), linear part first.",
         ),
         Wrong(
             "kp on the feed-forward too",
-            "The gain belongs to the error. The target's twist is commanded as it is.",
+            "Multiply only the error by the gain. The target's twist is commanded as it is.",
             mistakes.TwistLaw(on_all=True),
-            "A gain with a unit turns a speed into something else.",
+            "A gain with a unit changes the unit of what it multiplies.",
         ),
         Wrong(
-            "the feed-forward taken off",
-            "The target's twist is what the tip should do without any error: it is added.",
+            "the feed-forward subtracted",
+            "The target's twist is the twist that the tip should have when there is no error: "
+            "add it.",
             mistakes.TwistLaw(feed=(-1.0, -1.0)),
             "With no error, the command is the target's twist.",
         ),
         Wrong(
             "the feed-forward twice",
-            "The target's twist comes once.",
+            "Add the target's twist only once.",
             mistakes.TwistLaw(feed=(2.0, 2.0)),
             "With no error, the command is the target's twist.",
         ),
         Wrong(
-            "half of the feed-forward: turning alone",
-            "The target's twist has six numbers. Yours uses the angular velocity alone.",
+            "half of the feed-forward: the turn alone",
+            "The target's twist has six numbers. You used only its angular velocity.",
             mistakes.TwistLaw(feed=(0.0, 1.0)),
             "A twist is (v, w).",
         ),
         Wrong(
             "the inverse forgotten",
-            "J Jᵀ + damping I is multiplied where it should be inverted.",
+            "You multiplied by J Jᵀ + damping I; multiply by its inverse.",
             mistakes.TwistLaw(inverse=mistakes.no_inverse),
-            "Test an inverse by multiplying.",
+            "Test an inverse: multiply it by the matrix.",
         ),
         Wrong(
             "the gain squared",
-            "kp comes once.",
+            "The error is multiplied by kp only once.",
             mistakes.TwistLaw(gain=2.0),
             "Units: kp is in 1/s.",
         ),
         Wrong(
             "no gain",
-            "The error is added without kp.",
+            "You added the error without kp.",
             mistakes.TwistLaw(gain=0.0),
             "Units: an error is in m, a twist in m/s.",
         ),
         Wrong(
             "twice the quaternion's vector",
-            "2 sin(θ/2) times the axis is close to the turn for small angles only. The angle itself is asked for.",
+            "2 sin(θ/2) times the axis is close to the rotation vector only for small angles. "
+            "Use the angle itself.",
             mistakes.TwistLaw(turn=mistakes.twice_the_quaternion),
             "sin x and x agree only for small x.",
         ),
         Wrong(
             "the matrices subtracted",
-            "R_wd - R_wt is not a rotation, and its skew part is not the turn between them.",
+            "R_wd - R_wt is not a rotation, and its skew part is not the turn between the two. "
+            "Multiply one matrix by the transpose of the other.",
             mistakes.TwistLaw(turn=mistakes.matrices_subtracted),
             "Orientations are compared by a product.",
         ),
         Wrong(
             "Euler angles of the turn",
-            "Roll, pitch and yaw of the right rotation are not a rotation vector: read it with lk.se3.rotation_log.",
+            "Roll, pitch and yaw of the right rotation are not a rotation vector: use "
+            "lk.se3.rotation_log.",
             mistakes.TwistLaw(turn=mistakes.euler_of_the_turn),
-            "A rotation vector is angle times axis.",
+            "A rotation vector is the angle times the axis.",
         ),
         Wrong(
             "the twist in the tool's axes",
-            "target.twist is in world axes already, as the Jacobian is.",
+            "You turned target.twist into the tool's axes. It is already in world axes, like the "
+            "Jacobian.",
             mistakes.TwistLaw(twist_in_tool=True),
-            "Error and Jacobian in the same axes.",
+            "The error and the Jacobian must be in the same axes.",
         ),
     ),
     variants=(variants.WorkspacePD(), variants.workspace_in_tool_axes),
@@ -819,8 +852,8 @@ POSTURE_VELOCITY = Problem(
         "control",
         "model",
     ),
-    asks="The joints would like to turn at `dq_wish`. Give the part of that wish, of shape (7,), that "
-    "does not move the tip at all, as near to the wish as can be.",
+    asks="The joints should turn at `dq_wish` if they can. Return the part of this wish, of "
+    "shape (7,), that does not move the tip at all and is as close to the wish as possible.",
     answer=answers.posture_velocity,
     judge=Close(rtol=1e-6, atol=1e-8),
     trials=(
@@ -841,17 +874,18 @@ POSTURE_VELOCITY = Problem(
         ),
     ),
     hints=(
-        "Let the wish run: the tip would move with J dq_wish. Take away just the joint speeds that "
-        "make that motion, and nothing else.",
+        "If the joints turned at dq_wish, the tip would move with J dq_wish. Subtract only the "
+        "joint speeds that cause this motion, and nothing else.",
         "The smallest joint speeds that give a twist V are pinv(J) V. Here V = J dq_wish.",
         "First ask how the wish would move the tip. Then find the smallest joint speeds that "
-        "move the tip in just that way, and take them off the wish.",
+        "move the tip in just this manner, and subtract them from the wish.",
     ),
     wrong=(
         Wrong(
-            "the transpose for the inverse",
-            "I - Jᵀ J is a projector only if the rows of J are orthonormal, as in the first test. "
-            "The arm's are not, and the tip moves: use the pseudo-inverse of J.",
+            "the transpose in place of the inverse",
+            "I - Jᵀ J is a projector only if the rows of J are orthonormal, as in the first "
+            "test. The rows of the arm's Jacobian are not, so the tip moves: use the "
+            "pseudo-inverse of J.",
             mistakes.transpose_projector,
             "Test a projector: applied twice it does the same.",
         ),
@@ -860,68 +894,73 @@ POSTURE_VELOCITY = Problem(
             "A damped inverse does not undo J exactly, so the tip drifts. Use the plain "
             "pseudo-inverse here.",
             mistakes.damped_projector,
-            "Two inverses for two purposes.",
+            "The two inverses serve two purposes.",
         ),
         Wrong(
-            "the part that the tip feels",
-            "This is the part of the wish that the tip does feel. Subtract it from the wish.",
+            "the part that moves the tip",
+            "This is the part of the wish that moves the tip. Subtract it from the wish.",
             mistakes.the_rest,
-            "Wish = felt part + free part.",
+            "Wish = part that moves the tip + free part.",
         ),
         Wrong(
             "the whole wish",
-            "The whole wish moves the tip. Subtract the part of it that the tip feels.",
+            "The whole wish moves the tip. Subtract the part that does so.",
             mistakes.all_of_it,
             "J times the answer must be zero.",
         ),
         Wrong(
             "the number 1 for the identity matrix",
-            "numpy applies the number 1 to every entry. Write np.eye(7) for the identity matrix.",
+            "1 - A subtracts every entry of A from the number 1. Write np.eye(7) for the "
+            "identity matrix.",
             mistakes.one_for_the_identity,
             "1 is not I.",
         ),
         Wrong(
             "no motion at all",
-            "The tip does not feel an arm at rest, but the joints then ignore the wish. Keep as "
-            "much of the wish as the tip allows.",
+            "With zero speeds the tip does not move, but the joints then ignore the wish. Keep "
+            "as much of the wish as possible without moving the tip.",
             mistakes.no_motion,
-            "Two conditions: not felt, and as near as can be.",
+            "Two conditions: the tip does not move, and the speeds are as close to the wish as "
+            "possible.",
         ),
         Wrong(
             "the answer scaled to length one",
-            "The direction is right. Its length is part of the answer: do not divide by it.",
+            "The direction is right, but its length is part of the answer too: do not divide by "
+            "it.",
             mistakes.length_one,
-            "A projection shortens; it does not normalise.",
+            "A projection can shorten a vector; it does not normalise it.",
         ),
         Wrong(
             "the free part with the other sign",
-            "Subtract the part that the tip feels from the wish, not the wish from that part.",
+            "Subtract the part that moves the tip from the wish, not the wish from that part.",
             mistakes.minus_the_free_part,
-            "Wish = felt part + free part.",
+            "Wish = part that moves the tip + free part.",
         ),
         Wrong(
             "the tip may turn",
-            "Only the three linear rows are held. The tip must not turn either: all six rows.",
+            "You kept only the tip's position still, with the three linear rows. The tip must "
+            "not turn either: use all six rows.",
             mistakes.place_alone,
-            "The tip has six numbers.",
+            "The motion of the tip has six numbers.",
         ),
         Wrong(
             "a column of Vᵀ for its last row",
-            "np.linalg.svd gives Vᵀ: the null vector is its last row, not its last column.",
+            "np.linalg.svd returns Vᵀ: the null vector is its last row, not its last column.",
             mistakes.a_column_of_v,
             "Test a null vector: J n = 0.",
         ),
         Wrong(
-            "the length for the component",
+            "the length of the wish in place of its component",
             "The part of the wish along n is n (n · wish). Yours has the length of the whole wish.",
             mistakes.length_for_component,
             "A projection is never longer than what is projected.",
         ),
         Wrong(
             "two freedoms",
-            "Seven joints and six numbers of the tip leave one freedom: one singular vector.",
+            "Seven joints and six numbers of the tip leave one freedom, so use only one singular "
+            "vector, the last.",
             mistakes.two_freedoms,
-            "Count: n minus rank.",
+            "Count the freedoms: the number of joints minus the rank of J.",
         ),
     ),
     variants=(

@@ -258,4 +258,4 @@ def test_a_prediction_in_the_class_report_has_its_text_and_its_truth(course, cap
         "- 1 other, fewer than 5 of them alike, or no answer",
     ]
     row = next(line for line in lines if line.startswith("| bang_bang |"))
-    assert "| Return `(s, ds, dds)` at time `t` for a motion with" in row
+    assert "| Return `(s, ds, dds)` at time `t` for a motion with constant" in row

@@ -27,6 +27,17 @@ def test_a_verdict_that_changed_is_named_with_its_reason(tmp_path, monkeypatch, 
     assert f"{name}: wrong before, right now" in said
 
 
+def test_an_answer_that_is_no_longer_asked_leaves_the_record(tmp_path, monkeypatch):
+    """Recording one notebook drops its renamed answers and keeps the other notebooks' rows."""
+    rows = json.loads(record.VERDICTS.read_text())
+    monkeypatch.setattr(record, "VERDICTS", tmp_path / "verdicts.json")
+    row = {"earned": 0.0, "tests": [], "mistake": None}
+    stale = {"00_warmup/joint_error/an old name": row}
+    record.VERDICTS.write_text(json.dumps({**rows, **stale}))
+    assert record.main(["--verdicts", "00_warmup"]) == 0
+    assert json.loads(record.VERDICTS.read_text()) == rows
+
+
 def test_numbers_that_moved_are_measured():
     """Relative to the largest in their file; a file of another shape is said to be one."""
     old = {"a": np.array([1.0, np.nan, 4.0]), "b": np.zeros(2)}
