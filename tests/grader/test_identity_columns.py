@@ -57,7 +57,7 @@ def test_who_has_no_number_of_canvas_is_named():
     """Such a row may match nobody, so the export says whose it is."""
     marks = [row("ada", person=ADA), row("bob", person=Student("bob", login="bob"))]
     (said,) = remarks("canvas", marks)
-    assert said.startswith("1 have no Canvas ID") and ": bob; import Canvas's own list" in said
+    assert said.startswith("1 has no Canvas ID") and ": bob; import Canvas's own list" in said
     assert not list(remarks("canvas", marks[:1])) and not list(remarks("moodle-worksheet", []))
 
 
