@@ -154,7 +154,10 @@ def rules_in(path: Path) -> Rules:
     except FileNotFoundError:
         return Rules()
     except (ValueError, RecursionError) as error:
-        raise LabkitError(f"{path}: {error}; correct that line") from None
+        says = str(error)
+        if "$.counts" in says:
+            says = 'counts must be "latest" or "latest in time"'
+        raise LabkitError(f"{path}: {says}; correct that line") from None
     try:
         ZoneInfo(rules.zone)
     except (ValueError, OSError, ZoneInfoNotFoundError):

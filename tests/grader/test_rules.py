@@ -238,11 +238,17 @@ def test_grading_names_whose_file_counts_under_a_rule_that_changed(course, monke
     path = course.submitted / "ada" / NAME / f"{NAME}.ipynb"
     says = "ada: now the file of 2026-11-01 00:00 UTC counts, instead of that of 2026-11-05"
     out = verb(course, capsys, "grade", NAME, "--diff")[1]
-    assert says in out and f"to grade it, type: labkit grade {NAME}" in out
+    would = says.replace("now ", "").replace("counts", "would count")
+    assert would in out and f"to grade it, type: labkit grade {NAME}" in out
+    assert "1 student not compared with the file that would count (see above)" in out
     assert path.read_bytes() == notebook_of("day 5")
     assert says in verb(course, capsys, "grade", NAME)[1]
     assert path.read_bytes() == notebook_of("day 1")
     assert says not in verb(course, capsys, "grade", NAME)[1]
+    (course.root / "course.toml").write_text('counts = "latest in-time"\n' + RULES)
+    code, out, err = verb(course, capsys, "grade", NAME)
+    assert code == 2 and not out
+    assert 'course.toml: counts must be "latest" or "latest in time"; correct that line' in err
 
 
 def test_a_file_that_was_put_back_and_graded_by_nbgrader_is_as_late_as_it_was(course, capsys):

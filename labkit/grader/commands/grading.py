@@ -67,6 +67,7 @@ def grade(course: Course, assignment: str, student: str | None, as_json: bool, *
     from ..grading.results import Results
     from ..lock import exclusive_run
     from ..nbgrader.gradebook import record, recorded
+    from ..rules import read_rules
     from ..submission import misnamed
 
     diff, watching = how.pop("diff"), how.pop("watch")
@@ -81,7 +82,9 @@ def grade(course: Course, assignment: str, student: str | None, as_json: bool, *
         given = " and ".join(name for name, value in not_watched.items() if value)
         raise LabkitError(f"--watch grades whatever comes in; for {given} leave out --watch")
     with Failures(at_once=watching) as failures:
-        tell(_settled(course, assignment, student, change=not diff), said)
+        read_rules(course)  # an error in them stops before anything is graded
+        others = list(_settled(course, assignment, student, change=not diff))
+        tell(others, said)
         if watching:
             failures.add("not graded", misnamed(course, assignment))
             for one in failures.sift(watch(course, assignment, options), "not graded"):
@@ -94,6 +97,9 @@ def grade(course: Course, assignment: str, student: str | None, as_json: bool, *
             with exclusive_run(Results(course, assignment).folder):
                 found = changes(course, assignment, who, options)
                 tell(summary(list(failures.sift(found, "not graded"))), sys.stdout)
+            if others:
+                says = "not compared with the file that would count (see above)"
+                print(f"{how_many(len(others), 'student')} {says}")
             tell(_on_top(course, assignment), sys.stdout)
             return failures.code
         graded: list[Result] = []

@@ -115,7 +115,7 @@ def settle(course: Course, student: str, assignment: str, *, change: bool = True
             counted = lies
         if change:
             _record_put_back(course, student, assignment, path, lies.attempt)
-    return instead(lies, install(course, student, assignment) if change else counted)
+    return instead(lies, install(course, student, assignment) if change else counted, change)
 
 
 def date_put_back(course: Course, assignment: str, only: str | None = None) -> None:
@@ -132,11 +132,12 @@ def date_put_back(course: Course, assignment: str, only: str | None = None) -> N
                     settle(course, student, assignment)
 
 
-def instead(before: Counted | None, after: Counted | None) -> str:
-    """The sentence that another attempt counts than before; "" if none does."""
+def instead(before: Counted | None, after: Counted | None, change: bool = True) -> str:
+    """The sentence that another attempt counts than before, or would count; "" if none does."""
     if before is None or after is None or before.attempt.sha256 == after.attempt.sha256:
         return ""
-    return f"now {after} counts, instead of that of {before.came.when:%Y-%m-%d %H:%M %Z}"
+    says = f"now {after} counts" if change else f"{after} would count"
+    return f"{says}, instead of that of {before.came.when:%Y-%m-%d %H:%M %Z}"
 
 
 def install(course: Course, student: str, assignment: str) -> Counted | None:
