@@ -183,7 +183,7 @@ def _board(course: Course, final: bool, to: Path | None) -> int:
             print(f"run: {entry.handle}", flush=True)
         found = latest(course, final)
         tell(as_text(found), sys.stdout)
-        tell(tied(course, found), sys.stderr)
+        tell(tied(course), sys.stderr)
         if to is not None:
             write(page(course, found, final), to)
         if final:

@@ -106,7 +106,7 @@ def seeds(course: Course, final: bool) -> tuple[int, ...]:
 
 
 def play(course: Course, today: date, final: bool) -> Iterator[Entry | Failure]:
-    """Run each notebook that is not its student's last entry, at most `A_DAY` per handle and day.
+    """Run the last notebook of each handle, unless it was run last, at most `A_DAY` times a day.
 
     The final has no such limit.
 
@@ -117,11 +117,9 @@ def play(course: Course, today: date, final: bool) -> Iterator[Entry | Failure]:
         NoIsolation: No sandbox can be made here.
     """
     had = Counter(x.handle for x in entries(course) if x.day == str(today) and not x.final)
-    handles = Arms.of(course.root).handles
     limits = LIMITS.scaled(slowness())
-    for student in students(course, CUP):
+    for handle, (*_, student) in sorted(_entered(course).items()):
         data, _, why = Submission.of(course, CUP, student).read()
-        handle = handles.get(student, student)
         new = Entry(student, handle, digest(data), str(today), final, why=why)
         past = of_student(course, student)
         if [x.notebook for x in past if x.final is final][-1:] == [new.notebook]:
@@ -133,7 +131,6 @@ def play(course: Course, today: date, final: bool) -> Iterator[Entry | Failure]:
         step = partial(in_sandbox, run, course, ("labkit", "numpy"))
         done = new if why else for_student(student, step, (NoIsolation,))
         if not isinstance(done, Failure):
-            had[handle] += 1
             _keep(course, [*(replace(x, motion="") for x in past), done])
         yield done
 
@@ -162,37 +159,39 @@ def latest(course: Course, final: bool) -> list[Entry]:
 
     Of the entries of a team, the one whose notebook was handed in last.
     """
-    found = sorted(entries(course), key=partial(_handed_in, course))
+    found = sorted(entries(course), key=lambda x: _handed_in(course, x.student))
     last = {x.handle: x for x in found if x.final is final}
     return sorted(last.values(), key=lambda x: (x.score, x.handle))
 
 
-def tied(course: Course, found: Sequence[Entry]) -> Iterator[str]:
-    """A sentence for each entry of a team of which another notebook may be the later one.
+def tied(course: Course) -> Iterator[str]:
+    """A sentence for each team of which another notebook may be the later one."""
 
-    Args:
-        course: The course.
-        found: What `latest` returned.
-    """
-    mine = {x.student: x for x in entries(course)}
-    for one in found:
-        at = _handed_in(course, one)
-        others = [
-            x.student
-            for x in mine.values()
-            if (x.handle, _handed_in(course, x)) == (one.handle, at) and x.notebook != one.notebook
-        ]
-        if others:
+    def notebook(student: str) -> bytes:
+        return Submission.of(course, CUP, student).read()[0]
+
+    for handle, (*before, last) in sorted(_entered(course).items()):
+        at = _handed_in(course, last)
+        same = [x for x in before if _handed_in(course, x) == at]
+        if others := [x for x in same if notebook(x) != notebook(last)]:
             yield (
-                f"{one.handle}: the notebook of {one.student} counts, and {few(others)} handed in "
+                f"{handle}: the notebook of {last} counts, and {few(others)} handed in "
                 f"another at the same time, as far as the download says; for the exact times type: "
                 f"labkit students import WORKSHEET.csv --assignment {CUP}"
             )
 
 
-def _handed_in(course: Course, one: Entry) -> float:
-    """When the student's present notebook was handed in; without a file, before all others."""
-    folder = Submission.of(course, CUP, one.student).folder
+def _entered(course: Course) -> dict[str, list[str]]:
+    """The students who entered, by their handle, in the order in which they handed in."""
+    handles, found = Arms.of(course.root).handles, dict[str, list[str]]()
+    for student in sorted(students(course, CUP), key=partial(_handed_in, course)):
+        found.setdefault(handles.get(student, student), []).append(student)
+    return found
+
+
+def _handed_in(course: Course, student: str) -> float:
+    """When a student's present notebook was handed in; without a file, before all others."""
+    folder = Submission.of(course, CUP, student).folder
     if stated := read_time(read_stamp(folder)):
         return stated.timestamp()
     return max((path.stat().st_mtime for path in folder.glob("*.ipynb")), default=0.0)
