@@ -194,6 +194,7 @@ def collect(
     Exit code: 0 if everything was collected, 1 if a file was not collected or its owner is not
     certain (named at the end), 2 if nothing could be collected.
     """
+    from ..cup.entries import tied
     from ..peers.readers import sheet_of
     from ..rules import read_rules
     from ..students.collect import collect
@@ -224,6 +225,9 @@ def collect(
     finally:
         for taken in doubtful:
             print(taken, file=sys.stderr)
+    if assignment == CUP:
+        for says in tied(course):
+            print(says, file=sys.stderr)
     return 1 if doubtful else 0
 
 
