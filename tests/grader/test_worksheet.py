@@ -58,7 +58,7 @@ def test_the_worksheets_time_is_when_it_was_handed_in(bare, tmp_path, capsys):
     ("when", "says"),
     [
         ("Sonntag, 1. März 2026, 11:30", "which is not a time that labkit can read"),
-        (LATER, "the download that was collected is from 2026-03-01 12:00; collect a newer"),
+        (LATER, "the download that was collected is from 2026-03-01 12:00 UTC; collect a newer"),
         ("-", "says nothing; download the worksheet again"),
     ],
 )
@@ -69,6 +69,17 @@ def test_a_time_that_is_not_taken_is_named(bare, tmp_path, capsys, when, says):
     assert (code, handed_in(bare)) == (1, "") and "; 0 hand-in times set" in out
     assert err.startswith("Ada Lovelace (Ada-Lovelace): no hand-in time is set; the worksheet")
     assert says in err
+
+
+@pytest.mark.parametrize("options", [{"day": 2}, {"at": read_time("2026-03-01 18:00")}])
+def test_the_same_file_again_came_with_the_first_download(bare, tmp_path, capsys, options):
+    """Also where the newer download is known by --at alone; then nothing is left to be done."""
+    take(bare, tmp_path)
+    assert worksheet(bare, tmp_path, capsys, LATER)[0] == 1
+    take(bare, tmp_path, **options)
+    for _ in range(2):
+        code, _, err = worksheet(bare, tmp_path, capsys, LATER)
+        assert (code, err, handed_in(bare)) == (0, "", "01 12:00")
 
 
 def test_who_is_perhaps_late_is_named_until_the_time_is_known(bare, tmp_path, capsys):

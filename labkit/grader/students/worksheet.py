@@ -90,9 +90,12 @@ def _time(said: str, zone: ZoneInfo, chosen: Counted, all: Sequence[Attempt]) ->
         nothing = "nothing; download the worksheet again, and import it"
         return f"{said!r}, {unread}" if said else nothing
     if when > first:
+        if any(x.origin == "moodle" and x.when >= when for x in chosen.attempt.hand_ins):
+            return first  # the same file was handed in once more
         return (
-            f"{said!r}, and the download that was collected is from {_local(first, zone)}; "
-            "collect a newer download, then import the worksheet again"
+            f"{said!r}, and the download that was collected is from {_local(first, zone)}; collect "
+            "a newer download, or this one with --at and the time at which it was made; then "
+            "import the worksheet again"
         )
     if earlier and when <= earlier:
         return (
@@ -103,4 +106,4 @@ def _time(said: str, zone: ZoneInfo, chosen: Counted, all: Sequence[Attempt]) ->
 
 
 def _local(when: datetime, zone: ZoneInfo) -> str:
-    return f"{when.astimezone(zone):%Y-%m-%d %H:%M}"
+    return f"{when.astimezone(zone):%Y-%m-%d %H:%M %Z}"
