@@ -118,7 +118,7 @@ def test_a_mark_that_is_missing_is_an_empty_cell(marked, capsys, fault):
     record_users(marked, NAME, {"ada": LmsUser("moodle", "4711", "ada")})  # for Moodle's worksheet
     people = marked.root / "class.csv"
     people.write_text("Username,Name,Email address\nada,ada,ada@example.org\n")
-    assert main(["students", "import", str(people), "--course", str(marked.root)]) == 0
+    assert main(["students", "import", str(people), "--course", str(marked.root)]) == 1
     capsys.readouterr()
     whole = tables(marked, capsys)
     fault(marked)

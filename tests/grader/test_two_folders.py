@@ -7,6 +7,7 @@ from datetime import UTC, datetime
 import pytest
 from downloaded import NAME, bare_course, counting, from_moodle, kept
 
+from labkit.__main__ import main
 from labkit.grader.students.class_list import Student
 from labkit.grader.students.collect import collect
 from labkit.grader.students.enrol import import_list
@@ -52,7 +53,7 @@ def test_two_folders_of_one_student_are_named_and_collecting_again_keeps_both(
     assert lms_users(bare, NAME)["ada"].key == ("moodle", "42")
     assert counting(bare)["ada"] == expected
     assert kept(bare, "ada") == {"1", "2"}
-    (_, said), _ = import_list(bare, tmp_path / "list.csv")
+    _, (said,) = import_list(bare, tmp_path / "list.csv")
     assert said.startswith("work in folders that belong to nobody in the roster: Ada-Lovelace-42; ")
 
 
@@ -146,12 +147,14 @@ def test_two_students_who_have_each_others_work_get_it_by_collecting_again(bare,
     assert counting(bare) == {"li1": "6", "li2": "5"}
 
 
-def test_a_folder_of_nobody_in_the_roster_is_named(bare, tmp_path):
-    """At import, and not by `term forget` of somebody with another name."""
+def test_a_folder_of_nobody_in_the_roster_is_named(bare, tmp_path, capsys):
+    """At import, with exit code 1, and not by `term forget` of somebody with another name."""
     people = [(("Ada Lovelace", 1), "x.ipynb", "1"), (("Ada King", 2), "x.ipynb", "2")]
     take(bare, from_moodle(tmp_path / "1.zip", people))
     (tmp_path / "list.csv").write_text("name,login\nAda Lovelace,ada\n")
-    (_, said), _ = import_list(bare, tmp_path / "list.csv")
+    words = ["students", "import", str(tmp_path / "list.csv"), "--course", str(bare.root)]
+    assert main(words) == 1
+    said = capsys.readouterr().err
     assert said.startswith("work in folders that belong to nobody in the roster: Ada-King-2; where")
     assert "perhaps theirs too" not in " ".join(left_by_hand(bare, "ada"))
 
@@ -164,11 +167,9 @@ def test_a_folder_is_named_though_a_sentence_has_its_name(bare, tmp_path):
     worksheet = tmp_path / "worksheet.csv"
     heads = "Identifier,Full name,Username,Last modified (submission)"
     worksheet.write_text(f"{heads}\nParticipant 42,Ada Lovelace,ada,01/03/2026 10:00\n")
-    said, (left,) = import_list(bare, worksheet, NAME)
-    assert "01/03/2026" in left
-    assert any(
-        x.startswith("work in folders that belong to nobody in the roster: 03;") for x in said
-    )
+    _, (time, folder) = import_list(bare, worksheet, NAME)
+    assert "01/03/2026" in time
+    assert folder.startswith("work in folders that belong to nobody in the roster: 03;")
 
 
 def test_without_a_list_forget_names_who_is_called_alike(bare, tmp_path):

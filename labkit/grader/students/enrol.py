@@ -137,7 +137,7 @@ def import_list(
     named = {one.student for one in left}
     others = [x for x in unlisted(course, done.roster) if x not in named]
     if others:
-        summary.append(
+        not_taken.append(
             f"work in folders that belong to nobody in the roster: {', '.join(others)}; where it "
             "is a listed student's, copy the notebook that is to count to "
             "submitted/STUDENT/ASSIGNMENT/ASSIGNMENT.ipynb"
