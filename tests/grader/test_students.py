@@ -306,7 +306,7 @@ def test_the_import_says_what_groups_become(tmp_path):
 
 @pytest.mark.slow
 def test_the_command_imports_a_list_and_formgrader_shows_names(tmp_path, capsys):
-    """New ones are counted, namesakes are named, and the gradebook has what the list says."""
+    """New ones are counted, namesakes named, and of a class list also those whom it lacks."""
     course = bare_course(tmp_path / "course")
     file = tmp_path / "list.csv"
     where = ["--course", str(course.root)]
@@ -329,6 +329,9 @@ def test_the_command_imports_a_list_and_formgrader_shows_names(tmp_path, capsys)
     assert main(["students", "import", str(file), "--assignment", NAME, *where]) == 0
     said = capsys.readouterr().out
     assert "0 of them new" in said and "01_paths: 1 participant; " in said
+    assert "not in this list" not in said, "a worksheet may be that of a group"
+    assert main(["students", "import", str(file), *where]) == 0
+    said = capsys.readouterr().out
     assert "not in this list, and still in the roster: 3 (Zoë O'Brien (Zoë-OBrien), " in said
     file.write_text(CANVAS)
     assert main(["students", "import", str(file), "--assignment", NAME, *where]) == 2

@@ -128,7 +128,7 @@ def import_list(
             left += keep_numbers(course, assignment, done.rows)
             times, not_taken = keep_times(course, assignment, done.rows)
     listed = {student.id for _, student in done.rows}
-    absent = [str(student) for student in before.students if student.id not in listed]
+    absent = [str(one) for one in before.students if not (assignment or one.id in listed)]
     everybody = how_many(len(done.roster.students), "student")
     summary = [f"{FILE}: {everybody}, {len(done.new)} of them new"]
     if absent:
