@@ -19,6 +19,7 @@ from labkit.__main__ import main
 from labkit.course.authoring.bundle import Bundle
 from labkit.course.authoring.layout import Course
 from labkit.errors import LabkitError
+from labkit.grader.commands.grading import _on_top
 from labkit.grader.grading.plan import plan
 from labkit.grader.grading.results import Results
 from labkit.grader.marks.mark import MarkLine
@@ -132,6 +133,15 @@ def test_no_page_before_all_is_marked(written, capsys):
     assert "It is not marked yet." in page(written, "ada")
     code, _, err = verb(written, capsys, "export")
     assert code == 1 and f"no mark: ada: still to be marked: {WHY}, {REPORT}; mark by hand" in err
+
+
+def test_grading_says_for_how_many_a_person_still_has_to_mark(written):
+    """Until nobody waits; the points by hand are in none of the marks that it prints."""
+    says = "not included: 6 points by hand; still to be marked: "
+    assert list(_on_top(written, NAME)) == [f"{says}2 students"]
+    for student, name in [("ada", WHY), ("ada", REPORT), ("bob", REPORT)]:
+        give(written, student, name, 1.0)
+    assert list(_on_top(written, NAME)) == [f"{says}nobody"]
 
 
 def test_a_students_page_waits_for_their_own_marks_alone(written, capsys):

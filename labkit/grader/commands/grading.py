@@ -146,11 +146,16 @@ def _other_notebooks(results: Iterable[Result]) -> Iterator[Failure]:
 
 
 def _on_top(course: Course, assignment: str) -> Iterator[str]:
-    """The points that are not included in the printed marks."""
+    """The points that are not included in the printed marks, and how many still wait for them."""
     from ...course.authoring.bundle import Bundle
+    from ..nbgrader.gradebook import open_gradebook
 
     if by_hand := Bundle.of(course, assignment).by_hand:
-        yield f"not included: {how_many(by_hand, 'point')}, to be marked by hand"
+        with open_gradebook(course) as book:
+            found = book.assignment_submissions(assignment)
+            waiting = sum(x.needs_manual_grade for x in found)
+        left = how_many(waiting, "student") if waiting else "nobody"
+        yield f"not included: {how_many(by_hand, 'point')} by hand; still to be marked: {left}"
 
 
 def _line(one: GradedSubmission, as_json: bool, number: str = "") -> str:
