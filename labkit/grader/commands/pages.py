@@ -49,9 +49,9 @@ def feedback(
 ) -> int:
     """Write a feedback page for each student.
 
-    Some answers are marked by hand, in formgrader. No page is written until they are all marked,
-    with --student those of this student; --unmarked writes the pages before. What readers said of
-    a report is on its authors' page.
+    Some answers are marked by hand, in formgrader. No page is written until they are all marked;
+    the page of one --student waits for the answers of that student alone. With --unmarked no page
+    waits. What readers said of a report is on its authors' page.
     """
     from ..feedback.page import moodle_zip, write_feedback
     from ..marks.table import marks_of
