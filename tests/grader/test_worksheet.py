@@ -94,6 +94,23 @@ def test_who_is_perhaps_late_is_named_until_the_time_is_known(bare, tmp_path, ca
     assert (handed_in(bare), perhaps_late(bare, "Ada-Lovelace", NAME)) == ("04 11:30", "")
 
 
+def test_who_came_late_is_named_and_so_is_feedback_that_does_not_say_so(bare, tmp_path, capsys):
+    """With how late, the deadline and the deduction; once, when the time becomes known."""
+    rules = "[late]\npercent_per_day = 10\ngrace_minutes = 15\n"
+    due = f"[assignments.{NAME}]\ndue = 2026-03-02T12:00:00\n"
+    (bare.root / "course.toml").write_text(f'zone = "Europe/Berlin"\n{rules}{due}')
+    take(bare, tmp_path, day=5)
+    page = bare.root / "feedback" / "Ada-Lovelace" / NAME / f"{NAME}.html"
+    page.parent.mkdir(parents=True)
+    page.touch()
+    code, out, err = worksheet(bare, tmp_path, capsys, "Tuesday, 3 March 2026, 1:30 PM")
+    late = "late: Ada Lovelace (Ada-Lovelace), 1 day 1 hour after the due date 2026-03-02 12:00 CET"
+    assert f"1 hand-in time set\n{late}; 20 % of the points earned are deducted\n" in out
+    says = "the feedback of 1 does not say yet that they were late: Ada Lovelace (Ada-Lovelace); "
+    assert (code, err) == (1, f"{says}type: labkit feedback {NAME}\n")
+    assert worksheet(bare, tmp_path, capsys, "Tuesday, 3 March 2026, 1:30 PM")[0] == 0
+
+
 def test_a_time_that_changes_which_file_counts_is_named(bare, tmp_path, capsys):
     """A download after the due date shows a second file, and the worksheet says it was in time."""
     due = f"[assignments.{NAME}]\ndue = 2026-03-02T12:00:00Z\n"

@@ -15,7 +15,7 @@ from typing import Any
 from ...course.authoring.bundle import Bundle
 from ...course.authoring.layout import DEFENCE, Course
 from ...course.notebook import question_of
-from ..clean import clean_line, clean_text, how_many
+from ..clean import clean_line, clean_text, span
 from ..each import Failure
 from ..grading.current_results import current_results, full_marks, how_to_grade
 from ..grading.results import Result
@@ -156,7 +156,7 @@ def _marked(row: Mark, submission: Any, one: Result | Failure | None, assignment
     missing = row.missing or _differs(assignment, row, lines)
     if missing:
         return replace(row, missing=missing)
-    row = replace(row, lines=lines, late=_span(submission.total_seconds_late))
+    row = replace(row, lines=lines, late=span(submission.total_seconds_late))
     if none := [line.name for line in lines if line.score is None]:
         how = "mark by hand, in formgrader"
         if assignment == DEFENCE:
@@ -200,17 +200,6 @@ def _differs(assignment: str, row: Mark, lines: tuple[MarkLine, ...]) -> str:
                 f"{_said(line.automatic)}; {how_to_grade(assignment, row.student)}"
             )
     return ""
-
-
-def _span(seconds: float) -> str:
-    """A duration in words; empty if it is not positive."""
-    if seconds <= 0:
-        return ""
-    days, rest = divmod(int(seconds), 86400)
-    hours, minutes = rest // 3600, rest % 3600 // 60
-    found = [(days, "day"), (hours, "hour")] if days else [(hours, "hour"), (minutes, "minute")]
-    said = [how_many(n, what) for n, what in found if n]
-    return " ".join(said) or "less than a minute"
 
 
 def _said(score: float | None) -> str:

@@ -123,7 +123,7 @@ def import_list(
         tell_gradebook(course, done.roster)
         give_arms(course, done.roster, seed_of(course))
         left = move_to_owners(course, done.roster)
-        times, not_taken = 0, list[str]()
+        times, not_taken = list[str](), list[str]()
         if assignment:
             left += keep_numbers(course, assignment, done.rows)
             times, not_taken = keep_times(course, assignment, done.rows)
@@ -132,11 +132,9 @@ def import_list(
     everybody = how_many(len(done.roster.students), "student")
     summary = [f"{FILE}: {everybody}, {len(done.new)} of them new"]
     if absent:
-        still = f"{len(absent)} ({few(absent)})"
-        summary.append(f"not in this list, and still in the roster: {still}")
+        summary.append(f"not in this list, and still in the roster: {len(absent)} ({few(absent)})")
     named = {one.student for one in left}
-    others = [x for x in unlisted(course, done.roster) if x not in named]
-    if others:
+    if others := [x for x in unlisted(course, done.roster) if x not in named]:
         not_taken.append(
             f"work in folders that belong to nobody in the roster: {', '.join(others)}; where it "
             "is a listed student's, copy the notebook that is to count to "
@@ -148,8 +146,8 @@ def import_list(
         )
     summary += about_teams(who for entry in entries if (who := entry.student.team))
     if assignment:
-        set_now = f"{how_many(times, 'hand-in time')} set"
-        summary.append(f"{assignment}: {how_many(numbered, 'participant')}; {set_now}")
+        summary.append(f"{assignment}: {how_many(numbered, 'participant')}; {times[0]}")
+        summary += times[1:]
     elif numbered:
         summary.append(
             "the participants' numbers are those of one assignment; --assignment NAME keeps them"

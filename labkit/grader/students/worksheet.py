@@ -4,13 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
 from dataclasses import replace
-from datetime import datetime
+from datetime import datetime, timedelta
 from zoneinfo import ZoneInfo
 
 from ...course.authoring.layout import Course
-from ..clean import few
+from ..clean import few, how_many, span
 from ..each import Failure
-from ..rules import read_rules
+from ..rules import Rules, read_rules
 from ..timestamp import read_time
 from .attempts import Attempt, Counted, attempts, choose, counted_attempt, store
 from .class_list import Entry, Student
@@ -38,16 +38,16 @@ def keep_numbers(
 
 def keep_times(
     course: Course, assignment: str, rows: Sequence[tuple[Entry, Student]]
-) -> tuple[int, list[str]]:
+) -> tuple[list[str], list[str]]:
     """Record when each counted attempt was handed in, as Moodle's worksheet says.
 
     Returns:
-        How many times were recorded; and a sentence for each that was not, or changes what counts.
+        How many times were recorded, and a sentence for each student who is late by one of them;
+        and sentences on times that were not recorded, or that change what counts or was returned.
     """
-    zone = ZoneInfo(read_rules(course).zone)
-    taken = 0
-    left: list[str] = []
-    waiting: list[str] = []
+    rules = read_rules(course)
+    zone, taken = ZoneInfo(rules.zone), 0
+    late, left, waiting, returned = (list[str]() for _ in range(4))
     for entry, student in rows:
         all = attempts(course, student.id, assignment)
         chosen, said = choose(all, assignment), entry.handed_in.strip(" -")
@@ -64,20 +64,43 @@ def keep_times(
             before = counted_attempt(course, student.id, assignment)
             data = chosen.attempt.file.read_bytes()
             store(course, student.id, assignment, data, replace(first, when=when, exact=True))
-            if says := instead(before, install(course, student.id, assignment)):
+            after = install(course, student.id, assignment)
+            if says := instead(before, after):
                 left.append(f"{student}: {says}; to grade it, type: labkit grade {assignment}")
+            if after and (says := _late(rules, assignment, student, after.came.when)):
+                late.append(says)
+                page = course.root / "feedback" / student.id / assignment / f"{assignment}.html"
+                returned += [str(student)] * page.exists()
             taken += 1
     if left and not any(entry.handed_in for entry, _ in rows):
         left = [
             "no hand-in time is set; the worksheet has none, or its column is not called 'Last "
             "modified (submission)'; download it in English"
         ]
+    if returned:
+        left.append(
+            f"the feedback of {len(returned)} does not say yet that they were late: "
+            f"{few(returned)}; type: labkit feedback {assignment}"
+        )
     if waiting:
         left.append(
             f"{len(waiting)} handed in, and nothing of theirs was collected yet: {few(waiting)}; "
             "collect the download, then import the worksheet again"
         )
-    return taken, left
+    return [f"{how_many(taken, 'hand-in time')} set", *late], left
+
+
+def _late(rules: Rules, assignment: str, student: Student, when: datetime) -> str:
+    """The sentence that a student was late, and what is deducted; "" if in time."""
+    due = rules.due_for(student.id, assignment)
+    if due is None or when <= due:
+        return ""
+    due -= timedelta(minutes=rules.late.grace_minutes)
+    seconds = (when - due).total_seconds()
+    share = rules.late.penalty(100.0, seconds)
+    costs = f"; {share:g} % of the points earned are deducted" if share else ""
+    said = _local(due, ZoneInfo(rules.zone))
+    return f"late: {student}, {span(seconds)} after the due date {said}{costs}"
 
 
 def _time(said: str, zone: ZoneInfo, chosen: Counted, all: Sequence[Attempt]) -> datetime | str:
