@@ -226,8 +226,14 @@ def _failure(error: BaseException) -> _Failure:
     return _Failure(kind, sentence, log, cause.tool if isinstance(cause, Withheld) else "")
 
 
-_OUTCOMES = {"NotImplementedError": Outcome.NOT_ATTEMPTED, "ArgumentChanged": Outcome.WRONG}
+_OUTCOMES = {
+    "NotImplementedError": Outcome.NOT_ATTEMPTED,
+    "ArgumentChanged": Outcome.WRONG,
+    "NotComparable": Outcome.WRONG,
+}
 """Outcomes of the exceptions that do not count as errors."""
+_KINDS = {"ArgumentChanged": Kind.CHANGED, "NotComparable": Kind.REFUSED}
+"""Kinds of the differences that the student's code did not raise itself."""
 
 
 def _try_hidden(
@@ -275,7 +281,7 @@ def _outcome_of(answer: Any) -> Outcome:
 def _difference(question: Question, test: Test, case: Case, answer: Any) -> Difference | None:
     """How an answer differs from the expected one, or None."""
     if isinstance(answer, _Failure):
-        kind = Kind.CHANGED if answer.kind == "ArgumentChanged" else Kind.RAISED
+        kind = _KINDS.get(answer.kind, Kind.RAISED)
         return Difference(kind, found=answer.sentence, error=answer.kind)
     if answer is None and isinstance(case, Call | Choice):
         return Difference(Kind.NOTHING)
