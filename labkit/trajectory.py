@@ -10,7 +10,7 @@ from bisect import bisect_right
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 from functools import cached_property
-from itertools import accumulate
+from itertools import accumulate, pairwise
 from typing import Any, NamedTuple, Protocol, TypeVar
 
 import numpy as np
@@ -137,11 +137,18 @@ def _check_path(path: Any) -> None:
         )
 
 
+LARGEST_JUMP = 1e-4
+"""The largest jump of a number from one part of a `Chain` to the next, in [m] or [rad].
+
+Places that are typed with four decimals pass, and a real arm misses its target by more.
+"""
+
+
 class Chain:
     """Trajectories one after another.
 
-    Where two trajectories meet, the later one counts.  The chain is smooth in position and velocity
-    if each begins at rest, where the one before ends at rest; nothing checks this.
+    Each must begin where the one before ends.  Where two meet, the later one counts.  The chain is
+    also smooth in velocity if each begins and ends at rest; nothing checks this.
 
     Attributes:
         parts: The trajectories, in order; a chain among them is replaced by its own parts.
@@ -152,8 +159,8 @@ class Chain:
         """Join ``parts``, each with a `duration`, end to end.
 
         Raises:
-            OutOfRange: There are no parts.
-            TypeMismatch: A part has no duration.
+            OutOfRange: There are no parts, or one does not begin where the one before ends.
+            TypeMismatch: A part has no duration, or its samples are unlike those of the one before.
         """
         self.parts: tuple[Any, ...] = ()
         for part in parts:
@@ -162,12 +169,29 @@ class Chain:
             self.parts += part.parts if isinstance(part, Chain) else (part,)
         if not self.parts:
             raise OutOfRange("a Chain needs at least one trajectory")
+        for number, (before, after) in enumerate(pairwise(self.parts), 1):
+            _check_joint(number, before(before.duration), after(0.0))
         *self.starts, self.duration = accumulate((p.duration for p in self.parts), initial=0.0)
 
     def __call__(self, t: float) -> Any:
         """The motion at time ``t`` [s]."""
         i = max(0, bisect_right(self.starts, t) - 1)
         return self.parts[i](t - self.starts[i])
+
+
+def _check_joint(number: int, end: Any, start: Any) -> None:
+    """Refuse a part of a chain that does not begin where the one before it, `number`, ends."""
+    one_kind = isinstance(end, AnySample) and type(start) is type(end)
+    if not one_kind or np.shape(start[0]) != np.shape(end[0]):
+        raise TypeMismatch(
+            f"part {number + 1} of the Chain begins with {shown(start)}, and part {number} ends "
+            f"with {shown(end)}; return lk.Sample of one size from both, or lk.PoseSample"
+        )
+    if (jump := float(np.abs(start[0] - end[0]).max())) > LARGEST_JUMP:
+        raise OutOfRange(
+            f"part {number + 1} of the Chain begins {jump:.3g} from where part {number} ends, and "
+            f"at most {LARGEST_JUMP:g} is allowed; put a trajectory between the two"
+        )
 
 
 @dataclass(frozen=True, eq=False)

@@ -227,6 +227,21 @@ skewed = np.diag([1.0, 1.0, 1.1])
         (lambda: Hold(np.zeros((7, 1)), 1.0), ShapeError, "place has shape"),
         (lambda: Hold("here", 1.0), LabkitError, "place is 'here'"),
         (lambda: Chain([Line(A, B)]), LabkitError, "Line.*no duration"),
+        (
+            lambda: Chain([Hold(A, 1.0), Hold(A, 1.0), Hold([0.6, 0.2, 0.1 + 2e-4], 1.0)]),
+            OutOfRange,
+            "part 3 of the Chain begins 0.0002 from where part 2 ends, and at most 0.0001 is",
+        ),
+        (
+            lambda: Chain([Hold(A, 1.0), Hold([0.0] * 7, 1.0)]),
+            TypeMismatch,
+            "part 2 of the Chain begins with Sample.*, and part 1 ends with Sample",
+        ),
+        (
+            lambda: Chain([Hold(A, 1.0), Hold(se3.pose(np.eye(3), A), 1.0)]),
+            TypeMismatch,
+            "begins with PoseSample.* return lk.Sample of one size",
+        ),
         (lambda: Trajectory(Line(A, B), 2.0), LabkitError, "scaling is 2.0"),
         (lambda: Trajectory(A, Cubic(1.0)), LabkitError, "path is"),
         (lambda: Trajectory(Cubic(1.0), Line(A, B)), LabkitError, "path is Cubic.*a function of t"),

@@ -2,9 +2,12 @@
 
 from __future__ import annotations
 
+import builtins
 import linecache
 import re
 import sysconfig
+from collections.abc import Iterator
+from difflib import get_close_matches
 from pathlib import Path
 from types import TracebackType
 
@@ -28,19 +31,26 @@ def in_library(file: str) -> bool:
 def line_of(error: BaseException) -> str:
     """The last line of the traceback that is outside labkit and all libraries, or ""."""
     found = ""
-    step: TracebackType | None = error.__traceback__
-    while step is not None:
+    for step in _steps(error):
         file = step.tb_frame.f_code.co_filename
         if not in_library(file):
             line = linecache.getline(file, step.tb_lineno, step.tb_frame.f_globals).strip()
             found = line or found  # code that a dataclass generates has no source line
-        step = step.tb_next
     return found if len(found) <= 100 else f"{found[:97]}..."
+
+
+def _steps(error: BaseException) -> Iterator[TracebackType]:
+    step = error.__traceback__
+    while step is not None:
+        yield step
+        step = step.tb_next
 
 
 def remedy(error: BaseException) -> str:
     """What to do about an exception whose own message does not help a student, or ""."""
     text = str(error)
+    if isinstance(error, NameError):
+        return _similar(error)
     if isinstance(error, AttributeError) and isinstance(error.obj, State | Sample | PoseSample):
         return f"it has {', '.join(error.obj._fields)}"
     if isinstance(error, TypeError) and (kinds := re.search("'(State|Sample|PoseSample)'", text)):
@@ -55,6 +65,14 @@ def remedy(error: BaseException) -> str:
     if isinstance(error, TypeError) and "argument" in text and "()" in text:
         return "leave the parameter names in the function's first line as they were given"
     return next((todo for words, todo in _REMEDIES.items() if words in text), "")
+
+
+def _similar(error: NameError) -> str:
+    """The defined name that is most like an unknown one, as Python itself suggests it, or ""."""
+    frames = [step.tb_frame for step in _steps(error)][-1:]
+    names = [name for frame in frames for name in (*frame.f_locals, *frame.f_globals)]
+    near = get_close_matches(error.name or "", [*names, *vars(builtins)], 1)
+    return f"did you mean {near[0]}?" if near else ""
 
 
 def _unequal(shapes: list[str]) -> str:

@@ -70,7 +70,8 @@ class Identification:
         if isinstance(self.judge, Measured):
             near = f" It counts if it is off by at most {self.judge.tolerance:g} {self.judge.unit}."
         form = (
-            f"- Write {self.form}.{near} Type values, not a calculation: the cell is not run again."
+            f"- Write {self.form}.{near} Type values; do not calculate them from your runs, which "
+            "are not repeated when the notebook is marked."
         )
         hints = [where_hints_are(self.name)] if self.hints else []
         head = heading("Find out", self.name, self.points, self.core)

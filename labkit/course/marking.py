@@ -119,16 +119,17 @@ def mark(question: Question, function: Function, tried: PublicResult | None = No
     asked = all(call in tried.answers for call in question.calls)
     if outcome in (Outcome.WRONG, Outcome.ERROR) and asked:
         known = recognise(question, [tried.answers[call] for call in question.calls])
-    return Verdict(
+    verdict = Verdict(
         question.name,
         outcome,
-        _earned(question, outcome, results),
+        0.0,
         question.points,
         results,
         withheld=tuple(dict.fromkeys(result.tool for result in results if result.tool)),
         complete=question.complete,
         mistake=known and Misconception(known.name, known.says),
     )
+    return replace(verdict, earned=_earned(verdict))
 
 
 def all_alike(question: Question, outcome: Outcome, kind: Kind | None = None) -> Verdict:
@@ -226,8 +227,14 @@ def _failure(error: BaseException) -> _Failure:
     return _Failure(kind, sentence, log, cause.tool if isinstance(cause, Withheld) else "")
 
 
-_OUTCOMES = {"NotImplementedError": Outcome.NOT_ATTEMPTED, "ArgumentChanged": Outcome.WRONG}
+_OUTCOMES = {
+    "NotImplementedError": Outcome.NOT_ATTEMPTED,
+    "ArgumentChanged": Outcome.WRONG,
+    "NotComparable": Outcome.WRONG,
+}
 """Outcomes of the exceptions that do not count as errors."""
+_KINDS = {"ArgumentChanged": Kind.CHANGED, "NotComparable": Kind.REFUSED}
+"""Kinds of the differences that the student's code did not raise itself."""
 
 
 def _try_hidden(
@@ -275,7 +282,7 @@ def _outcome_of(answer: Any) -> Outcome:
 def _difference(question: Question, test: Test, case: Case, answer: Any) -> Difference | None:
     """How an answer differs from the expected one, or None."""
     if isinstance(answer, _Failure):
-        kind = Kind.CHANGED if answer.kind == "ArgumentChanged" else Kind.RAISED
+        kind = _KINDS.get(answer.kind, Kind.RAISED)
         return Difference(kind, found=answer.sentence, error=answer.kind)
     if answer is None and isinstance(case, Call | Choice):
         return Difference(Kind.NOTHING)
@@ -305,12 +312,10 @@ def _same(judge: Judge, answer: Any, known: Any) -> bool:
         return False
 
 
-def _earned(question: Question, outcome: Outcome, results: tuple[TestResult, ...]) -> float:
-    if outcome is Outcome.RIGHT:
-        return float(question.points)
-    failed = {r.outcome for r in results if not r.weight} - {Outcome.RIGHT, Outcome.NOT_TRIED}
-    if failed or outcome is Outcome.NOT_COUNTED:
+def _earned(verdict: Verdict) -> float:
+    if verdict.right:
+        return float(verdict.points)
+    failed = {test.outcome for test in verdict.tests if not test.weight}
+    if failed - {Outcome.RIGHT, Outcome.NOT_TRIED} or verdict.outcome is Outcome.NOT_COUNTED:
         return 0.0
-    whole = sum(r.weight for r in results)
-    share = sum(r.weight for r in results if r.outcome is Outcome.RIGHT) / whole
-    return round(question.points * share, 2)
+    return verdict.worth(test for test in verdict.tests if test.outcome is Outcome.RIGHT)

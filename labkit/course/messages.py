@@ -142,7 +142,7 @@ def message(
             helps.append(f"You may use {it} elsewhere in the notebook; here, write {it} yourself.")
         case _:
             helps += _helps(verdict)
-            tests = [test_name(test) for test in verdict.tests]
+            tests = [test_name(test, verdict) for test in verdict.tests]
             numbers = _numbers(question, verdict)
     return Message(head(verdict), helps, tests, numbers, _printed(printed), hint)
 
@@ -152,7 +152,7 @@ def summary(verdict: Verdict) -> list[str]:
     lines = [head(verdict)]
     if verdict.outcome in (Outcome.WRONG, Outcome.ERROR):
         lines += [f"  {mistake(verdict.mistake)}"] if verdict.mistake else []
-        lines += [f"  {test_line(test)}" for test in verdict.tests]
+        lines += [f"  {test_line(test, verdict)}" for test in verdict.tests]
     return lines
 
 
@@ -204,15 +204,15 @@ def wrapped(line: str) -> str:
     return textwrap.fill(line, WIDTH, subsequent_indent=f"{margin}  ", break_long_words=False)
 
 
-def test_line(test: TestResult) -> str:
+def test_line(test: TestResult, verdict: Verdict) -> str:
     """A test in one line, which says whether it passed, and if it failed, on which case and why."""
     says = "" if test.outcome in _SHORT else why(test)
-    return f"{test_name(test)}{says and f': {says}'}"
+    return f"{test_name(test, verdict)}{says and f': {says}'}"
 
 
-def test_name(test: TestResult) -> str:
-    """The name of a test, after its status in brackets, and whether it is a gate."""
-    return f"[{test_status(test)}] {test.name}{gate_note(test)}"
+def test_name(test: TestResult, verdict: Verdict) -> str:
+    """The name of a test, after its status in brackets, and what it is worth."""
+    return f"[{test_status(test)}] {test.name}{worth(test, verdict)}"
 
 
 def test_status(test: TestResult) -> str:
@@ -220,9 +220,11 @@ def test_status(test: TestResult) -> str:
     return _SHORT.get(test.outcome, "failed")
 
 
-def gate_note(test: TestResult) -> str:
-    """A remark if the test is a gate, without which nothing counts; else ""."""
-    return "" if test.weight else " (needed before anything counts)"
+def worth(test: TestResult, verdict: Verdict) -> str:
+    """The points that a test is worth, or a remark that nothing counts without it."""
+    if not test.weight:
+        return " (needed before anything counts)"
+    return f" (worth {verdict.worth([test]):g} of {in_points(verdict.points)})"
 
 
 def why(test: TestResult) -> str:

@@ -17,7 +17,7 @@ import numpy as np
 from ..errors import LabkitError, TypeMismatch
 from .advice import description
 from .calling import ArgumentChanged, call
-from .serialize import decode_answer, encode
+from .serialize import NotComparable, decode_answer, encode
 from .withheld import Withheld
 
 LONGEST = 400
@@ -93,6 +93,8 @@ def answer(data: Mapping[str, Any], withheld: Sequence[str]) -> Any:
     raised, says = str(data.get("raised", "Exception")), str(data.get("says", ""))
     if raised == ArgumentChanged.__name__:
         raise NoAnswer(raised, says)
+    if raised == NotComparable.__name__:
+        raise NoAnswer(raised, f"it returned a wrong kind of value: {says}")
     raise NoAnswer(raised, f"{raised}: {says}" if says else raised)
 
 

@@ -123,6 +123,10 @@ def read_record(kind: type[_Record], data: Any) -> _Record:
         raise LabkitError(str(error)) from None
 
 
+class NotComparable(TypeMismatch):
+    """A value, such as a student's answer, is of a kind that no question compares."""
+
+
 def encode(value: Any) -> Any:
     """A value as JSON data.
 
@@ -135,7 +139,7 @@ def encode(value: Any) -> Any:
         Data for `json.dumps`; numbers keep every bit.
 
     Raises:
-        TypeMismatch: The value is of another type.
+        NotComparable: The value is of another type.
     """
     if value is None or isinstance(value, bool | str):
         return value
@@ -147,7 +151,9 @@ def encode(value: Any) -> Any:
         return _number(float(value))
     if isinstance(value, np.ndarray):
         if value.dtype.kind not in "fiub":
-            raise TypeMismatch(f"an array of {value.dtype} cannot be compared; return real numbers")
+            raise NotComparable(
+                f"an array of {value.dtype} cannot be compared; return real numbers"
+            )
         numbers = [_number(x) for x in value.ravel().tolist()]
         return {"$": "array", "shape": list(value.shape), "numbers": numbers}
     name = type(value).__name__
@@ -159,7 +165,7 @@ def encode(value: Any) -> Any:
         return {"$": "tuple", "items": [encode(x) for x in value]}
     if isinstance(value, dict):
         if not all(isinstance(key, str) for key in value):
-            raise TypeMismatch("a dict must have text keys to be compared; convert them with str")
+            raise NotComparable("a dict must have text keys to be compared; convert them with str")
         return {"$": "dict", "items": {key: encode(x) for key, x in value.items()}}
     if isinstance(value, MethodType):
         return {"$": "method", "of": encode(value.__self__), "name": value.__name__}
@@ -168,7 +174,7 @@ def encode(value: Any) -> Any:
         return encode(Ratio(num, den))
     if isinstance(value, type) and value is _COMMANDS.get(value.__name__):
         return {"$": "command type", "name": value.__name__}
-    raise TypeMismatch(
+    raise NotComparable(
         f"a value of type {name} cannot be compared; give numbers, arrays, lists or "
         + ", ".join(kind.__name__ for kind in DATA)
     )

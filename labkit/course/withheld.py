@@ -200,12 +200,16 @@ def withheld_tools(cells: Iterable[Analysis], name: str, tools: Sequence[str]) -
         tools: Dotted names of the withheld tools, such as "labkit.Circle" or "pinocchio".
 
     Returns:
-        Those that are used, in the order given.
+        Those that are used, in the order given.  What is used counts as a part of one of them, the
+        one that its name begins with, if there is one.
     """
     if not tools:
         return ()
-    used = set(_uses(_last_definitions(cells), name))
-    return tuple(tool for tool in tools if any(_is_part(tool, other) for other in used))
+    found: set[str] = set()
+    for used in set(_uses(_last_definitions(cells), name)):
+        parts = [tool for tool in tools if _is_part(tool, used)]
+        found.update(sorted(parts, key=lambda tool: not _within(used, tool))[:1])
+    return tuple(tool for tool in tools if tool in found)
 
 
 def _last_definitions(cells: Iterable[Analysis]) -> dict[str, Mapping[str, Any]]:

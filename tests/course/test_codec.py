@@ -83,11 +83,12 @@ def parts(value):
 def test_trajectories_say_the_same_afterwards():
     """Paths, scalings and chains of them are rebuilt and move alike."""
     line = lk.Trajectory(lk.Line([0.6, 0.1, 0.2], [0.7, 0.0, 0.3]), lk.Quintic(2.0))
+    there = lk.Hold([0.7, 0.0, 0.3], 2.0)
     ring = lk.Trajectory(lk.PosePath(lk.Circle([0.8, 0, 0], [0.6, 0, 0]), np.eye(3)), lk.Cubic(3.0))
     bent = lk.Trajectory(
         lk.paths.Spline(np.linspace(0, 1, 9), np.outer(np.arange(9), Q)), lk.Cubic(1.0)
     )
-    for target in (line, ring, bent, lk.Chain([line, line]), lk.Hold(Q, 1.0)):
+    for target in (line, ring, bent, lk.Chain([line, there]), lk.Hold(Q, 1.0)):
         again = there_and_back(target)
         for t in (0.0, 0.7, 1.9, 5.0):
             for a, b in zip(target(t), again(t), strict=True):

@@ -24,6 +24,7 @@ from labkit.course import (
 from labkit.course.authoring.layout import Course
 from labkit.course.bugs import CAUSES, MOVES, Bug, tells_apart
 from labkit.course.differences import sentence
+from labkit.course.gaps import calculated_from_runs
 from labkit.course.identification import personalised
 from labkit.course.messages import message
 from labkit.course.own_arm import APART, DEMO, FILE, RANGES, Arms, draw
@@ -200,6 +201,13 @@ def test_how_near_a_measured_number_has_to_be_is_said_above_its_cell():
         "m", "?", Measured("payload", "kg", 0.0, 3.0, 0.01), 0.3, "a number", 3.0
     )
     assert "It counts if it is off by at most 0.01 kg." in asked.brief()
+
+
+def test_only_a_calculation_from_runs_is_warned_of_above_the_cell():
+    """A fraction such as 1/33 counts, because the cell is run when it is marked; runs are not."""
+    asked = Identification("m", "?", Measured("lag", "s", 0.0, 0.5, 0.01), 0.3, "a number", 3.0)
+    assert "do not calculate them from your runs, which are not repeated" in asked.brief()
+    assert not calculated_from_runs(["m = 1 / 33"], "m")
 
 
 def test_a_measurement_of_the_public_arm_is_right_or_wrong_at_once(monkeypatch):

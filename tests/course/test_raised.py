@@ -16,12 +16,18 @@ def writes():
     FIXED[0] = 1.0
 
 
+def misspells(angles=None):
+    return anglesx  # noqa: F821
+
+
 @pytest.mark.parametrize(
     ("does", "remedy"),
     [
         (lambda: STATE.position, "it has t, q, dq, tau_ext"),
         (lambda: STATE - STATE, "did you mean state.q?"),
         (lambda: SAMPLE - np.zeros(7), "did you mean target.position?"),
+        (lambda: SAMPL.position, "did you mean SAMPLE?"),  # noqa: F821
+        (misspells, "did you mean angles?"),
         (writes, "make a new array"),
         (
             lambda: np.eye(4) @ np.zeros(3),

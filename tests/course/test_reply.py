@@ -211,10 +211,19 @@ def test_no_exception_is_too_odd(error):
 
 
 def test_an_answer_is_judged_as_the_data_that_a_grader_gets():
-    """What cannot travel is an error here too; what can is judged as it arrives."""
-    assert reply(lambda: lambda s: 1 / s, (), {})["raised"] == "TypeMismatch"
+    """What cannot travel is refused here too; what can is judged as it arrives."""
+    assert reply(lambda: lambda s: 1 / s, (), {})["raised"] == "NotComparable"
     given = answer(json.loads(json.dumps(reply(lambda: [np.float64(2), (1, None)], (), {}))), ())
     assert given == [2.0, (1, None)]
+
+
+@pytest.mark.parametrize("made", [lambda x: 2j * x, lambda x: np.array([2j * x])])
+def test_a_value_of_a_wrong_kind_is_returned_and_not_raised(made):
+    """An answer in complex numbers is wrong, and its sentence does not speak of an exception."""
+    verdict = mark(DOUBLE, LocalFunction(made, ()))
+    words = str(message(DOUBLE, verdict))
+    assert verdict.outcome is Outcome.WRONG and words.startswith("double: not yet right.")
+    assert "It returned a wrong kind of value: a" in words and "raised" not in words
 
 
 def test_only_a_tool_of_the_question_is_withheld():

@@ -60,6 +60,21 @@ def test_tools_are_found(cells, tools):
 
 
 @pytest.mark.parametrize(
+    ("name", "tool"),
+    [
+        ("labkit.detect_tags", "labkit.detect_tags"),
+        ("labkit.tags.detection.detect_tags", "labkit.tags.detection"),
+        ("labkit.tags.detection.tag_pose", "labkit.tags.detection"),
+        ("labkit.tags.detect_tags", "labkit.tags.detection"),
+    ],
+)
+def test_a_tool_in_two_withheld_ones_is_found_once(name, tool):
+    """A function that is withheld by its own name and with its module is not named twice."""
+    cells = map(analyse, ("import labkit.tags.detection", f"def f(x): return {name}(x)"))
+    assert withheld_tools(cells, "f", ("labkit.tags.detection", "labkit.detect_tags")) == (tool,)
+
+
+@pytest.mark.parametrize(
     "cells",
     [
         ["def f(s):\n    gravity = 9.81  # no Circle here\n    return 'labkit.Circle', gravity"],

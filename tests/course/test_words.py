@@ -8,7 +8,8 @@ from questions import CALLS, DOUBLE, HIDDEN, double, square
 
 from labkit.course import Call, Close, Test
 from labkit.course.marking import mark, not_counted
-from labkit.course.messages import head, message, summary
+from labkit.course.messages import head, message, summary, worth
+from labkit.course.question import in_points
 
 COMPLETE = replace(DOUBLE, tests=(*DOUBLE.tests[:2], Test("negative", CALLS[2:])))
 """The same question without anything to be tried later."""
@@ -62,12 +63,22 @@ def test_wrong_shows_the_call_and_both_numbers():
         "double: not yet right. 3 of 4 points.",
         "  It is 3 instead of -2, in `double(-1.0)`.",
         "  [passed] two (needed before anything counts)",
-        "  [passed] three",
-        "  [failed] negative",
+        "  [passed] three (worth 3 of 4 points)",
+        "  [failed] negative (worth 1 of 4 points)",
         "  Where it fails:",
         "    double(-1.0): expected -2, got 3",
         '  Stuck? Run `hint("double", 1)` in a new cell (press Esc, then B). It is free.',
     ]
+
+
+@pytest.mark.parametrize("points", [4.0, 5.0, 1.0])
+def test_a_test_is_worth_what_it_earns_alone(points):
+    """The points beside a test are those that it earns if it is the only one that passes."""
+    question = replace(COMPLETE, points=points)
+    for function, passes in ((lambda x: abs(2.0 * x), 1), (lambda x: 2.0 * x + (x == 3.0), 2)):
+        verdict = mark(question, function)
+        note = f"(worth {verdict.earned:g} of {in_points(points)})"
+        assert worth(verdict.tests[passes], verdict) == f" {note}"
 
 
 def test_a_known_mistake_is_named_first():
@@ -150,7 +161,10 @@ def test_a_test_that_nobody_can_see_is_told():
     assert "Not tried here, although it earns points: elsewhere." in said(double, question)
     assert "Not tried here" not in said(double)
     for wrong in (square, lambda x: None, lambda x: 1 / 0):
-        assert "  [not tried here] elsewhere" in said(wrong, question).splitlines()
+        assert (
+            "  [not tried here] elsewhere (worth 0.8 of 4 points)"
+            in said(wrong, question).splitlines()
+        )
     assert "double: right on all cases here" in said(double, question)
 
 

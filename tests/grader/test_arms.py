@@ -62,11 +62,14 @@ def test_the_grader_asks_for_ones_own_number(course):
 
 
 def test_an_explanation_asks_for_ones_own_number(course):
-    """What is right of a student's own arm is right when it is explained, and else it is not."""
+    """What is right of a student's own arm is right when it is explained, and else it is not.
+
+    The number may be a fraction, because its cell is run when it is marked.
+    """
     work = json.loads((course.release / NAME / f"{NAME}.ipynb").read_text())
     payload = {who: Arms.of(course.root).arm(who).payload for who in ("ada", "eve")}
     for student, number in (("eve", payload["eve"]), ("ada", payload["ada"] - 0.2)):
-        hand_in(course, NAME, student, put(work, "my_payload", f"my_payload = {number!r}"))
+        hand_in(course, NAME, student, put(work, "my_payload", f"my_payload = {2 * number!r} / 2"))
     assert main(["grade", NAME, "--course", str(course.root)]) == 0
     right, wrong = (explain(course, student, "my_payload") for student in ("eve", "ada"))
     assert "my_payload: right" in right and "my_payload: right" not in wrong

@@ -118,7 +118,7 @@ def _by_the_grader(
         if not changed or (as_before and changed == "labkit"):
             yield "\nThe hidden case that decided; do not show it before the term ends:"
             yield from (
-                wrapped(f"  {test_line(test)}") for test in now.tests if test.name in hidden
+                wrapped(f"  {test_line(test, now)}") for test in now.tests if test.name in hidden
             )
     elif shown.outcome is Outcome.NOT_COUNTED:
         pass  # a withheld tool decided the mark
