@@ -72,14 +72,20 @@ def test_a_time_that_is_not_taken_is_named(bare, tmp_path, capsys, when, says):
 
 
 @pytest.mark.parametrize("options", [{"day": 2}, {"at": read_time("2026-03-01 18:00")}])
-def test_the_same_file_again_came_with_the_first_download(bare, tmp_path, capsys, options):
-    """Also where the newer download is known by --at alone; then nothing is left to be done."""
+def test_no_late_rule_is_applied_to_the_same_file_handed_in_again(bare, tmp_path, capsys, options):
+    """Only its second time is known; whom the first download does not show in time is named."""
     take(bare, tmp_path)
     assert worksheet(bare, tmp_path, capsys, LATER)[0] == 1
     take(bare, tmp_path, **options)
-    for _ in range(2):
-        code, _, err = worksheet(bare, tmp_path, capsys, LATER)
-        assert (code, err, handed_in(bare)) == (0, "", "01 12:00")
+    for due, says in [("12:00", False), ("11:59", True)]:
+        rules = f"[assignments.{NAME}]\ndue = 2026-03-01T{due}:00Z\n"
+        (bare.root / "course.toml").write_text(rules)
+        code, out, err = worksheet(bare, tmp_path, capsys, LATER)
+        assert (code, err, handed_in(bare)) == (0, "", "")
+        again = (
+            f"Ada Lovelace (Ada-Lovelace) handed in the same file again, at {LATER}; nobody knows"
+        )
+        assert (again in out) is says
 
 
 def test_who_is_perhaps_late_is_named_until_the_time_is_known(bare, tmp_path, capsys):

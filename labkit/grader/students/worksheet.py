@@ -12,7 +12,15 @@ from ..clean import few, how_many, span
 from ..each import Failure
 from ..rules import Rules, read_rules
 from ..timestamp import read_time
-from .attempts import Attempt, Counted, attempts, choose, counted_attempt, store
+from .attempts import (
+    Attempt,
+    Counted,
+    attempts,
+    choose,
+    counted_attempt,
+    perhaps_late,
+    store,
+)
 from .class_list import Entry, Student
 from .identity import lms_users, record_users
 from .installed import install, instead
@@ -42,8 +50,9 @@ def keep_times(
     """Record when each counted attempt was handed in, as Moodle's worksheet says.
 
     Returns:
-        How many times were recorded, and a sentence for each student who is late by one of them;
-        and sentences on times that were not recorded, or that change what counts or was returned.
+        How many times were recorded, and a sentence for each student who is late by one of them or
+        perhaps late; and sentences on times that were not recorded, or that change what counts or
+        was returned.
     """
     rules = read_rules(course)
     zone, taken = ZoneInfo(rules.zone), 0
@@ -58,7 +67,10 @@ def keep_times(
         if first.origin != "moodle" or (first.exact and not said):
             continue
         when = _time(said, zone, chosen, all)
-        if isinstance(when, str):
+        if when is None:
+            if doubt := perhaps_late(course, student.id, assignment):
+                late.append(f"{student} handed in the same file again, at {said}; {doubt}")
+        elif isinstance(when, str):
             left.append(f"{student}: no hand-in time is set; the worksheet says {when}")
         elif when != first.when or not first.exact:
             before = counted_attempt(course, student.id, assignment)
@@ -103,8 +115,13 @@ def _late(rules: Rules, assignment: str, student: Student, when: datetime) -> st
     return f"late: {student}, {span(seconds)} after the due date {said}{costs}"
 
 
-def _time(said: str, zone: ZoneInfo, chosen: Counted, all: Sequence[Attempt]) -> datetime | str:
-    """The time of the attempt that counts; or why the worksheet gives none, and what to do."""
+def _time(
+    said: str, zone: ZoneInfo, chosen: Counted, all: Sequence[Attempt]
+) -> datetime | str | None:
+    """The time of the attempt that counts; or why the worksheet gives none, and what to do.
+
+    None if the same file was handed in again: the worksheet knows only when that was.
+    """
     when, first = read_time(said, zone), chosen.first.when
     others = [x.when for one in all if one is not chosen.attempt for x in one.hand_ins]
     earlier = max((x for x in others if x < first), default=None)
@@ -114,7 +131,7 @@ def _time(said: str, zone: ZoneInfo, chosen: Counted, all: Sequence[Attempt]) ->
         return f"{said!r}, {unread}" if said else nothing
     if when > first:
         if any(x.origin == "moodle" and x.when >= when for x in chosen.attempt.hand_ins):
-            return first  # the same file was handed in once more
+            return None
         return (
             f"{said!r}, and the download that was collected is from {_local(first, zone)}; collect "
             "a newer download, or this one with --at and the time at which it was made; then "
