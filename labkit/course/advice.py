@@ -6,10 +6,9 @@ import builtins
 import linecache
 import re
 import sysconfig
-from collections.abc import Iterator
 from difflib import get_close_matches
 from pathlib import Path
-from types import TracebackType
+from traceback import walk_tb
 
 from ..control import State
 from ..trajectory import PoseSample, Sample
@@ -31,19 +30,12 @@ def in_library(file: str) -> bool:
 def line_of(error: BaseException) -> str:
     """The last line of the traceback that is outside labkit and all libraries, or ""."""
     found = ""
-    for step in _steps(error):
-        file = step.tb_frame.f_code.co_filename
+    for frame, number in walk_tb(error.__traceback__):
+        file = frame.f_code.co_filename
         if not in_library(file):
-            line = linecache.getline(file, step.tb_lineno, step.tb_frame.f_globals).strip()
+            line = linecache.getline(file, number, frame.f_globals).strip()
             found = line or found  # code that a dataclass generates has no source line
     return found if len(found) <= 100 else f"{found[:97]}..."
-
-
-def _steps(error: BaseException) -> Iterator[TracebackType]:
-    step = error.__traceback__
-    while step is not None:
-        yield step
-        step = step.tb_next
 
 
 def remedy(error: BaseException) -> str:
@@ -69,9 +61,10 @@ def remedy(error: BaseException) -> str:
 
 def _similar(error: NameError) -> str:
     """The defined name that is most like an unknown one, as Python itself suggests it, or ""."""
-    frames = [step.tb_frame for step in _steps(error)][-1:]
-    names = [name for frame in frames for name in (*frame.f_locals, *frame.f_globals)]
-    near = get_close_matches(error.name or "", [*names, *vars(builtins)], 1)
+    names = [*vars(builtins)]
+    for frame, _ in [*walk_tb(error.__traceback__)][-1:]:
+        names += [*frame.f_locals, *frame.f_globals]
+    near = get_close_matches(error.name or "", names, 1)
     return f"did you mean {near[0]}?" if near else ""
 
 

@@ -227,14 +227,8 @@ def _failure(error: BaseException) -> _Failure:
     return _Failure(kind, sentence, log, cause.tool if isinstance(cause, Withheld) else "")
 
 
-_OUTCOMES = {
-    "NotImplementedError": Outcome.NOT_ATTEMPTED,
-    "ArgumentChanged": Outcome.WRONG,
-    "NotComparable": Outcome.WRONG,
-}
-"""Outcomes of the exceptions that do not count as errors."""
-_KINDS = {"ArgumentChanged": Kind.CHANGED, "NotComparable": Kind.REFUSED}
-"""Kinds of the differences that the student's code did not raise itself."""
+_WRONG = {"ArgumentChanged": Kind.CHANGED, "NotComparable": Kind.REFUSED}
+"""Exceptions that labkit raises about an answer, which is then wrong; others are errors."""
 
 
 def _try_hidden(
@@ -274,15 +268,17 @@ def _try(
 
 def _outcome_of(answer: Any) -> Outcome:
     """The outcome of a test whose answer is not right."""
-    if not isinstance(answer, _Failure):
+    if not isinstance(answer, _Failure) or answer.kind in _WRONG:
         return Outcome.WRONG
-    return Outcome.NOT_COUNTED if answer.tool else _OUTCOMES.get(answer.kind, Outcome.ERROR)
+    if answer.kind == "NotImplementedError":
+        return Outcome.NOT_ATTEMPTED
+    return Outcome.NOT_COUNTED if answer.tool else Outcome.ERROR
 
 
 def _difference(question: Question, test: Test, case: Case, answer: Any) -> Difference | None:
     """How an answer differs from the expected one, or None."""
     if isinstance(answer, _Failure):
-        kind = _KINDS.get(answer.kind, Kind.RAISED)
+        kind = _WRONG.get(answer.kind, Kind.RAISED)
         return Difference(kind, found=answer.sentence, error=answer.kind)
     if answer is None and isinstance(case, Call | Choice):
         return Difference(Kind.NOTHING)

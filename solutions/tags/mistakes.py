@@ -102,6 +102,18 @@ def vector_as_euler_angles(pixels: Any, K: Any, size: float) -> Array:
     return T
 
 
+def vector_in_the_rows(T: Array) -> Array:
+    """The pose with the rotation vector, shape (3,), in the place of the rotation matrix."""
+    R = np.broadcast_to(se3.rotation_log(T[:3, :3]), (3, 3))
+    return np.block([[R, T[:3, 3:]], [T[3:]]])
+
+
+def vector_in_the_columns(T: Array) -> Array:
+    """The same of a rotation vector of shape (3, 1), as OpenCV returns it."""
+    R = vector_in_the_rows(T)[:3, :3].T
+    return np.block([[R, T[:3, 3:]], [T[3:]]])
+
+
 def the_worse_answer(pixels: Any, K: Any, size: float) -> Array:
     """The other of the two poses."""
     _, turns, places, errors = cv2.solvePnPGeneric(

@@ -164,6 +164,20 @@ TAG_POSE = Problem(
             "For three numbers that describe a rotation, always ask which three they are.",
         ),
         Wrong(
+            "a rotation vector in the rows of the matrix",
+            "numpy has copied the three numbers of the rotation vector into every row of the "
+            "rotation matrix, without an error. cv2.Rodrigues makes a matrix of the vector.",
+            mistakes.Seen(pose=mistakes.vector_in_the_rows),
+            "An array of another shape may be copied instead of refused: look at the matrix.",
+        ),
+        Wrong(
+            "a rotation vector in the columns of the matrix",
+            "numpy has copied the three numbers of the rotation vector into every column of the "
+            "rotation matrix, without an error. cv2.Rodrigues makes a matrix of the vector.",
+            mistakes.Seen(pose=mistakes.vector_in_the_columns),
+            "An array of another shape may be copied instead of refused: look at the matrix.",
+        ),
+        Wrong(
             "the candidate that fits worse",
             "A flat square looks nearly the same whether it is tilted in one direction or in the "
             "opposite one. Choose the candidate with the smaller error.",

@@ -7,6 +7,7 @@ from math import sqrt
 from pathlib import Path
 
 import control
+import cv2
 import numpy as np
 import pytest
 from scipy import stats
@@ -133,6 +134,19 @@ def total_least_squares(force, displacement):
     return (-V[:3, 3:] @ np.linalg.inv(V[3:, 3:])).T
 
 
+def vector_for_a_matrix(shape):
+    def tag_pose(pixels, K, size):
+        h, T_cm = size / 2, np.eye(4)
+        corners = np.array([[-h, h, 0], [h, h, 0], [h, -h, 0], [-h, -h, 0]])
+        how = cv2.SOLVEPNP_IPPE_SQUARE
+        _, turns, places, errors = cv2.solvePnPGeneric(corners, pixels, K, None, flags=how)
+        best = np.argmin(errors)
+        T_cm[:3, :3], T_cm[:3, 3] = turns[best].reshape(shape), places[best].ravel()
+        return T_cm
+
+    return tag_pose
+
+
 def three_coordinates(t, reference, goal, duration):
     whole = PROBLEMS["06 blend"].answer(t, reference, goal, duration)
     return lk.Sample(*np.vstack(whole)[:, :3])
@@ -220,6 +234,8 @@ REJECTED = [
         total_least_squares,
         "a fit with the noise in the displacement",
     ),
+    ("06 tag_pose", vector_for_a_matrix(3), "a rotation vector in the rows of the matrix"),
+    ("06 tag_pose", vector_for_a_matrix((3, 1)), "a rotation vector in the columns of the matrix"),
     ("06 blend", three_coordinates, "three coordinates, however many there are"),
     ("07 rms_error", rms_of_the_left_arm, "the left arm's model for every arm"),
     ("07 rms_error", norm_of_the_mean, "the length of the mean error"),

@@ -173,6 +173,16 @@ def test_lines_follow_the_theme_and_the_view_stays(chromium, visit):
     assert page.evaluate(f"{player}.stage.rig.azimuth") == azimuth
 
 
+def test_players_without_a_caption_are_told_apart_by_their_titles(chromium, visit):
+    """In a notebook each player begins with its title; a figure has a caption instead."""
+    page = visit(chromium, "motion")
+    page.wait_for_selector("[data-ready]")
+    title = page.locator(".lk-player > .lk-title")
+    assert not title.is_visible()
+    page.evaluate("document.querySelector('main').append(document.querySelector('.lk-player'))")
+    assert title.is_visible() and title.inner_text() == swing().title
+
+
 @pytest.mark.parametrize("reduced", ["no-preference", "reduce"])
 def test_play_waits_for_the_reader_and_honours_reduced_motion(chromium, visit, reduced):
     """Time is zero until Play; with reduced motion there are four pictures a second at most."""

@@ -78,6 +78,8 @@ html[data-theme="dark"] .cell_output .text_html:has(.lk-embed) { /* the theme ma
 .lk-hidden { position: absolute; width: 1px; height: 1px; margin: -1px; overflow: hidden; clip-path: inset(50%); white-space: nowrap; }
 .lk-plots { display: grid; grid-template-columns: repeat(auto-fit, minmax(min(100%, 21rem), 1fr)); gap: 0.3rem 1rem; padding: 0.3rem 0.75rem 0.6rem; }
 .lk-plotbox { min-width: 0; }
+.lk-title { margin: 0; padding: 0.3rem 0.75rem; font-weight: 600; color: var(--lk-text); }
+:is(.lk-embed, .lk-demo) .lk-title { display: none; } /* it has a caption or a heading */
 .lk-plottitle { margin: 0; font-size: 0.85rem; font-weight: 600; color: var(--lk-text); }
 .lk-plot { display: block; width: 100%; }
 .lk-plot.lk-scrub { cursor: col-resize; touch-action: pan-y; }

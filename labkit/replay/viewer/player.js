@@ -16,6 +16,7 @@ export class Player {
   constructor(host, json, robot) {
     Object.assign(this, { host, baxter: robot, speed: 1, playing: false, plots: [] });
     this.element = h("div", { class: "lk-player", role: "group" });
+    this.title = h("p", { class: "lk-title" });
     this.stagebox = h("div", { class: "lk-stage" });
     this.plotbox = h("div", { class: "lk-plots" });
     this.legend = h("ul", { class: "lk-legend", "aria-label": "What is drawn" });
@@ -25,7 +26,7 @@ export class Player {
     this.stage = this.picture.stage;
     this.times = 1; // the error is drawn this many times as large
     this.sight = sight(this.picture, { whole: !json.robot?.arm, magnify: (k) => { this.times = k; this.dress(); this.explain(); this.arrange(); } });
-    this.element.append(this.stagebox, this.timebar(), this.sight.element, this.legend, this.readout, this.status, this.plotbox);
+    this.element.append(this.title, this.stagebox, this.timebar(), this.sight.element, this.legend, this.readout, this.status, this.plotbox);
     host.append(this.element);
     if (this.stage.works) this.furnish();
     else this.stagebox.append(h("p", { class: "lk-note" }, "This browser cannot draw in 3-D (WebGL is missing), so the picture does not move. The plots and the numbers follow the time slider."));
@@ -68,6 +69,7 @@ export class Player {
     this.robot = motion.robot ?? this.baxter;
     if (this.stage.works) this.picture.embody(this.robot);
     this.tips = motion.q.map((q) => tip(this.robot, motion.side, q).p);
+    this.title.textContent = motion.title;
     this.element.setAttribute("aria-label", `Replay: ${motion.title}`);
     this.stage.canvas.setAttribute("aria-label", `${motion.title}. ${motion.alt} Arrow keys turn the view, plus and minus zoom, 1 to 5 choose a view.`);
     for (const input of [this.range, this.number]) Object.assign(input, { min: motion.start, max: motion.end });
