@@ -64,7 +64,7 @@ def _similar(error: NameError) -> str:
     names = [*vars(builtins)]
     for frame, _ in [*walk_tb(error.__traceback__)][-1:]:
         names += [*frame.f_locals, *frame.f_globals]
-    near = get_close_matches(error.name or "", names, 1)
+    near = get_close_matches(str(error.name or ""), names, 1)
     return f"did you mean {near[0]}?" if near else ""
 
 
