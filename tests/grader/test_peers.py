@@ -186,6 +186,22 @@ def test_reports_go_out_and_reviews_come_back_without_names(course, monkeypatch,
     assert read_by.total() == 5
 
 
+def test_who_is_forgotten_takes_no_extension_from_their_team(course, capsys):
+    """The new owner of the report needs it, or a penalty for late work lowers the team's mark."""
+    rules = course.root / "course.toml"
+    granted = f'[[extensions]]\nstudent = "ada"\nassignment = "{NAME}"\ndays = 5\n'
+    says = f"ada has an extension of 5 days for {NAME}; in course.toml, give it to bob too before"
+    rules.write_text(granted)
+    assert typed(course, "term", "forget", "--student", "ada") == 0
+    assert says in capsys.readouterr().out
+    assert typed(course, "term", "forget", "--student", "ada", "--yes") == 2
+    assert says in capsys.readouterr().err and (course.submitted / "ada" / NAME).exists()
+    rules.write_text(granted + granted.replace("ada", "bob"))
+    assert typed(course, "term", "forget", "--student", "ada") == 0
+    assert says not in capsys.readouterr().out
+    rules.unlink()
+
+
 def test_who_is_forgotten_takes_no_mark_from_their_team(course, capsys):
     """Bob has the mark of Ada's report; when she goes, report and mark become Bob's own."""
     with open_gradebook(course) as book:

@@ -65,6 +65,7 @@ def term(
         forget,
         left_by_hand,
         shared_reports,
+        shorter_extensions,
         unknown,
     )
     from ..terms.older import relocate
@@ -113,6 +114,7 @@ def term(
             place = (one.submitted / str(student) / name).relative_to(course.root)
             says = "moved" if yes else "would move"
             print(f"{says} to {mate}, with its mark, which is the team's: {place}")
+        tell(shorter_extensions(course, str(student), shared), sys.stdout)
         tell((f"{done}: {path.relative_to(course.root)}" for path in found), sys.stdout)
         tell((f"{changed} {path.relative_to(course.root)}" for path in entries), sys.stdout)
         tell(by_hand, sys.stdout)

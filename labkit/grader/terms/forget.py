@@ -5,8 +5,9 @@ from __future__ import annotations
 import glob
 import shlex
 import shutil
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import replace
+from datetime import timedelta
 from functools import partial
 from pathlib import Path
 
@@ -90,6 +91,26 @@ def shared_reports(course: Course, student: str) -> list[tuple[Course, str, str]
     return found
 
 
+def shorter_extensions(
+    course: Course, student: str, shared: Iterable[tuple[Course, str, str]]
+) -> list[str]:
+    """A sentence for each of `shared_reports` that would be late in its new owner's folder."""
+    said = []
+    for term, name, mate in shared:
+        file = term.root / RULES
+        try:
+            rules = rules_in(file)
+        except LabkitError:
+            continue  # `left_by_hand` names the file
+        if (longer := rules.longer(student, name)) > rules.longer(mate, name):
+            said.append(
+                f"{student} has an extension of {longer / timedelta(days=1):g} days for {name}; in "
+                f"{file.relative_to(course.root)}, give it to {mate} too before you add --yes, or "
+                "the team's mark may fall"
+            )
+    return said
+
+
 def forget(
     course: Course, found: Sequence[Path], entries: Sequence[Path] = (), student: str = ""
 ) -> None:
@@ -99,10 +120,13 @@ def forget(
 
     Raises:
         LabkitError: Another command holds the lock, a file about the whole class is damaged, or the
-            team's report cannot be moved.
+            team's report cannot be moved, or would be late.
     """
     with identity_lock(course):
-        for term, name, mate in shared_reports(course, student) if student else ():
+        shared = shared_reports(course, student) if student else []
+        if said := shorter_extensions(course, student, shared):
+            raise LabkitError("; ".join(said))
+        for term, name, mate in shared:
             if move_work(term, name, {student: mate}):
                 raise LabkitError(
                     f"{student} handed in {name} for {mate} too, who has other files in "
@@ -129,7 +153,7 @@ def left_by_hand(course: Course, student: str) -> Iterator[str]:
         else:
             if granted:
                 name = file.relative_to(course.root)
-                yield f"{name} names an extension of theirs; delete it there"
+                yield f"{name} names an extension of theirs; delete it there afterwards"
     for term in _terms(course):
         if alike := _perhaps_theirs(term, student):
             where = term.submitted.relative_to(course.root)
