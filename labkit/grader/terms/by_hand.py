@@ -7,6 +7,7 @@ from pathlib import Path
 from shlex import quote
 
 from ...course.authoring.layout import Course
+from ...course.own_arm import Arms
 from ...errors import LabkitError
 from ..pseudonyms import FILE as KEY
 from ..pseudonyms import pseudonym
@@ -17,6 +18,8 @@ from ..students.identity import all_lms_users
 from ..students.roster import Roster, read_roster, same_name
 from ..submission import did_you_mean, is_name
 from .forget import FOLDERS, all_terms, pages_of_mates
+
+_ZIP = "dist/baxter-lab.zip"
 
 
 def left_by_hand(course: Course, terms: Sequence[Course], student: str) -> Iterator[str]:
@@ -46,9 +49,11 @@ def left_by_hand(course: Course, terms: Sequence[Course], student: str) -> Itera
     sheets = [str(path.relative_to(course.root)) for path in _read_by_others(terms, student)]
     if sheets:
         yield f"the sheets of their readers still hold their report: {', '.join(sheets)}"
+    if any((x.root / _ZIP).exists() and student in Arms.of(x.root).handles for x in terms):
+        yield f"{_ZIP} may still hold their arm; make it again: labkit student-bundle"
     yield (
-        "copies elsewhere are yours to delete: downloads, exported tables and reports, backups, "
-        "the exchange, the platform itself"
+        "copies elsewhere are yours to delete: downloads, exported tables and reports, pages of "
+        "the Baxter Cup, the zip of feedback, backups, the exchange, the platform itself"
     )
 
 

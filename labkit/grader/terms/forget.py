@@ -17,6 +17,7 @@ from nbgrader.api import Gradebook
 
 from ...course.authoring.bundle import Bundle
 from ...course.authoring.layout import Course
+from ...course.own_arm import FILE as ARMS
 from ...course.own_arm import HANDLES, Arms
 from ...errors import LabkitError
 from ..atomic import write
@@ -24,6 +25,7 @@ from ..grading.results import Results
 from ..nbgrader.gradebook import quiet_database
 from ..rules import FILE as RULES
 from ..rules import rules_in
+from ..students.arms import sealed_text
 from ..students.enrol import marks, shared
 from ..students.identity import FILE as LMS
 from ..students.identity import all_lms_users, identity_lock, save_lms_users
@@ -206,6 +208,8 @@ def _entries(term: Course, student: str) -> Iterator[tuple[Path, Callable[[], ob
         handles = {who: handle for who, handle in arms.handles.items() if who != student}
         arms = replace(arms, handles=handles)
         yield term.root / HANDLES, partial(write, term.root / HANDLES, arms.text())
+        for file in sorted(term.release.glob(f"*/{ARMS}")):
+            yield file, partial(write, file, sealed_text(arms))
 
 
 def _in_gradebook(path: Path, student: str) -> bool:
