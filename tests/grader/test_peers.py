@@ -214,6 +214,8 @@ def test_who_is_forgotten_takes_no_mark_from_their_team(course, capsys):
     page = course.root / f"feedback/bob/{NAME}/{NAME}.html"
     assert typed(course, "feedback", NAME, "--unmarked") == 0
     assert "Handed in by ada" in page.read_text()
+    heard = page.read_text().partition('id="readers"')[2].partition("</section>")[0]
+    assert "<h3>Reader 1" in heard
     capsys.readouterr()
     for more, says in ([], "would move"), (["--yes"], "moved"):
         assert typed(course, "term", "forget", "--student", "ada", *more) == 0
@@ -221,9 +223,11 @@ def test_who_is_forgotten_takes_no_mark_from_their_team(course, capsys):
         assert f"{says} to bob, with its mark, which is the team's: submitted/ada/{NAME}\n" in said
         assert f": feedback/bob/{NAME}/{NAME}.html\n" in said
         assert f"write it again: labkit feedback {NAME} --student bob\n" in said
+        assert f"reviews that they wrote go too (submitted/ada/{sheet_of(NAME)}); pages of" in said
     assert not page.exists()
     assert typed(course, "feedback", NAME, "--unmarked", "--student", "bob") == 0
     assert "Handed in by" not in page.read_text()
+    assert heard in page.read_text(), "what the readers of the report say stays with it"
     marks = {mark.student: mark for mark in marks_of(course, NAME)}
     assert (marks["bob"].score, marks["bob"].author) == (before.score, "")
     assert marks["bob"].lines == before.lines and "ada" not in marks

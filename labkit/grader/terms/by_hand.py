@@ -49,6 +49,12 @@ def left_by_hand(course: Course, terms: Sequence[Course], student: str) -> Itera
     sheets = [str(path.relative_to(course.root)) for path in _read_by_others(terms, student)]
     if sheets:
         yield f"the sheets of their readers still hold their report: {', '.join(sheets)}"
+    for term in terms:
+        for sheet in sorted((term.submitted / student).glob("*_review")):
+            yield (
+                f"the reviews that they wrote go too ({sheet.relative_to(course.root)}); pages of "
+                "other teams lack them once they are written again"
+            )
     if any((x.root / _ZIP).exists() and student in Arms.of(x.root).handles for x in terms):
         yield f"{_ZIP} may still hold their arm; make it again: labkit student-bundle"
     yield (
@@ -106,4 +112,4 @@ def _read_by_others(terms: Iterable[Course], student: str) -> Iterator[Path]:
             name = pseudonym(key.read_bytes(), student)
             for folder in FOLDERS:
                 sheets = sorted(term.root.glob(f"{folder}/*/*_review/**/*.ipynb"))
-                yield from (x for x in sheets if f"{name}_" in x.read_text(errors="replace"))
+                yield from (x for x in sheets if name in x.read_text(errors="replace"))
