@@ -155,8 +155,12 @@ def test_one_student_is_forgotten_everywhere(course, capsys):
 
 def test_who_is_unknown_is_not_forgotten(course, capsys):
     """A name that nobody has is refused, with those who are meant perhaps."""
-    save_roster(course, Roster((Student("Bob-Hope", "Bob", "Hope"), Student("eve", "Eve", "Li"))))
-    for name, near in (("Bob", "did you mean Bob Hope"), ("zz", "there are Bob Hope (Bob-Hope), ")):
+    bob = Student("Bob-Hope", "Bob", "Hope", "b@x.test", login="bh17", id_number="700001")
+    save_roster(course, Roster((bob, Student("eve", "Eve", "Li"))))
+    meant = dict.fromkeys(
+        ("Bob", "BH17", "b@x.test", "700001"), "did you mean Bob Hope (Bob-Hope)?"
+    )
+    for name, near in (meant | {"zz": "there are Bob Hope (Bob-Hope), "}).items():
         for more in ([], ["--yes"]):
             words = ["term", "forget", "--student", name, "--course", str(course.root)]
             assert main([*words, *more]) == 2

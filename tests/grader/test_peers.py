@@ -186,6 +186,22 @@ def test_reports_go_out_and_reviews_come_back_without_names(course, monkeypatch,
     assert read_by.total() == 5
 
 
+def test_who_is_forgotten_takes_no_extension_from_their_team(course, capsys):
+    """The new owner of the report needs it, or a penalty for late work lowers the team's mark."""
+    rules = course.root / "course.toml"
+    granted = f'[[extensions]]\nstudent = "ada"\nassignment = "{NAME}"\ndays = 5\n'
+    says = f"ada has an extension of 5 days for {NAME}; in course.toml, give it to bob too before"
+    rules.write_text(granted)
+    assert typed(course, "term", "forget", "--student", "ada") == 0
+    assert says in capsys.readouterr().out
+    assert typed(course, "term", "forget", "--student", "ada", "--yes") == 2
+    assert says in capsys.readouterr().err and (course.submitted / "ada" / NAME).exists()
+    rules.write_text(granted + granted.replace("ada", "bob"))
+    assert typed(course, "term", "forget", "--student", "ada") == 0
+    assert says not in capsys.readouterr().out
+    rules.unlink()
+
+
 def test_who_is_forgotten_takes_no_mark_from_their_team(course, capsys):
     """Bob has the mark of Ada's report; when she goes, report and mark become Bob's own."""
     with open_gradebook(course) as book:
@@ -198,6 +214,8 @@ def test_who_is_forgotten_takes_no_mark_from_their_team(course, capsys):
     page = course.root / f"feedback/bob/{NAME}/{NAME}.html"
     assert typed(course, "feedback", NAME, "--unmarked") == 0
     assert "Handed in by ada" in page.read_text()
+    heard = page.read_text().partition('id="readers"')[2].partition("</section>")[0]
+    assert "<h3>Reader 1" in heard
     capsys.readouterr()
     for more, says in ([], "would move"), (["--yes"], "moved"):
         assert typed(course, "term", "forget", "--student", "ada", *more) == 0
@@ -205,9 +223,11 @@ def test_who_is_forgotten_takes_no_mark_from_their_team(course, capsys):
         assert f"{says} to bob, with its mark, which is the team's: submitted/ada/{NAME}\n" in said
         assert f": feedback/bob/{NAME}/{NAME}.html\n" in said
         assert f"write it again: labkit feedback {NAME} --student bob\n" in said
+        assert f"reviews that they wrote go too (submitted/ada/{sheet_of(NAME)}); pages of" in said
     assert not page.exists()
     assert typed(course, "feedback", NAME, "--unmarked", "--student", "bob") == 0
     assert "Handed in by" not in page.read_text()
+    assert heard in page.read_text(), "what the readers of the report say stays with it"
     marks = {mark.student: mark for mark in marks_of(course, NAME)}
     assert (marks["bob"].score, marks["bob"].author) == (before.score, "")
     assert marks["bob"].lines == before.lines and "ada" not in marks

@@ -13,7 +13,7 @@ from labkit.grader.students.collect import collect
 from labkit.grader.students.enrol import import_list
 from labkit.grader.students.identity import lms_users
 from labkit.grader.students.roster import Roster, save_roster
-from labkit.grader.terms.forget import left_by_hand
+from labkit.grader.terms.by_hand import left_by_hand
 
 
 @pytest.fixture
@@ -156,7 +156,7 @@ def test_a_folder_of_nobody_in_the_roster_is_named(bare, tmp_path, capsys):
     assert main(words) == 1
     said = capsys.readouterr().err
     assert said.startswith("work in folders that belong to nobody in the roster: Ada-King-2; where")
-    assert "perhaps theirs too" not in " ".join(left_by_hand(bare, "ada"))
+    assert "perhaps theirs too" not in " ".join(left_by_hand(bare, [bare], "ada"))
 
 
 def test_a_folder_is_named_though_a_sentence_has_its_name(bare, tmp_path):
@@ -177,5 +177,5 @@ def test_without_a_list_forget_names_who_is_called_alike(bare, tmp_path):
     for number, name in enumerate((NAME, "02_model")):
         people = [(("Ada Lovelace", number), "x.ipynb", "1"), (("Bo Li", 9), "x.ipynb", "1")]
         take(bare, from_moodle(tmp_path / f"{name}.zip", people), name)
-    said = " ".join(left_by_hand(bare, "Ada-Lovelace-0"))
+    said = " ".join(left_by_hand(bare, [bare], "Ada-Lovelace-0"))
     assert "perhaps theirs too: Ada-Lovelace-1; look" in said

@@ -23,7 +23,7 @@ from .pages import tell
 @click.option(
     "--seed", type=SEED, help="new: seed of the hidden cases; drawn at random by default."
 )
-@click.option("--student", metavar="S", help="forget: everything of one student, in all terms.")
+@click.option("--student", metavar="S", help="forget: everything of one student.")
 @click.option(
     "--older",
     type=click.FloatRange(0),
@@ -55,17 +55,19 @@ def term(
     list    lists the terms that are stored
     return  returns to the archived term NAME; the term under way is archived
     forget  lists what it would delete: terms that ended some YEARS ago, or
-            everything of one student; with --yes it deletes them
+            everything of one student, in all terms or in those named (the
+            term under way is called now); with --yes it deletes them
 
     The law may say how long marks must be kept.
     """  # noqa: D301
+    from ..terms.by_hand import left_by_hand, unknown
     from ..terms.forget import (
         entries_of,
         files_of,
         forget,
-        left_by_hand,
         shared_reports,
-        unknown,
+        shorter_extensions,
+        terms_of,
     )
     from ..terms.older import relocate
     from ..terms.term import about, archives, new_term, old_rules, refuse_running, restore, running
@@ -96,23 +98,27 @@ def term(
     else:
         if (student is None) == (older is None):
             raise LabkitError("say what to forget: --older YEARS, or --student NAME")
-        entries, by_hand, shared = [], [], []
+        if names and student is None:
+            raise LabkitError("--older YEARS chooses the terms; name none beside it")
+        terms, entries, by_hand, shared = [], [], [], []
         if student is None:
             found = [one.folder for one in archives(course, older or 0.0)]
             by_hand = [str(one) for one in archives(course) if one.ended is None]
         else:
-            found, entries = files_of(course, student), entries_of(course, student)
+            terms = terms_of(course, student, names)
+            found, entries = files_of(terms, student), entries_of(terms, student)
             if not (found or entries):
-                raise unknown(course, student)
-            by_hand = list(left_by_hand(course, student))
-            shared = shared_reports(course, student)
+                raise unknown(course, student, names)
+            by_hand = list(left_by_hand(course, terms, student))
+            shared = shared_reports(terms, student)
         if yes:
-            forget(course, found, entries, student or "")
+            forget(course, found, terms, student or "")
         done, changed = ("deleted", "no more in") if yes else ("would go", "would go from")
         for one, name, mate in shared:
             place = (one.submitted / str(student) / name).relative_to(course.root)
             says = "moved" if yes else "would move"
             print(f"{says} to {mate}, with its mark, which is the team's: {place}")
+        tell(shorter_extensions(course, str(student), shared), sys.stdout)
         tell((f"{done}: {path.relative_to(course.root)}" for path in found), sys.stdout)
         tell((f"{changed} {path.relative_to(course.root)}" for path in entries), sys.stdout)
         tell(by_hand, sys.stdout)

@@ -7,15 +7,18 @@ with it cell by cell.
 
 from __future__ import annotations
 
+import json
 import re
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import partial
 from pathlib import Path
+from typing import Any
 
 from ...course.authoring.layout import Course
 from ...course.notebook import read_cells
 from ...errors import LabkitError
+from ..atomic import write
 from ..clean import clean_text
 from ..pseudonyms import pseudonyms
 from ..students.class_list import Student
@@ -30,6 +33,8 @@ LEAST_NAME = 3
 LEAST_NUMBER = 5
 """Shorter numbers are not removed from a text, as a report has many numbers."""
 LONGEST_COMMENT = 2000
+_MOVED = "report"
+"""The metadata of a cell, in the course's copy of a sheet, with the report's new pseudonym."""
 _FORM = re.compile(r"^\s*level\s*[:=]\s*([0-3])\b.*?^\s*comment\s*[:=](.*)", re.I | re.M | re.S)
 
 
@@ -167,10 +172,12 @@ def reviews(course: Course, assignment: str) -> tuple[dict[str, list[Review]], l
     for path in given:
         student = path.parents[1].name
         asked: dict[str, list[str]] = {}
+        now: dict[str, str] = {}
         for cell in read_cells(path):
             if cell["cell_type"] == "raw":
                 who, _, row = cell["id"].partition("_")
                 asked.setdefault(who, []).append(row)
+                now[who] = _report_of(cell)
         said, wrong = _sheet_texts(course, name, student)
         me = [roster.get(student) or Student(student)]
         whole = 0
@@ -178,10 +185,34 @@ def reviews(course: Course, assignment: str) -> tuple[dict[str, list[Review]], l
             review = _review(rows, {row: said.get(f"{who}_{row}", "") for row in rows}, me)
             if review is not None:
                 whole += 1
-                found.setdefault(authors.get(who, ""), []).append(review)
+                found.setdefault(authors.get(now[who], ""), []).append(review)
         if whole < len(asked):
             waiting.append(f"{student}: {wrong or f'{whole} of {len(asked)} reviews'}")
     return found, waiting
+
+
+def move_reviews(course: Course, assignment: str, old: str, new: str) -> None:
+    """Let the reviews of a report follow it to another student's folder.
+
+    The readers' own sheets keep the old pseudonym; the course's copies get the new one too.
+
+    Raises:
+        LabkitError: A sheet in ``feedback/`` is damaged.
+    """
+    name = sheet_of(assignment)
+    for path in sorted((course.root / "feedback").glob(f"*/{name}/{name}.ipynb")):
+        code, cells = pseudonyms(course), read_cells(path)
+        moved = [x for x in cells if x["cell_type"] == "raw" and _report_of(x) == code(old)]
+        for cell in moved:
+            cell["metadata"][_MOVED] = code(new)
+        if moved:
+            sheet = json.loads(path.read_text(encoding="utf-8")) | {"cells": cells}
+            write(path, json.dumps(sheet, indent=1, ensure_ascii=False) + "\n")
+
+
+def _report_of(cell: Mapping[str, Any]) -> str:
+    """The present pseudonym of the report that a form to fill in asks about."""
+    return str(cell["metadata"].get(_MOVED) or cell["id"].partition("_")[0])
 
 
 def _sheet_texts(course: Course, name: str, student: str) -> tuple[dict[str, str], str]:

@@ -33,7 +33,12 @@ def lay_arms(course: Course, name: str) -> None:
     """Put the sealed arms beside a released notebook that asks about the student's own arm."""
     arms, folder = Arms.of(course.root), course.release / name
     if arms.handles and _asks(course, name) and folder.is_dir():
-        write(folder / FILE, json.dumps(arms.sealed(), indent=1) + "\n")
+        write(folder / FILE, sealed_text(arms))
+
+
+def sealed_text(arms: Arms) -> str:
+    """The text of the students' file of arms."""
+    return json.dumps(arms.sealed(), indent=1) + "\n"
 
 
 def without_arms(course: Course, names: Sequence[str]) -> str:

@@ -60,7 +60,7 @@ def enrol(
     Raises:
         LabkitError: Two rows, or a row and the roster, contradict each other.
     """
-    listed = {(same_name(x.student.name), *_marks(x.student).items()) for x in entries}
+    listed = {(same_name(x.student.name), *marks(x.student).items()) for x in entries}
     names = Counter(name for name, *_ in listed)
     students = {student.id: student for student in roster.students}
     by_mark: dict[_Mark, set[str]] = {}
@@ -157,14 +157,14 @@ def import_list(
     return summary, [*dict.fromkeys(one.why for one in left), *not_taken]
 
 
-def _marks(one: Student) -> dict[str, str]:
+def marks(one: Student) -> dict[str, str]:
     """The known data that identify a student, by field."""
     return {key: mark.casefold() for key in _KEYS if (mark := getattr(one, key))}
 
 
-def _shared(one: Student, other: Student) -> list[bool]:
+def shared(one: Student, other: Student) -> list[bool]:
     """For each key that both students have, whether the values agree."""
-    a, b = _marks(one), _marks(other)
+    a, b = marks(one), marks(other)
     return [a[key] == b[key] for key in a.keys() & b.keys()]
 
 
@@ -177,7 +177,7 @@ def _refuse_contradictions(entry: Entry, id: str, rows: dict[object, list[Entry]
             "worksheet again"
         )
     for other in rows.setdefault(("name", name), []) if name else ():
-        if not _shared(who, other.student):
+        if not shared(who, other.student):
             raise LabkitError(
                 f"lines {other.line} and {entry.line} are both {who.name}, and nothing tells them "
                 "apart; give each a login, an address or a number, or delete one"
@@ -196,7 +196,7 @@ def _refuse_contradictions(entry: Entry, id: str, rows: dict[object, list[Entry]
 
 
 def _index(student: Student, by_mark: dict[_Mark, set[str]]) -> None:
-    for mark in (*_marks(student).items(), ("name", same_name(student.name))):
+    for mark in (*marks(student).items(), ("name", same_name(student.name))):
         by_mark.setdefault(mark, set()).add(student.id)
 
 
@@ -204,7 +204,7 @@ def _find(
     entry: Entry, unique: bool, students: Mapping[str, Student], by_mark: Mapping[_Mark, set[str]]
 ) -> str:
     """The id of the student whom a row means; empty if the student is new."""
-    found = set().union(*(by_mark.get(mark, set()) for mark in _marks(entry.student).items()))
+    found = set().union(*(by_mark.get(mark, set()) for mark in marks(entry.student).items()))
     if len(found) > 1:
         people = " or ".join(str(students[id]) for id in sorted(found))
         raise LabkitError(
@@ -212,7 +212,7 @@ def _find(
         )
     name = same_name(entry.student.name)
     called = by_mark.get(("name", name), set()) if name and unique and not found else set()
-    if len(called) == 1 and not _shared(students[min(called)], entry.student):
+    if len(called) == 1 and not shared(students[min(called)], entry.student):
         return min(called)
     return min(found, default="")
 

@@ -3,48 +3,85 @@
 from __future__ import annotations
 
 import glob
-import shlex
 import shutil
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Collection, Iterable, Iterator, Sequence
 from dataclasses import replace
+from datetime import timedelta
 from functools import partial
+from itertools import combinations
 from pathlib import Path
+from shlex import quote
 
 from markupsafe import escape
 from nbgrader.api import Gradebook
 
 from ...course.authoring.bundle import Bundle
 from ...course.authoring.layout import Course
+from ...course.own_arm import FILE as ARMS
 from ...course.own_arm import HANDLES, Arms
 from ...errors import LabkitError
 from ..atomic import write
 from ..grading.results import Results
 from ..nbgrader.gradebook import quiet_database
-from ..pseudonyms import FILE as KEY
-from ..pseudonyms import pseudonym
+from ..peers.readers import move_reviews
 from ..rules import FILE as RULES
 from ..rules import rules_in
+from ..students.arms import sealed_text
+from ..students.enrol import marks, shared
 from ..students.identity import FILE as LMS
 from ..students.identity import all_lms_users, identity_lock, save_lms_users
 from ..students.move import move_work
 from ..students.roster import FILE as ROSTER
-from ..students.roster import Roster, read_roster, same_name, save_roster
-from ..submission import did_you_mean, is_name, students
+from ..students.roster import Roster, read_roster, save_roster
+from ..submission import is_name, students
 from .older import relocate
 from .term import archives
 
-_FOLDERS = ("submitted", "attempts", "autograded", "feedback")
+FOLDERS = ("submitted", "attempts", "autograded", "feedback")
 _OF_A_STUDENT = (
-    *(f"{folder}/{{}}" for folder in _FOLDERS),
+    *(f"{folder}/{{}}" for folder in FOLDERS),
     *("results/*/{}.json", "results/*/old/{}"),
     *("results/*/aside/{}.json", "results/*/aside/old/{}"),
     *("build/course/defence/{}.html", "build/course/explain/{}"),
 )
 """Patterns of one student's files and folders within the folder of a term."""
+NOW = "now"
+"""The name of the term under way, as `labkit term list` calls it."""
 
 
-def files_of(course: Course, student: str) -> list[Path]:
-    """One student's files and folders, and pages that name them, in this term and in earlier ones.
+def all_terms(course: Course) -> dict[str, Course]:
+    """The current term and the archived ones by name, each with the layout of a course."""
+    folders = [one.folder for one in archives(course) if one.folder.is_dir()]
+    terms = {NOW: course} | {folder.name: Course(folder) for folder in folders}
+    for name, term in terms.items():
+        relocate(term, archived=name != NOW)
+    return terms
+
+
+def terms_of(course: Course, student: str, names: Collection[str] = ()) -> list[Course]:
+    """The named terms, or all, in which a student is to be forgotten.
+
+    Raises:
+        LabkitError: A term is unknown, or the rosters of two terms have this folder for two people.
+    """
+    known = all_terms(course)
+    if unknown := [name for name in names if name not in known]:
+        raise LabkitError(f"there is no term {unknown[0]!r}; there are {', '.join(known)}")
+    terms = {name: term for name, term in known.items() if name in names or not names}
+    people = {name: one for name, term in terms.items() if (one := read_roster(term).get(student))}
+    if any((alike := shared(*two)) and not any(alike) for two in combinations(people.values(), 2)):
+        listed = [f"{x}: {', '.join((y.name, *marks(y).values()))}" for x, y in people.items()]
+        rest = [x for x, y in terms.items() if x not in people and files_of([y], student)]
+        listed += [f"{x}: not in its roster" for x in rest]
+        raise LabkitError(
+            f"{student} is not the same person in all terms ({'; '.join(listed)}); name the terms "
+            f"of the one who is meant: labkit term forget {min(people)} --student {quote(student)}"
+        )
+    return list(terms.values())
+
+
+def files_of(terms: Iterable[Course], student: str) -> list[Path]:
+    """One student's files and folders in these terms, and pages that name them.
 
     Raises:
         LabkitError: No student can have this name.
@@ -52,31 +89,32 @@ def files_of(course: Course, student: str) -> list[Path]:
     if not is_name(student) or student in {"", ".", ".."} or "/" in student:
         raise LabkitError(f"{student!a} is not the name of a student's folder")
     patterns = [pattern.format(glob.escape(student)) for pattern in _OF_A_STUDENT]
-    return [
-        term.root / found
-        for term in _terms(course)
-        for pattern in patterns
-        for found in sorted(glob.glob(pattern, root_dir=term.root, include_hidden=True))
-    ] + [page for term in _terms(course) for page in _pages_of_mates(term, student)]
+    found = list[Path]()
+    for term in terms:
+        for pattern in patterns:
+            names = glob.glob(pattern, root_dir=term.root, include_hidden=True)
+            found += [term.root / name for name in sorted(names)]
+        found += pages_of_mates(term, student)
+    return found
 
 
-def entries_of(course: Course, student: str) -> list[Path]:
-    """Files about the whole class that have an entry for one student, in every term.
+def entries_of(terms: Iterable[Course], student: str) -> list[Path]:
+    """Files about the whole class that have an entry for one student, in these terms.
 
     Raises:
         LabkitError: One of these files is damaged.
     """
-    return [path for term in _terms(course) for path, _ in _entries(term, student)]
+    return [path for term in terms for path, _ in _entries(term, student)]
 
 
-def shared_reports(course: Course, student: str) -> list[tuple[Course, str, str]]:
+def shared_reports(terms: Iterable[Course], student: str) -> list[tuple[Course, str, str]]:
     """Reports that a student handed in for a team: term, assignment, and new owner.
 
     Raises:
         LabkitError: The roster or the release of a term is damaged.
     """
     found = []
-    for term in _terms(course):
+    for term in terms:
         roster = read_roster(term)
         one = roster.get(student)
         if one is None or not one.team:
@@ -90,89 +128,60 @@ def shared_reports(course: Course, student: str) -> list[tuple[Course, str, str]
     return found
 
 
+def shorter_extensions(
+    course: Course, student: str, reports: Iterable[tuple[Course, str, str]]
+) -> list[str]:
+    """A sentence for each of `shared_reports` that would be late in its new owner's folder."""
+    said = []
+    for term, name, mate in reports:
+        file = term.root / RULES
+        try:
+            rules = rules_in(file)
+        except LabkitError:
+            continue  # `left_by_hand` names the file
+        if (longer := rules.longer(student, name)) > rules.longer(mate, name):
+            said.append(
+                f"{student} has an extension of {longer / timedelta(days=1):g} days for {name}; in "
+                f"{file.relative_to(course.root)}, give it to {mate} too before you add --yes, or "
+                "the team's mark may fall"
+            )
+    return said
+
+
 def forget(
-    course: Course, found: Sequence[Path], entries: Sequence[Path] = (), student: str = ""
+    course: Course, found: Iterable[Path], terms: Sequence[Course] = (), student: str = ""
 ) -> None:
-    """Delete what `files_of` found, or archived terms, and what `entries_of` found.
+    """Delete what `files_of` found, or archived terms, and a student's entries in these terms.
 
     A team report on which the marks of others depend is first moved to one of them.
 
     Raises:
         LabkitError: Another command holds the lock, a file about the whole class is damaged, or the
-            team's report cannot be moved.
+            team's report cannot be moved, or would be late.
     """
     with identity_lock(course):
-        for term, name, mate in shared_reports(course, student) if student else ():
+        reports = shared_reports(terms, student)
+        if said := shorter_extensions(course, student, reports):
+            raise LabkitError("; ".join(said))
+        for term, name, mate in reports:
             if move_work(term, name, {student: mate}):
                 raise LabkitError(
                     f"{student} handed in {name} for {mate} too, who has other files in "
                     f"{term.root / 'attempts' / mate / name}; move these away, then try again"
                 )
+            move_reviews(term, name, student, mate)
             shutil.rmtree(term.root / "feedback" / mate / name, ignore_errors=True)  # names both
         for path in found:
             if path.is_dir() and not path.is_symlink():
                 shutil.rmtree(path)
             else:
                 path.unlink(missing_ok=True)
-        for term in _terms(course) if entries else ():
+        for term in terms:
             for _, delete in _entries(term, student):
                 delete()
 
 
-def left_by_hand(course: Course, student: str) -> Iterator[str]:
-    """A sentence for each thing about a student that only a person can delete."""
-    for file in (term.root / RULES for term in _terms(course)):
-        try:
-            granted = any(one.student == student for one in rules_in(file).extensions)
-        except LabkitError as error:
-            yield f"{error}, and see whether it names an extension of theirs"
-        else:
-            if granted:
-                name = file.relative_to(course.root)
-                yield f"{name} names an extension of theirs; delete it there"
-    for term in _terms(course):
-        if alike := _perhaps_theirs(term, student):
-            where = term.submitted.relative_to(course.root)
-            yield (
-                f"in {where}, perhaps theirs too: {', '.join(alike)}; look, and for each that is "
-                "theirs type: labkit term forget --student FOLDER"
-            )
-    for page in _pages_of_mates(course, student):
-        mate, assignment = page.parts[-3:-1]
-        yield (
-            f"{page.relative_to(course.root)} says that {student} handed in; once it is deleted, "
-            f"write it again: labkit feedback {assignment} --student {shlex.quote(mate)}"
-        )
-    sheets = [str(path.relative_to(course.root)) for path in _read_by_others(course, student)]
-    if sheets:
-        yield f"the sheets of their readers still hold their report: {', '.join(sheets)}"
-    yield (
-        "copies elsewhere are yours to delete: downloads, exported tables and reports, backups, "
-        "the exchange, the platform itself"
-    )
-
-
-def unknown(course: Course, student: str) -> LabkitError:
-    """The error for a student about whom nothing is stored, with similar names."""
-    folders = (path.name for term in _terms(course) for path in term.submitted.glob("*"))
-    known = {name: name for name in folders if is_name(name)}
-    known |= {one.id: str(one) for one in read_roster(course).students}
-    near = did_you_mean(student, known.values())
-    return LabkitError(f"no student {student!r} in this term or an earlier one{near}")
-
-
-def _perhaps_theirs(term: Course, student: str) -> list[str]:
-    """Other folders of a term whose owner has the same name and is not in the roster."""
-    roster, users = read_roster(term), all_lms_users(term).values()
-    known = [(folder, same_name(one.name)) for each in users for folder, one in each.items()]
-    names = {name for folder, name in known if folder == student}
-    names |= {same_name(one.name) for one in roster.students if one.id == student}
-    return sorted(
-        {x for x, name in known if name and name in names and x not in roster} - {student}
-    )
-
-
-def _pages_of_mates(term: Course, student: str) -> list[Path]:
+def pages_of_mates(term: Course, student: str) -> list[Path]:
     """Feedback pages of a team that say that this student handed in."""
     roster, said = read_roster(term), f"Handed in by {escape(student)} for your team."
     one = roster.get(student)
@@ -183,26 +192,6 @@ def _pages_of_mates(term: Course, student: str) -> list[Path]:
         for x in (term.root / "feedback" / mate).glob("*/*.html")
     ]
     return [x for x in pages if said in x.read_text(encoding="utf-8", errors="replace")]
-
-
-def _read_by_others(course: Course, student: str) -> Iterator[Path]:
-    """Peer-review sheets, handed out or handed in, that contain a student's report."""
-    for term in _terms(course):
-        key = term.root / KEY
-        if key.exists():
-            name = pseudonym(key.read_bytes(), student)
-            for folder in _FOLDERS:
-                sheets = sorted(term.root.glob(f"{folder}/*/*_review/**/*.ipynb"))
-                yield from (x for x in sheets if f"{name}_" in x.read_text(errors="replace"))
-
-
-def _terms(course: Course) -> list[Course]:
-    """The current term and the archived ones, each with the layout of a course."""
-    folders = [one.folder for one in archives(course) if one.folder.is_dir()]
-    terms = [course, *map(Course, folders)]
-    for term in terms:
-        relocate(term, archived=term != course)
-    return terms
 
 
 def _entries(term: Course, student: str) -> Iterator[tuple[Path, Callable[[], object]]]:
@@ -219,8 +208,10 @@ def _entries(term: Course, student: str) -> Iterator[tuple[Path, Callable[[], ob
         yield term.root / LMS, partial(save_lms_users, term, left)
     if student in arms.handles:
         handles = {who: handle for who, handle in arms.handles.items() if who != student}
-        text = replace(arms, handles=handles).text().encode()
-        yield term.root / HANDLES, partial(write, term.root / HANDLES, text)
+        arms = replace(arms, handles=handles)
+        yield term.root / HANDLES, partial(write, term.root / HANDLES, arms.text())
+        for file in sorted(term.release.glob(f"*/{ARMS}")):
+            yield file, partial(write, file, sealed_text(arms))
 
 
 def _in_gradebook(path: Path, student: str) -> bool:
