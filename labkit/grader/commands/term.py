@@ -64,7 +64,7 @@ def term(
         files_of,
         forget,
         left_by_hand,
-        shared_reports,
+        shared_work,
         unknown,
     )
     from ..terms.older import relocate
@@ -105,7 +105,7 @@ def term(
             if not (found or entries):
                 raise unknown(course, student)
             by_hand = list(left_by_hand(course, student))
-            shared = shared_reports(course, student)
+            shared = shared_work(course, student)
         if yes:
             forget(course, found, entries, student or "")
         done, changed = ("deleted", "no more in") if yes else ("would go", "would go from")

@@ -14,7 +14,7 @@ from markupsafe import escape
 from nbgrader.api import Gradebook
 
 from ...course.authoring.bundle import Bundle
-from ...course.authoring.layout import Course
+from ...course.authoring.layout import CUP, Course
 from ...course.own_arm import HANDLES, Arms
 from ...errors import LabkitError
 from ..atomic import write
@@ -69,8 +69,10 @@ def entries_of(course: Course, student: str) -> list[Path]:
     return [path for term in _terms(course) for path, _ in _entries(term, student)]
 
 
-def shared_reports(course: Course, student: str) -> list[tuple[Course, str, str]]:
-    """Reports that a student handed in for a team: term, assignment, and new owner.
+def shared_work(course: Course, student: str) -> list[tuple[Course, str, str]]:
+    """What a student handed in for a team: term, assignment, and new owner.
+
+    These are reports, and the cup's notebook if it is the team's only one.
 
     Raises:
         LabkitError: The roster or the release of a term is damaged.
@@ -82,11 +84,11 @@ def shared_reports(course: Course, student: str) -> list[tuple[Course, str, str]
         if one is None or not one.team:
             continue
         team = {mate.id for mate in roster.students if mate.team == one.team}
-        for name in sorted(path.stem for path in term.bundle.glob("*.json")):
-            if Bundle.of(term, name).is_report:
-                own = team & {*students(term, name), *Results(term, name).students()}
-                if own and min(own) == student and team - own:
-                    found.append((term, name, min(team - own)))
+        for name in [CUP, *sorted(path.stem for path in term.bundle.glob("*.json"))]:
+            own = team & {*students(term, name), *Results(term, name).students()}
+            first = len(own) == 1 if name == CUP else Bundle.of(term, name).is_report
+            if first and min(own, default="") == student and team - own:
+                found.append((term, name, min(team - own)))
     return found
 
 
@@ -95,14 +97,14 @@ def forget(
 ) -> None:
     """Delete what `files_of` found, or archived terms, and what `entries_of` found.
 
-    A team report on which the marks of others depend is first moved to one of them.
+    Work for a team, on which the marks of others depend, is first moved to one of them.
 
     Raises:
         LabkitError: Another command holds the lock, a file about the whole class is damaged, or the
             team's report cannot be moved.
     """
     with identity_lock(course):
-        for term, name, mate in shared_reports(course, student) if student else ():
+        for term, name, mate in shared_work(course, student) if student else ():
             if move_work(term, name, {student: mate}):
                 raise LabkitError(
                     f"{student} handed in {name} for {mate} too, who has other files in "
