@@ -16,12 +16,12 @@ from pathlib import Path
 from typing import Any
 
 from ..sim import chosen
-from .brief import WORDS
+from .brief import WORDS, words_of
 from .checks_file import read_checks
 from .forms import COMMITTED, OWN_ARM
 from .gaps import calculated_from_runs, changed_since, first_error, how_to_restore, undefined_names
 from .messages import head
-from .notebook import PLACEHOLDER, check_id, defines, grade_id, kind, last_verdict, read_cells
+from .notebook import check_id, defines, grade_id, kind, last_verdict, read_cells
 from .own_arm import FILE, arms_for, opens_the_public_arm
 from .serialize import decode
 from .source import analyse
@@ -155,7 +155,7 @@ def examine(path: Path) -> HandIn:
     texts = {}
     for above, cell in pairwise(cells):
         if kind(cell) == "why" and grade_id(cell):
-            words = texts[grade_id(cell)] = len(cell["source"].replace(PLACEHOLDER, "").split())
+            words = texts[grade_id(cell)] = len(words_of(cell["source"]))
             has = f"{grade_id(cell)} has {_words(words)}"
             if words < WORDS[0]:
                 notes.append(f"{has}; it needs at least {WORDS[0]}")

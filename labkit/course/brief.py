@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+import re
+import unicodedata
+
 from .question import Question, in_points
 
 WORDS, WHY_POINTS = (25, 80), 2.0
@@ -11,6 +14,14 @@ RUBRIC = (
     "a step is missing or wrong. 0 points: another cause, or only a repetition of what you saw."
 )
 """The rubric by which a person marks a why."""
+PLACEHOLDER = "*Double-click here and write your text in place of this line.*"
+"""The initial text of a why; nbgrader's settings have the same text."""
+
+
+def words_of(text: str) -> list[str]:
+    """The words that a reader sees: no placeholder, HTML comment or character without width."""
+    text = re.sub(r"<!--.*?(-->|\Z)", "", text.replace(PLACEHOLDER, ""), flags=re.DOTALL)
+    return "".join(x for x in text if unicodedata.category(x) != "Cf").split()
 
 
 def brief_of_why(name: str, points: float, asks: str) -> str:

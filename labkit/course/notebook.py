@@ -276,10 +276,6 @@ def _text_cells(path: Path, name: str, cell: Cell) -> Iterator[dict[str, Any]]:
     yield _cell("markdown", begins + model, "why", meta)
 
 
-PLACEHOLDER = "*Double-click here and write your text in place of this line.*"
-"""The initial text of a why; nbgrader's settings have the same text."""
-
-
 def _check_stub(path: Path, name: str, cell: Cell) -> None:
     marks = [line.strip() for line in cell["source"].splitlines() if "### " in line]
     if marks != ["### BEGIN SOLUTION", "### END SOLUTION"]:

@@ -10,8 +10,9 @@ import pytest
 
 from labkit import LabkitError
 from labkit.course.before_handing_in import HandIn, examine
+from labkit.course.brief import PLACEHOLDER
 from labkit.course.forms import COMMITTED, OWN_ARM
-from labkit.course.notebook import PLACEHOLDER, verdict_metadata
+from labkit.course.notebook import verdict_metadata
 from labkit.course.own_arm import FILE
 from labkit.course.receipt import _advice, hand_in, receipt
 from labkit.course.verdict import Outcome, TestResult, Verdict
@@ -225,13 +226,13 @@ def test_an_answer_turned_into_text_is_told_how_to_turn_it_back(folder):
     assert any("press Esc and then Y" in text for text in problems)
 
 
-def with_texts_of(folder, words):
+def with_texts_of(folder, words, word="word "):
     """The look at a notebook in which each text has so many words."""
 
     def change(cells):
         for cell in cells:
             if cell["metadata"].get("lab") == "why":
-                cell["source"] = "word " * words
+                cell["source"] = word * words
         return cells
 
     return examine(edited(folder / "01_paths.ipynb", change))
@@ -303,6 +304,15 @@ def test_words_of_a_text_are_counted_without_the_placeholder(folder):
         f"  {name}: 30 words; your instructor will read it" in str(found) for name in found.texts
     )
     assert "at most" not in str(found)
+
+
+@pytest.mark.parametrize(
+    "text", ["<!-- a\nb -->", "<!-- a", "\u00a0\u200b", f"{PLACEHOLDER}\u2060"]
+)
+def test_a_text_that_nobody_can_see_is_not_written(folder, text):
+    """A comment in HTML and characters without width are no words, and so earn nothing."""
+    assert set(with_texts_of(folder, 1, text).texts.values()) == {0}
+    assert set(with_texts_of(folder, 1, f"a {text}").texts.values()) == {1}
 
 
 def test_a_text_that_is_too_long_is_named_with_its_limit(folder):

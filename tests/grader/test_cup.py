@@ -18,11 +18,12 @@ from labkit.course.authoring.layout import CUP, DEFENCE
 from labkit.course.baxter_cup import BENCHMARKS, PUBLIC_SEEDS
 from labkit.course.own_arm import HANDLES, Arms
 from labkit.grader.cup import entries as cup
-from labkit.grader.cup.entries import A_DAY, SEEDS, Entry, entries, latest, play, seeds
+from labkit.grader.cup.entries import A_DAY, SEEDS, Entry, latest, of_student, play, seeds
 from labkit.grader.cup.table import as_text, give_bonus, page
 from labkit.grader.grading.worker import TRIES
 from labkit.grader.marks.export import of_term
 from labkit.grader.marks.table import marks_of
+from labkit.grader.nbgrader.gradebook import open_gradebook
 from labkit.grader.sandbox.launch import SandboxLost
 
 HONEST = """
@@ -39,6 +40,7 @@ def cup_controller(model):
 runs = cup(cup_controller)
 """
 COUNTS = HONEST.replace("target.velocity + 3.0", "len(calls) + 0.0")
+SLOW = HONEST.replace("target.velocity + 3.0", "50.0 + 0.0")
 READS_SEEDS = """
 import pathlib
 import labkit as lk
@@ -80,6 +82,19 @@ def enter(course, student, *cells):
     hand_in(course, CUP, student, notebook(*cells))
     (path,) = (course.submitted / student / CUP).glob("*.ipynb")
     return path
+
+
+def entries(course):
+    return [x for path in (course.results / "cup").iterdir() for x in of_student(course, path.stem)]
+
+
+def final(course, handles):
+    """The scores of the final by handle, and the bonus of each student."""
+    (course.root / HANDLES).parent.mkdir(parents=True, exist_ok=True)
+    (course.root / HANDLES).write_text(Arms(5, handles).text())
+    assert main(["export", "--layout", "cup", "--final", "--course", str(course.root)]) == 0
+    scores = {handle: entry.score for handle, entry in latest(course, final=True).items()}
+    return scores, {x.student: x.lines[0].extra for x in marks_of(course, CUP)}
 
 
 def begin_term(course, seed):
@@ -182,12 +197,12 @@ def test_the_last_hand_in_of_a_handle_counts_whoever_made_it(course, instant):
     for student, source, when in [("zoe", COUNTS, 1e9), ("ada", HONEST, 2e9)]:
         os.utime(enter(course, student, source), (when, when))
     assert [x.student for x in play(course, TODAY, final=True)] == ["ada"]
-    (one,) = latest(course, final=True)
+    (one,) = latest(course, final=True).values()
     assert (one.student, one.scores) == ("ada", (0.0,) * SEEDS)
     for source, score in [(COUNTS, 1.0), (HONEST, 0.0)]:
         os.utime(enter(course, "ada", source), (2e9, 2e9))
         list(play(course, TODAY, final=True))
-        assert latest(course, final=True)[0].scores == (score,) * SEEDS
+        assert latest(course, final=True)["team"].scores == (score,) * SEEDS
 
 
 def test_a_worksheet_decides_which_of_a_teams_notebooks_is_the_later(course, instant, capsys):
@@ -215,7 +230,45 @@ def test_a_worksheet_decides_which_of_a_teams_notebooks_is_the_later(course, ins
     capsys.readouterr()
     assert main(board) == 0
     assert "same time" not in capsys.readouterr().err
-    assert [x.student for x in latest(course, final=False)] == ["ada"]
+    assert [x.student for x in latest(course, final=False).values()] == ["ada"]
+
+
+def test_the_final_takes_over_a_change_of_teams(course, instant, tmp_path):
+    """Each gets what the last notebook of their present handle earns, and others lose a bonus.
+
+    What a person typed stays, and an entry that an older labkit stored with its handle is read.
+    """
+    for student, source, when in [("bob", SLOW, 1e9), ("ada", HONEST, 2e9)]:
+        os.utime(enter(course, student, source), (when, when))
+    team = dict.fromkeys(["ada", "bob", "cy", "di"], "kite")
+    assert final(course, team) == ({"kite": 0.0}, dict.fromkeys(team, 4.0))
+    with open_gradebook(course) as book:
+        (notebook,) = book.find_submission(CUP, "cy").notebooks
+        notebook.grades[0].manual_score, notebook.comments[0].manual_comment = 1.0, "well drawn"
+        book.db.commit()
+    path = course.results / "cup" / "ada.json"
+    path.write_text(json.dumps([x | {"handle": "kite"} for x in json.loads(path.read_text())]))
+    scores, bonus = final(course, {"ada": "ada", "bob": "kites", "cy": "cy", "di": "kites"})
+    assert scores == {"ada": 0.0, "kites": 50.0}
+    assert bonus == {"ada": 4.0, "bob": 2.0, "cy": 0.0, "di": 2.0}
+    (line,) = next(x for x in marks_of(course, CUP) if x.student == "cy").lines
+    assert (line.score, line.comment) == (1.0, "well drawn")
+
+
+def test_a_team_keeps_the_bonus_of_a_forgotten_students_notebook(course, instant, capsys):
+    """It goes to a mate, as a report does, and earns the same when the final is run again."""
+    (course.root / "list.csv").write_text("id,name,team\nada,Ada Low,kite\nbob,Bob Ray,kite\n")
+    words = ["--course", str(course.root)]
+    assert main(["students", "import", str(course.root / "list.csv"), *words]) == 0
+    enter(course, "ada", SLOW)
+    assert main(["export", "--layout", "cup", "--final", *words]) == 0
+    assert main(["term", "forget", "--student", "ada", "--yes", *words]) == 0
+    assert f"moved to bob, with its mark, which is the team's: submitted/ada/{CUP}" in (
+        capsys.readouterr().out
+    )
+    assert not [*course.root.glob("*/ada"), *course.root.glob("results/*/ada.json")]
+    assert main(["export", "--layout", "cup", "--final", *words]) == 0
+    assert {x.student: x.lines[0].extra for x in marks_of(course, CUP)} == {"bob": 2.0}
 
 
 def test_the_final_has_other_seeds_and_benchmarks_beaten_are_extra_credit(
@@ -230,19 +283,19 @@ def test_the_final_has_other_seeds_and_benchmarks_beaten_are_extra_credit(
     board = ["export", "--layout", "cup", "--course", str(course.root)]
     assert main([*board, "--final", "--to", str(tmp_path / "final.html")]) == 0
     assert f"written: {tmp_path / 'final.html'}" in capsys.readouterr().out
-    (entry,) = latest(course, final=True)
-    assert latest(course, final=False) == [] and {x.student for x in marks_of(course, CUP)} == {
+    (entry,) = latest(course, final=True).values()
+    assert latest(course, final=False) == {} and {x.student for x in marks_of(course, CUP)} == {
         "ada"
     }
-    slow = replace(entry, student="bob", handle="bob", scores=(50.0,) * SEEDS)
-    give_bonus(course, [entry, slow])
+    slow = replace(entry, student="bob", scores=(50.0,) * SEEDS)
+    give_bonus(course, {"ada": entry, "bob": slow})
     assert entry.beaten == len(BENCHMARKS)
     bonus = list(marks_of(course, CUP))
     assert {x.student: (x.score, x.points) for x in bonus} == {"ada": (4.0, 0.0), "bob": (2.0, 0.0)}
     table = of_term({CUP: bonus, "01_paths": [replace(x, points=10.0, raw=5.0) for x in bonus]},
                     {CUP: 0.5, "01_paths": 1.0})  # fmt: skip
     assert [row[-1] for row in table[3:]] == [52.0, 51.0]
-    assert "benchmark: joint torque" in "\n".join(as_text([slow]))
+    assert "benchmark: joint torque" in "\n".join(as_text({"bob": slow}))
 
 
 def test_other_verbs_name_the_cups_own(course, capsys):

@@ -66,7 +66,10 @@ def test_every_verb_does_its_work(graded):
     grade that a notebook is of another assignment, as one attacker's may be.
     """
     of = graded.of
-    waits, other = ("give it by hand" in of.printed), ("of another assignment" in of.printed)
+    waits, other = (
+        ("mark by hand, in formgrader" in of.printed),
+        ("of another assignment" in of.printed),
+    )
     codes = {"grade": int(other), "feedback": 0, "export": int(waits), "class-report": 0}
     assert of.codes == codes
     everybody = {*of.attackers, *of.accomplices, *HONEST}

@@ -180,7 +180,7 @@ def _board(course: Course, final: bool, to: Path | None) -> int:
         failures.add("not run", misnamed(course, CUP))
         played = play(course, datetime.now(UTC).date(), final)
         for entry in failures.sift(played, "not run"):
-            print(f"run: {entry.handle}", flush=True)
+            print(f"run: {entry.student}", flush=True)
         found = latest(course, final)
         tell(as_text(found), sys.stdout)
         tell(tied(course), sys.stderr)

@@ -65,7 +65,7 @@ def term(
         entries_of,
         files_of,
         forget,
-        shared_reports,
+        shared_work,
         shorter_extensions,
         terms_of,
     )
@@ -110,7 +110,7 @@ def term(
             if not (found or entries):
                 raise unknown(course, student, names)
             by_hand = list(left_by_hand(course, terms, student))
-            shared = shared_reports(terms, student)
+            shared = shared_work(terms, student)
         if yes:
             forget(course, found, terms, student or "")
         done, changed = ("deleted", "no more in") if yes else ("would go", "would go from")

@@ -7,7 +7,6 @@ the seeds stay in this process; the sandbox is only asked for one command after 
 from __future__ import annotations
 
 import json
-from collections import Counter
 from collections.abc import Iterator, Sequence
 from contextlib import closing, suppress
 from dataclasses import dataclass, replace
@@ -69,7 +68,6 @@ class Entry:
 
     Attributes:
         student: The student who handed it in.
-        handle: The handle of the student, or the team, in the table.
         notebook: The hash of the file.
         day: The day on which it was run, as in 2026-11-22.
         final: Whether it was run on the seeds of the final.
@@ -79,7 +77,6 @@ class Entry:
     """
 
     student: str
-    handle: str
     notebook: str
     day: str
     final: bool
@@ -116,29 +113,24 @@ def play(course: Course, today: date, final: bool) -> Iterator[Entry | Failure]:
     Raises:
         NoIsolation: No sandbox can be made here.
     """
-    had = Counter(x.handle for x in entries(course) if x.day == str(today) and not x.final)
     limits = LIMITS.scaled(slowness())
-    for handle, (*_, student) in sorted(_entered(course).items()):
+    for handle, team in sorted(_entered(course).items()):
+        student = team[-1]
         data, _, why = Submission.of(course, CUP, student).read()
-        new = Entry(student, handle, digest(data), str(today), final, why=why)
-        past = of_student(course, student)
-        if [x.notebook for x in past if x.final is final][-1:] == [new.notebook]:
+        new = Entry(student, digest(data), str(today), final, why=why)
+        if [x.notebook for x in _runs(course, [student], final)][-1:] == [new.notebook]:
             continue
-        if not final and had[handle] >= A_DAY:
+        had = [x for x in _runs(course, team, final) if x.day == new.day]
+        if not final and len(had) >= A_DAY:
             yield Failure(student, f"{handle} had {A_DAY} runs today; type the same tomorrow")
             continue
         run = partial(_run, new, data, limits, seeds(course, final))
         step = partial(in_sandbox, run, course, ("labkit", "numpy"))
         done = new if why else for_student(student, step, (NoIsolation,))
         if not isinstance(done, Failure):
-            _keep(course, [*(replace(x, motion="") for x in past), done])
+            past = [replace(x, motion="") for x in of_student(course, student)]
+            write(_path(course, student), json.dumps(record_data([*past, done]), indent=1))
         yield done
-
-
-def entries(course: Course) -> Iterator[Entry]:
-    """All entries that were run this term."""
-    for path in sorted((course.results / FOLDER).glob("*.json")):
-        yield from of_student(course, path.stem)
 
 
 def of_student(course: Course, student: str) -> list[Entry]:
@@ -154,14 +146,18 @@ def of_student(course: Course, student: str) -> list[Entry]:
         ) from None
 
 
-def latest(course: Course, final: bool) -> list[Entry]:
-    """The last entry of each handle on the board or in the final, the best first.
+def latest(course: Course, final: bool) -> dict[str, Entry]:
+    """By the present handles, the last entry of each on the board or in the final.
 
     Of the entries of a team, the one whose notebook was handed in last.
     """
-    found = sorted(entries(course), key=lambda x: _handed_in(course, x.student))
-    last = {x.handle: x for x in found if x.final is final}
-    return sorted(last.values(), key=lambda x: (x.score, x.handle))
+    runs = {handle: _runs(course, team, final) for handle, team in _entered(course).items()}
+    return {handle: found[-1] for handle, found in runs.items() if found}
+
+
+def _runs(course: Course, team: Sequence[str], final: bool) -> list[Entry]:
+    """The entries of some students on the board or in the final."""
+    return [x for student in team for x in of_student(course, student) if x.final is final]
 
 
 def tied(course: Course) -> Iterator[str]:
@@ -182,7 +178,7 @@ def tied(course: Course) -> Iterator[str]:
 
 
 def _entered(course: Course) -> dict[str, list[str]]:
-    """The students who entered, by their handle, in the order in which they handed in."""
+    """The students who entered, by their present handle, in the order in which they handed in."""
     handles, found = Arms.of(course.root).handles, dict[str, list[str]]()
     for student in sorted(students(course, CUP), key=partial(_handed_in, course)):
         found.setdefault(handles.get(student, student), []).append(student)
@@ -221,7 +217,7 @@ def _run(new: Entry, data: bytes, limits: Limits, on: Sequence[int], sandbox: Sa
             cell = next((x["error"] for x in session.failed()), "")
             why = clean_line(cell or str(error))
     scores = tuple(round(x.score, 2) if np.isfinite(x.score) else None for x in runs)
-    shown = motion(runs[0].log, f"The cup: {new.handle}") if runs else None
+    shown = motion(runs[0].log, "The cup") if runs else None
     return replace(new, scores=scores, why=why, motion=encode_to_fit(shown) if shown else "")
 
 
@@ -234,10 +230,6 @@ def _controller(session: Session) -> Controller:
         return command
 
     return controller
-
-
-def _keep(course: Course, all_of_them: Sequence[Entry]) -> None:
-    write(_path(course, all_of_them[0].student), json.dumps(record_data(all_of_them), indent=1))
 
 
 def _path(course: Course, student: str) -> Path:

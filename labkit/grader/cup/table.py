@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping
 
 from ...course.authoring.layout import CUP, Course
 from ...course.baxter_cup import benchmarks
@@ -17,22 +17,22 @@ BONUS = "benchmarks_beaten"
 """The name of the bonus in the gradebook."""
 
 
-def lines(found: Sequence[Entry]) -> Iterator[tuple[float, str, Entry | None]]:
-    """Entries and published benchmarks: score in [mm], name, and the entry; the best first."""
+def lines(found: Mapping[str, Entry]) -> Iterator[tuple[float, str, Entry | None]]:
+    """Benchmarks and entries by handle: score in [mm], name, and the entry; the best first."""
     everyone = [(score, f"benchmark: {name}", None) for name, score in benchmarks().items()]
     yield from sorted(
-        [*everyone, *((x.score, x.handle, x) for x in found)], key=lambda line: line[:2]
+        [*everyone, *((x.score, name, x) for name, x in found.items())], key=lambda line: line[:2]
     )
 
 
-def as_text(found: Sequence[Entry]) -> Iterator[str]:
+def as_text(found: Mapping[str, Entry]) -> Iterator[str]:
     """A line for each entry and benchmark."""
     for score, name, entry in lines(found):
         said = f"; {entry.why}" if entry and entry.why else ""
         yield f"{score:8.1f} mm  {name}{said}"
 
 
-def page(course: Course, found: Sequence[Entry], final: bool) -> str:
+def page(course: Course, found: Mapping[str, Entry], final: bool) -> str:
     """The table as one file, with a replay of each entry's first run."""
     return render_page(
         "cup.html.j2",
@@ -44,17 +44,23 @@ def page(course: Course, found: Sequence[Entry], final: bool) -> str:
     )
 
 
-def give_bonus(course: Course, found: Sequence[Entry]) -> None:
-    """Write how many benchmarks an entry beats as extra credit of all who have its handle."""
+def give_bonus(course: Course, found: Mapping[str, Entry]) -> None:
+    """Write how many benchmarks an entry beats as extra credit of all who have its handle now.
+
+    A student who had such a bonus, and whose handle has no entry now, gets 0.
+    """
     handles = Arms.of(course.root).handles
     with open_gradebook(course) as book:
-        for entry in found:
-            text = "\n".join(as_text([entry]))
-            team = {who for who, handle in handles.items() if handle == entry.handle}
-            for student in sorted(team | {entry.student}):
-                for grade in enter_tasks(
-                    course, book, CUP, student, {BONUS: f"```text\n{text}\n```"}, 0
-                ):
-                    grade.auto_score, grade.extra_credit = 0.0, float(entry.beaten)
-                    grade.needs_manual_grade = False
+        had = {x.student.id for x in book.assignment_submissions(CUP)}
+        for student in sorted(had | handles.keys() | {x.student for x in found.values()}):
+            mine = {x: found[x] for x in [handles.get(student, student)] if x in found}
+            if not (mine or student in had):
+                continue
+            text = "\n".join(as_text(mine))
+            for grade in enter_tasks(
+                course, book, CUP, student, {BONUS: f"```text\n{text}\n```"}, 0
+            ):
+                grade.auto_score = 0.0
+                grade.extra_credit = float(sum(x.beaten for x in mine.values()))
+                grade.needs_manual_grade = False
         book.db.commit()

@@ -19,6 +19,7 @@ from sqlalchemy.exc import DatabaseError, OperationalError, SAWarning
 
 from ...course.authoring.bundle import Bundle
 from ...course.authoring.layout import Course
+from ...course.brief import words_of
 from ...course.notebook import by_hand, grade_id, nbgrader_info, question_of, read_cells
 from ...errors import LabkitError
 from ..atomic import write
@@ -199,7 +200,7 @@ def timestamp(course: Course, result: Result) -> tuple[datetime | None, str]:
 def automatic_scores(notebook: Any, result: Result) -> dict[str, float | None]:
     """The automatic score of each cell of the gradebook; None for what a person must mark.
 
-    An answer that is unchanged or empty earns 0.
+    An answer that is unchanged or in which nobody sees a word earns 0.
 
     Args:
         notebook: The submission in the release's form.
@@ -214,7 +215,7 @@ def automatic_scores(notebook: Any, result: Result) -> dict[str, float | None]:
         if nbgrader_info(cell).get("task"):
             found[name] = 0.0 if result.rejected else None
         elif by_hand(cell):
-            found[name] = determine_grade(cell)[0] if cell.source.strip() else 0.0
+            found[name] = determine_grade(cell)[0] if words_of(cell.source) else 0.0
         elif nbgrader_info(cell).get("grade"):
             found[name] = earned.get(question_of(name), 0.0)
     return found

@@ -162,7 +162,7 @@ def marks(one: Student) -> dict[str, str]:
     return {key: mark.casefold() for key in _KEYS if (mark := getattr(one, key))}
 
 
-def shared(one: Student, other: Student) -> list[bool]:
+def agreements(one: Student, other: Student) -> list[bool]:
     """For each key that both students have, whether the values agree."""
     a, b = marks(one), marks(other)
     return [a[key] == b[key] for key in a.keys() & b.keys()]
@@ -177,7 +177,7 @@ def _refuse_contradictions(entry: Entry, id: str, rows: dict[object, list[Entry]
             "worksheet again"
         )
     for other in rows.setdefault(("name", name), []) if name else ():
-        if not shared(who, other.student):
+        if not agreements(who, other.student):
             raise LabkitError(
                 f"lines {other.line} and {entry.line} are both {who.name}, and nothing tells them "
                 "apart; give each a login, an address or a number, or delete one"
@@ -212,7 +212,7 @@ def _find(
         )
     name = same_name(entry.student.name)
     called = by_mark.get(("name", name), set()) if name and unique and not found else set()
-    if len(called) == 1 and not shared(students[min(called)], entry.student):
+    if len(called) == 1 and not agreements(students[min(called)], entry.student):
         return min(called)
     return min(found, default="")
 

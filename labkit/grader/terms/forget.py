@@ -16,7 +16,7 @@ from markupsafe import escape
 from nbgrader.api import Gradebook
 
 from ...course.authoring.bundle import Bundle
-from ...course.authoring.layout import Course
+from ...course.authoring.layout import CUP, Course
 from ...course.own_arm import FILE as ARMS
 from ...course.own_arm import HANDLES, Arms
 from ...errors import LabkitError
@@ -27,7 +27,7 @@ from ..peers.readers import move_reviews
 from ..rules import FILE as RULES
 from ..rules import rules_in
 from ..students.arms import sealed_text
-from ..students.enrol import marks, shared
+from ..students.enrol import agreements, marks
 from ..students.identity import FILE as LMS
 from ..students.identity import all_lms_users, identity_lock, save_lms_users
 from ..students.move import move_work
@@ -69,7 +69,9 @@ def terms_of(course: Course, student: str, names: Collection[str] = ()) -> list[
         raise LabkitError(f"there is no term {unknown[0]!r}; there are {', '.join(known)}")
     terms = {name: term for name, term in known.items() if name in names or not names}
     people = {name: one for name, term in terms.items() if (one := read_roster(term).get(student))}
-    if any((alike := shared(*two)) and not any(alike) for two in combinations(people.values(), 2)):
+    if any(
+        (alike := agreements(*two)) and not any(alike) for two in combinations(people.values(), 2)
+    ):
         listed = [f"{x}: {', '.join((y.name, *marks(y).values()))}" for x, y in people.items()]
         rest = [x for x, y in terms.items() if x not in people and files_of([y], student)]
         listed += [f"{x}: not in its roster" for x in rest]
@@ -107,8 +109,10 @@ def entries_of(terms: Iterable[Course], student: str) -> list[Path]:
     return [path for term in terms for path, _ in _entries(term, student)]
 
 
-def shared_reports(terms: Iterable[Course], student: str) -> list[tuple[Course, str, str]]:
-    """Reports that a student handed in for a team: term, assignment, and new owner.
+def shared_work(terms: Iterable[Course], student: str) -> list[tuple[Course, str, str]]:
+    """What a student handed in for a team: term, assignment, and new owner.
+
+    These are reports, and the cup's notebook if it is the team's only one.
 
     Raises:
         LabkitError: The roster or the release of a term is damaged.
@@ -120,20 +124,20 @@ def shared_reports(terms: Iterable[Course], student: str) -> list[tuple[Course, 
         if one is None or not one.team:
             continue
         team = {mate.id for mate in roster.students if mate.team == one.team}
-        for name in sorted(path.stem for path in term.bundle.glob("*.json")):
-            if Bundle.of(term, name).is_report:
-                own = team & {*students(term, name), *Results(term, name).students()}
-                if own and min(own) == student and team - own:
-                    found.append((term, name, min(team - own)))
+        for name in [CUP, *sorted(path.stem for path in term.bundle.glob("*.json"))]:
+            own = team & {*students(term, name), *Results(term, name).students()}
+            first = len(own) == 1 if name == CUP else Bundle.of(term, name).is_report
+            if first and min(own, default="") == student and team - own:
+                found.append((term, name, min(team - own)))
     return found
 
 
 def shorter_extensions(
-    course: Course, student: str, reports: Iterable[tuple[Course, str, str]]
+    course: Course, student: str, shared: Iterable[tuple[Course, str, str]]
 ) -> list[str]:
-    """A sentence for each of `shared_reports` that would be late in its new owner's folder."""
+    """A sentence for each of `shared_work` that would be late in its new owner's folder."""
     said = []
-    for term, name, mate in reports:
+    for term, name, mate in shared:
         file = term.root / RULES
         try:
             rules = rules_in(file)
@@ -153,17 +157,17 @@ def forget(
 ) -> None:
     """Delete what `files_of` found, or archived terms, and a student's entries in these terms.
 
-    A team report on which the marks of others depend is first moved to one of them.
+    Work for a team, on which the marks of others depend, is first moved to one of them.
 
     Raises:
         LabkitError: Another command holds the lock, a file about the whole class is damaged, or the
             team's report cannot be moved, or would be late.
     """
     with identity_lock(course):
-        reports = shared_reports(terms, student)
-        if said := shorter_extensions(course, student, reports):
+        shared = shared_work(terms, student)
+        if said := shorter_extensions(course, student, shared):
             raise LabkitError("; ".join(said))
-        for term, name, mate in reports:
+        for term, name, mate in shared:
             if move_work(term, name, {student: mate}):
                 raise LabkitError(
                     f"{student} handed in {name} for {mate} too, who has other files in "
