@@ -304,6 +304,32 @@ def test_the_import_says_what_groups_become(tmp_path):
     assert not any("teams" in sentence for sentence in import_list(course, file)[0])
 
 
+def test_one_student_with_another_address_is_not_taken_for_two(tmp_path, capsys):
+    """The import asks for a look, exit code 1, and what it advises leaves one row and one folder.
+
+    It does not ask if both are in the list, for then they are two students.
+    """
+    course, file = bare_course(tmp_path / "course"), tmp_path / "list.csv"
+    words = ["students", "import", str(file), "--course", str(course.root)]
+    file.write_text("name,email\nNia Novak,nia@x\nBo Li,bo@x\n")
+    assert main(words) == 0
+    assert "2 of them new\n" in capsys.readouterr().out, "of a first list nobody is named"
+    changed = "name,email\nNia Novak,nia2@x\nBo Li,bo@x\n"
+    file.write_text(changed)
+    assert main(words) == 1
+    out, err = capsys.readouterr()
+    assert "3 students, 1 of them new: Nia Novak (Nia-Novak-nia2)\n" in out
+    assert "not in this list: Nia Novak (Nia-Novak-nia2) and Nia-Novak; if the two are one" in err
+    rows = (course.root / FILE).read_text().splitlines(keepends=True)
+    assert rows.pop().startswith("Nia-Novak-nia2,")
+    (course.root / FILE).write_text("".join(rows).replace("nia@x", "nia2@x"))
+    assert main(words) == 0
+    assert [one.id for one in read_roster(course).students] == ["Nia-Novak", "Bo-Li"]
+    file.write_text(changed + "Bo Li,li@x\n")
+    assert main(words) == 0
+    assert "1 of them new: Bo Li (Bo-Li-li)\n" in capsys.readouterr().out
+
+
 @pytest.mark.slow
 def test_the_command_imports_a_list_and_formgrader_shows_names(tmp_path, capsys):
     """New ones are counted, namesakes named, and of a class list also those whom it lacks."""

@@ -140,8 +140,8 @@ def students(course: Course, action: str, file: Path, assignment: str | None) ->
 
     The list comes from Moodle or Canvas, or is any table with a row for each student.
 
-    Exit code: 0 if the list was imported, 1 if it was and somebody's work or hand-in time needs a
-    look (named at the end), 2 if the list was not imported.
+    Exit code: 0 if the list was imported, 1 if it was and somebody's row, work or hand-in time
+    needs a look (named at the end), 2 if the list was not imported.
     """
     from ..students.enrol import import_list
 

@@ -21,7 +21,7 @@ from ..seeds import seed_of
 from .arms import give_arms
 from .class_list import Entry, Student, read_list
 from .identity import all_lms_users, assign_folders, identity_lock
-from .list_remarks import about_namesakes, about_teams
+from .list_remarks import about_doubles, about_namesakes, about_teams
 from .move import move_to_owners, unlisted
 from .platforms import LmsUser
 from .roster import FILE, Roster, read_roster, same_name, save_roster, tell_gradebook
@@ -130,9 +130,11 @@ def import_list(
     listed = {student.id for _, student in done.rows}
     absent = [str(one) for one in before.students if not (assignment or one.id in listed)]
     everybody = how_many(len(done.roster.students), "student")
-    summary = [f"{FILE}: {everybody}, {len(done.new)} of them new"]
+    who = f": {few([str(one) for one in done.new])}" if before.students and done.new else ""
+    summary = [f"{FILE}: {everybody}, {len(done.new)} of them new{who}"]
     if absent:
         summary.append(f"not in this list, and still in the roster: {len(absent)} ({few(absent)})")
+    not_taken += about_doubles([x for x in before.students if x.id not in listed], done.new)
     named = {one.student for one in left}
     if others := [x for x in unlisted(course, done.roster) if x not in named]:
         not_taken.append(
