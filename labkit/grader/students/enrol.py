@@ -139,8 +139,8 @@ def import_list(
     if others := [x for x in unlisted(course, done.roster) if x not in named]:
         not_taken.append(
             f"work in folders that belong to nobody in the roster: {', '.join(others)}; where it "
-            "is a listed student's, copy the notebook that is to count to "
-            "submitted/STUDENT/ASSIGNMENT/ASSIGNMENT.ipynb"
+            "is a listed student's, import Moodle's grading worksheet, with --assignment, or copy "
+            "the notebook that is to count to submitted/STUDENT/ASSIGNMENT/ASSIGNMENT.ipynb"
         )
     if len(entries) < len(rows):
         summary.append(
