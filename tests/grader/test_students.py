@@ -73,7 +73,8 @@ def test_what_columns_hold(tmp_path):
 @pytest.mark.parametrize(
     ("text", "words"),
     [
-        ("", "does not say who its students are"),
+        ("", "list.csv is empty; download the list again"),
+        ("\nname\nAda\n", "does not name its columns in the first line; download"),
         ("Group,Mark\nA,1\n", "its columns are 'Group', 'Mark'; call one of them 'name'"),
         ("a:b\nc:d:e,f\n", "its columns are 'a:b'"),
         ("name\n\x00", "is not a text; save the spreadsheet as CSV"),
@@ -113,6 +114,14 @@ def test_rows_that_contradict_each_other_are_refused(tmp_path, text, words):
     with pytest.raises(LabkitError) as error:
         enrolled(listed(tmp_path, text))
     assert words in str(error.value)
+
+
+@pytest.mark.parametrize("test_student", ["", '"Student, Test",98,,0f98e,S1\n'])
+def test_a_list_without_a_student_is_refused(tmp_path, test_student):
+    """A download of nobody would only say that everybody of the roster is missing."""
+    (tmp_path / "list.csv").write_text(CANVAS.partition("\n")[0] + "\n" + test_student)
+    with pytest.raises(LabkitError, match="names its columns but no student; choose all students"):
+        import_list(bare_course(tmp_path / "course"), tmp_path / "list.csv")
 
 
 def test_a_list_that_is_cut_off_is_refused(tmp_path):

@@ -110,6 +110,10 @@ def import_list(
         course.notebook_source(assignment)
     rows = read_list(file)
     entries = [entry for entry in rows if not entry.is_canvas_test_student]
+    if not entries:
+        raise LabkitError(
+            f"{file} names its columns but no student; choose all students, and download it again"
+        )
     numbered = sum(bool(entry.participant) for entry in entries)
     if assignment and not numbered:
         raise LabkitError(
