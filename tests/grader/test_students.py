@@ -368,6 +368,7 @@ def test_the_command_imports_a_list_and_formgrader_shows_names(tmp_path, capsys)
     assert main(["students", "import", str(file), *where]) == 0
     said = capsys.readouterr().out
     assert "not in this list, and still in the roster: 3 (Zoë O'Brien (Zoë-OBrien), " in said
+    assert "; keep their rows, even if they have left the class\n" in said
     file.write_text(CANVAS)
     assert main(["students", "import", str(file), "--assignment", NAME, *where]) == 2
     assert "has no column 'Identifier'" in capsys.readouterr().err

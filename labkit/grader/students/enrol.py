@@ -137,7 +137,10 @@ def import_list(
     who = f": {few([str(one) for one in done.new])}" if before.students and done.new else ""
     summary = [f"{FILE}: {everybody}, {len(done.new)} of them new{who}"]
     if absent:
-        summary.append(f"not in this list, and still in the roster: {len(absent)} ({few(absent)})")
+        summary.append(
+            f"not in this list, and still in the roster: {len(absent)} ({few(absent)}); keep their "
+            "rows, even if they have left the class"
+        )
     not_taken += about_doubles([x for x in before.students if x.id not in listed], done.new)
     named = {one.student for one in left}
     if others := [x for x in unlisted(course, done.roster) if x not in named]:
