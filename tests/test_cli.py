@@ -72,6 +72,7 @@ def test_a_number_that_makes_no_sense_is_a_sentence(words, sentence, capsys):
         (["merge", WARMUP, PATHS, "--to", "x.ipynb"], "releases of the same assignment?"),
         (["term", "list", "--course", "nowhere"], "there is no "),
         (["feedback", "99_dance", "--course", ROOT], "'01_paths'"),
+        (["grade", "--course", ROOT], "which assignment? "),
         (["export", "01_paths", "--layout", "cup", "--course", ROOT], "export --layout cup"),
         (["export", "--layout", "moodle", "--course", ROOT], "labkit export ASSIGNMENT --layout m"),
         (
@@ -117,6 +118,21 @@ def test_an_unknown_assignment_is_a_sentence(capsys):
     err = capsys.readouterr().err
     assert err.count("\n") == 1
     assert "'01_paths'" in err
+
+
+@pytest.mark.parametrize("verb", ["grade", "feedback", "class-report"])
+def test_without_an_assignment_it_lists_those_that_were_handed_in(verb, tmp_path, capsys):
+    """In the order of the course, whoever handed them in; other folders are left out."""
+    (tmp_path / "nbgrader_config.py").touch()
+    for name in ("01_paths", "02_model", "03_dance"):
+        source = tmp_path / "solutions" / name[3:] / f"{name}.py"
+        source.parent.mkdir(parents=True)
+        source.touch()
+    for handed_in in ("ada/02_model", "bob/01_paths", "bob/02_model", "bob/figures"):
+        (tmp_path / "submitted" / handed_in).mkdir(parents=True)
+    assert main([verb, "--course", str(tmp_path)]) == 2
+    said = f"labkit {verb}: which assignment? handed in: 01_paths, 02_model\n"
+    assert capsys.readouterr().err == said
 
 
 def test_outside_a_course_it_says_so(tmp_path):

@@ -220,6 +220,19 @@ def test_who_is_not_in_the_roster_is_merged_with_nobody(bare, tmp_path):
     assert "participant 6 (Kim) has the name of a student, and so has somebody" in said[1]
 
 
+def test_who_has_another_surname_by_now_is_perhaps_a_student(bare, tmp_path):
+    """Two words of the name are the same: the worksheet knows, and then the work goes to them."""
+    roster(bare, "fay,Fay,Okonkwo-Smith,fay@x,,,", "bo,Fay,Li,bo@x,,,")
+    source = from_moodle(tmp_path / "1.zip", [(("Fay Okonkwo", 5), "x.ipynb", "hers")])
+    (said,) = troubles(bare, source)
+    assert "and collect again; if they are Fay Okonkwo-Smith (fay), import the assign" in said
+    worksheet = tmp_path / "worksheet.csv"
+    worksheet.write_text("Identifier,Full name,Email address\nParticipant 5,Fay Okonkwo,fay@x\n")
+    enrolled(bare, worksheet, NAME)
+    assert counting(bare) == {"fay": "hers"}
+    assert not troubles(bare, source)
+
+
 def test_a_name_that_the_roster_has_twice_is_not_guessed(bare, tmp_path):
     """Both are kept apart until somebody says who is who; then their work goes to them."""
     roster(bare, "li1,Li,Wei,li1@uni.org,,,", "li2,Wei,Li,li2@uni.org,,,")

@@ -1,6 +1,7 @@
 """Making notebooks from sources: what is fed in, what comes out, what is refused."""
 
 import json
+import re
 from dataclasses import replace
 from pathlib import Path
 
@@ -306,3 +307,18 @@ def test_a_release_with_a_reason_against_it_writes_nothing(tmp_path, monkeypatch
         release(course, NAME, 1)
     assert str(caught.value).count("inverse_transform: ") == 3
     assert before == {p: p.read_bytes() for p in course.root.rglob("*") if p.is_file()}
+
+
+@pytest.mark.slow
+def test_what_another_machine_rounds_otherwise_changes_no_file(tmp_path):
+    """A release anew leaves public cases that agree, and writes them if a number is another."""
+    course = copied(tmp_path)
+    release(course, NAME, 1)
+    checks = course.release / NAME / "checks.json"
+    text = checks.read_text()
+    for factor, kept in ((1 + 1e-12, True), (1 + 1e-6, False)):
+        other = re.sub(r"[0-9]+\.[0-9]{9,}", lambda x, k=factor: repr(float(x[0]) * k), text)
+        assert other != text
+        checks.write_text(other)
+        release(course, NAME, 1)
+        assert checks.read_text() == (other if kept else text)

@@ -73,7 +73,8 @@ def test_what_columns_hold(tmp_path):
 @pytest.mark.parametrize(
     ("text", "words"),
     [
-        ("", "does not say who its students are"),
+        ("", "list.csv is empty; download the list again"),
+        ("\nname\nAda\n", "does not name its columns in the first line; download"),
         ("Group,Mark\nA,1\n", "its columns are 'Group', 'Mark'; call one of them 'name'"),
         ("a:b\nc:d:e,f\n", "its columns are 'a:b'"),
         ("name\n\x00", "is not a text; save the spreadsheet as CSV"),
@@ -113,6 +114,14 @@ def test_rows_that_contradict_each_other_are_refused(tmp_path, text, words):
     with pytest.raises(LabkitError) as error:
         enrolled(listed(tmp_path, text))
     assert words in str(error.value)
+
+
+@pytest.mark.parametrize("test_student", ["", '"Student, Test",98,,0f98e,S1\n'])
+def test_a_list_without_a_student_is_refused(tmp_path, test_student):
+    """A download of nobody would only say that everybody of the roster is missing."""
+    (tmp_path / "list.csv").write_text(CANVAS.partition("\n")[0] + "\n" + test_student)
+    with pytest.raises(LabkitError, match="names its columns but no student; choose all students"):
+        import_list(bare_course(tmp_path / "course"), tmp_path / "list.csv")
 
 
 def test_a_list_that_is_cut_off_is_refused(tmp_path):
@@ -304,6 +313,32 @@ def test_the_import_says_what_groups_become(tmp_path):
     assert not any("teams" in sentence for sentence in import_list(course, file)[0])
 
 
+def test_one_student_with_another_address_is_not_taken_for_two(tmp_path, capsys):
+    """The import asks for a look, exit code 1, and what it advises leaves one row and one folder.
+
+    It does not ask if both are in the list, for then they are two students.
+    """
+    course, file = bare_course(tmp_path / "course"), tmp_path / "list.csv"
+    words = ["students", "import", str(file), "--course", str(course.root)]
+    file.write_text("name,email\nNia Novak,nia@x\nBo Li,bo@x\n")
+    assert main(words) == 0
+    assert "2 of them new\n" in capsys.readouterr().out, "of a first list nobody is named"
+    changed = "name,email\nNia Novak,nia2@x\nBo Li,bo@x\n"
+    file.write_text(changed)
+    assert main(words) == 1
+    out, err = capsys.readouterr()
+    assert "3 students, 1 of them new: Nia Novak (Nia-Novak-nia2)\n" in out
+    assert "not in this list: Nia Novak (Nia-Novak-nia2) and Nia-Novak; if the two are one" in err
+    rows = (course.root / FILE).read_text().splitlines(keepends=True)
+    assert rows.pop().startswith("Nia-Novak-nia2,")
+    (course.root / FILE).write_text("".join(rows).replace("nia@x", "nia2@x"))
+    assert main(words) == 0
+    assert [one.id for one in read_roster(course).students] == ["Nia-Novak", "Bo-Li"]
+    file.write_text(changed + "Bo Li,li@x\n")
+    assert main(words) == 0
+    assert "1 of them new: Bo Li (Bo-Li-li)\n" in capsys.readouterr().out
+
+
 @pytest.mark.slow
 def test_the_command_imports_a_list_and_formgrader_shows_names(tmp_path, capsys):
     """New ones are counted, namesakes named, and of a class list also those whom it lacks."""
@@ -333,6 +368,7 @@ def test_the_command_imports_a_list_and_formgrader_shows_names(tmp_path, capsys)
     assert main(["students", "import", str(file), *where]) == 0
     said = capsys.readouterr().out
     assert "not in this list, and still in the roster: 3 (Zoë O'Brien (Zoë-OBrien), " in said
+    assert "; keep their rows, even if they have left the class\n" in said
     file.write_text(CANVAS)
     assert main(["students", "import", str(file), "--assignment", NAME, *where]) == 2
     assert "has no column 'Identifier'" in capsys.readouterr().err

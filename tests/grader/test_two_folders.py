@@ -159,6 +159,23 @@ def test_a_folder_of_nobody_in_the_roster_is_named(bare, tmp_path, capsys):
     assert "perhaps theirs too" not in " ".join(left_by_hand(bare, [bare], "ada"))
 
 
+def test_two_participants_of_one_name_stay_apart_until_the_worksheet_comes(bare, tmp_path):
+    """As the guide says: neither a list nor collecting again says whose the two folders are."""
+    people = [(("Kim Lee", number), "x.ipynb", str(number)) for number in (11, 12)]
+    source = from_moodle(tmp_path / "1.zip", people)
+    take(bare, source)
+    (tmp_path / "list.csv").write_text("name,login\nKim Lee,kl\n")
+    _, (said,) = import_list(bare, tmp_path / "list.csv")
+    assert "Kim-Lee-11, Kim-Lee-12; where it is a listed student's, import Moodle's grading" in said
+    doubts = [str(one) for one in take(bare, source) if not one.fine]
+    assert sum("until you import the assignment's grading worksheet" in one for one in doubts) == 2
+    assert counting(bare) == {"Kim-Lee-11": "11", "Kim-Lee-12": "12"}
+    rows = "Participant 11,Kim Lee,kl2\nParticipant 12,Kim Lee,kl\n"
+    (tmp_path / "worksheet.csv").write_text(f"Identifier,Full name,Username\n{rows}")
+    import_list(bare, tmp_path / "worksheet.csv", NAME)
+    assert counting(bare) == {"kl2": "11", "kl": "12"}
+
+
 def test_a_folder_is_named_though_a_sentence_has_its_name(bare, tmp_path):
     """A time that nobody can read, 01/03/2026, says nothing of the folder 03."""
     save_roster(bare, Roster((Student("ada", "Ada", "Lovelace", login="ada"),)))

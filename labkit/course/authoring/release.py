@@ -8,9 +8,11 @@ from __future__ import annotations
 
 import copy
 import json
+import math
 import re
 import shutil
 from collections.abc import Iterable, Mapping
+from contextlib import suppress
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -83,6 +85,9 @@ def prepare(course: Course, name: str, seed: int) -> Prepared:
 def write(made: Prepared, added: Iterable[str] = ()) -> None:
     """Write the source for nbgrader, the solved notebook and the graders' bundle.
 
+    Public cases that differ from those of the last release by rounding alone stay as they are, so
+    a release on another machine leaves the files under git unchanged.
+
     Args:
         made: What `prepare` made.
         added: Questions that are new to students who have handed in already.
@@ -111,7 +116,23 @@ def _at_home(source: Notebook) -> Notebook:
 def _checks(made: Prepared) -> str:
     questions = [question_data(q.public()) for q in made.questions.values()]
     data = {**stamp(), "assignment": made.name, "questions": questions}
-    return json.dumps(data, ensure_ascii=False, separators=(",", ":")) + "\n"
+    text = json.dumps(data, ensure_ascii=False, separators=(",", ":")) + "\n"
+    with suppress(OSError, ValueError):  # without a release, or with a damaged one
+        before = (made.course.release / made.name / FILE).read_text(encoding="utf-8")
+        if same_but_for_rounding(json.loads(before), json.loads(text)):
+            return before
+    return text
+
+
+def same_but_for_rounding(a: object, b: object) -> bool:
+    """Whether two JSON values are the same but for what another machine rounds otherwise."""
+    if isinstance(a, dict) and isinstance(b, dict):
+        return a.keys() == b.keys() and all(same_but_for_rounding(a[k], b[k]) for k in a)
+    if isinstance(a, list) and isinstance(b, list):
+        return len(a) == len(b) and all(map(same_but_for_rounding, a, b))
+    if isinstance(a, float) and isinstance(b, int | float):
+        return math.isclose(a, b, rel_tol=1e-9, abs_tol=1e-12)
+    return a == b
 
 
 def _write(folder: Path, notebook: Notebook, checks: str) -> None:

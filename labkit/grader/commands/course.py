@@ -43,10 +43,15 @@ def of_course(command: Callable[..., int]) -> Callable[..., int]:
 def of_assignment(command: Callable[..., int]) -> Callable[..., int]:
     """Give a command an assignment's name; the course must have a notebook of that name."""
 
-    @click.argument("assignment")
+    @click.argument("assignment", required=False, metavar="ASSIGNMENT")
     @of_course
     @wraps(command)
-    def on_assignment(course: Course, assignment: str, **given: Any) -> int:
+    def on_assignment(course: Course, assignment: str | None, **given: Any) -> int:
+        if assignment is None:
+            there = {path.name for path in course.submitted.glob("*/*")}
+            handed_in = [name for name in course.names() if name in there]
+            which = ", ".join(handed_in or course.names())
+            raise LabkitError(f"which assignment? {'handed in' if handed_in else 'all'}: {which}")
         if assignment in MARKED_BY:
             raise LabkitError(f"{assignment} is marked by: {MARKED_BY[assignment]}")
         course.notebook_source(assignment)
@@ -140,8 +145,8 @@ def students(course: Course, action: str, file: Path, assignment: str | None) ->
 
     The list comes from Moodle or Canvas, or is any table with a row for each student.
 
-    Exit code: 0 if the list was imported, 1 if it was and somebody's work or hand-in time needs a
-    look (named at the end), 2 if the list was not imported.
+    Exit code: 0 if the list was imported, 1 if it was and somebody's row, work or hand-in time
+    needs a look (named at the end), 2 if the list was not imported.
     """
     from ..students.enrol import import_list
 

@@ -116,6 +116,9 @@ def read_list(path: Path) -> tuple[Entry, ...]:
         LabkitError: The file is not a table, a column is missing, or a row does not fit.
     """
     heads, rows = read_table(path)
+    if not any(heads):
+        what = "does not name its columns in the first line" if rows else "is empty"
+        raise LabkitError(f"{path} {what}; download the list again")
     columns = _columns(heads)
     if not columns.keys() & {"login", "name", "last_name"}:
         raise LabkitError(

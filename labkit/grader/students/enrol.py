@@ -21,7 +21,7 @@ from ..seeds import seed_of
 from .arms import give_arms
 from .class_list import Entry, Student, read_list
 from .identity import all_lms_users, assign_folders, identity_lock
-from .list_remarks import about_namesakes, about_teams
+from .list_remarks import about_doubles, about_namesakes, about_teams
 from .move import move_to_owners, unlisted
 from .platforms import LmsUser
 from .roster import FILE, Roster, read_roster, same_name, save_roster, tell_gradebook
@@ -110,6 +110,10 @@ def import_list(
         course.notebook_source(assignment)
     rows = read_list(file)
     entries = [entry for entry in rows if not entry.is_canvas_test_student]
+    if not entries:
+        raise LabkitError(
+            f"{file} names its columns but no student; choose all students, and download it again"
+        )
     numbered = sum(bool(entry.participant) for entry in entries)
     if assignment and not numbered:
         raise LabkitError(
@@ -130,15 +134,20 @@ def import_list(
     listed = {student.id for _, student in done.rows}
     absent = [str(one) for one in before.students if not (assignment or one.id in listed)]
     everybody = how_many(len(done.roster.students), "student")
-    summary = [f"{FILE}: {everybody}, {len(done.new)} of them new"]
+    who = f": {few([str(one) for one in done.new])}" if before.students and done.new else ""
+    summary = [f"{FILE}: {everybody}, {len(done.new)} of them new{who}"]
     if absent:
-        summary.append(f"not in this list, and still in the roster: {len(absent)} ({few(absent)})")
+        summary.append(
+            f"not in this list, and still in the roster: {len(absent)} ({few(absent)}); keep their "
+            "rows, even if they have left the class"
+        )
+    not_taken += about_doubles([x for x in before.students if x.id not in listed], done.new)
     named = {one.student for one in left}
     if others := [x for x in unlisted(course, done.roster) if x not in named]:
         not_taken.append(
             f"work in folders that belong to nobody in the roster: {', '.join(others)}; where it "
-            "is a listed student's, copy the notebook that is to count to "
-            "submitted/STUDENT/ASSIGNMENT/ASSIGNMENT.ipynb"
+            "is a listed student's, import Moodle's grading worksheet, with --assignment, or copy "
+            "the notebook that is to count to submitted/STUDENT/ASSIGNMENT/ASSIGNMENT.ipynb"
         )
     if len(entries) < len(rows):
         summary.append(

@@ -161,7 +161,7 @@ def assign_folders(
         else:
             folder = folder or _own_folder(one, owners)
             owners.setdefault(folder.casefold(), set()).add(key)
-            found[key] = Place(folder, _doubt(one, len(students)) if roster.students else "")
+            found[key] = Place(folder, _doubt(one, len(students), roster))
     return found
 
 
@@ -170,11 +170,16 @@ def _claim(one: LmsUser, folder: str, roster: Roster) -> tuple[str, ...]:
     return (one.system, *([folder] if folder in roster else [s.id for s in roster.whose(one)]))
 
 
-def _doubt(one: LmsUser, students: int) -> str:
+def _doubt(one: LmsUser, students: int, roster: Roster) -> str:
+    if not roster.students:
+        return ""
     if not students:
+        alike = [str(x) for x in roster.alike(one.name)] if one.system == "moodle" else []
         return (
             f"{one} is not in the roster, so their work is kept apart; import a list that "
             "has them, labkit students import LIST.csv, and collect again"
+            + f"; if they are {' or '.join(alike)}, import the assignment's grading worksheet"
+            * bool(alike)
         )
     until = f"their work is kept apart until {_TOLD_APART[one.system]}"
     if students > 1:

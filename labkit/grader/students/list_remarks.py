@@ -6,8 +6,9 @@ from collections import Counter
 from collections.abc import Iterable, Iterator, Mapping
 
 from ..clean import few, how_many
+from .class_list import Student
 from .platforms import LmsUser
-from .roster import FILE, Roster
+from .roster import FILE, Roster, same_name
 
 
 def about_teams(named: Iterable[str]) -> Iterator[str]:
@@ -20,6 +21,18 @@ def about_teams(named: Iterable[str]) -> Iterator[str]:
             f"{most}; a team has one arm and hands in one report. If "
             "these are other groups, such as tutorials, delete their column from the list, clear "
             f"the column team of {FILE}, and import the list again"
+        )
+
+
+def about_doubles(absent: Iterable[Student], new: Iterable[Student]) -> Iterator[str]:
+    """New students who may have been in the roster before, with another address or number."""
+    before = {same_name(one.name): one.id for one in absent if one.name}
+    pairs = [f"{x} and {before[name]}" for x in new if (name := same_name(x.name)) in before]
+    if pairs:
+        yield (
+            "new, with the name of a student who was in the roster before and is not in this list: "
+            f"{few(pairs)}; if the two are one student, delete the new row from {FILE}, write the "
+            "new address, login or number into the other row, and import the list again"
         )
 
 

@@ -58,6 +58,15 @@ class Roster:
         groups = [group for (system, _), group in self._by_key.items() if system == "moodle"]
         return [group for group in groups if len(group) > 1]
 
+    def alike(self, name: str) -> list[Student]:
+        """Students of whose name two words are in another, as after a change of surname."""
+        words = _words(name)
+        return [student for student, other in self._words if len(words & other) > 1]
+
+    @cached_property
+    def _words(self) -> list[tuple[Student, frozenset[str]]]:
+        return [(student, _words(student.name)) for student in self.students]
+
     @cached_property
     def _by_id(self) -> dict[str, Student]:
         return {student.id: student for student in self.students}
@@ -93,6 +102,10 @@ def same_name(name: str) -> tuple[str, ...]:
     plain = unicodedata.normalize("NFKC", name).casefold().replace("_", " ").replace(",", " ")
     words = ("".join(c for c in w if unicodedata.category(c)[0] in "LMN") for w in plain.split())
     return tuple(sorted(filter(None, words)))
+
+
+def _words(name: str) -> frozenset[str]:
+    return frozenset(same_name(name.replace("-", " ")))
 
 
 def read_roster(course: Course) -> Roster:
