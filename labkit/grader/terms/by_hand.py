@@ -13,7 +13,7 @@ from ..pseudonyms import FILE as KEY
 from ..pseudonyms import pseudonym
 from ..rules import FILE as RULES
 from ..rules import rules_in
-from ..students.enrol import marks, shared
+from ..students.enrol import agreements, marks
 from ..students.identity import all_lms_users
 from ..students.roster import Roster, read_roster, same_name
 from ..submission import did_you_mean, is_name
@@ -98,7 +98,7 @@ def _perhaps_theirs(
             and (same_name(one.name) in names or one.key in keys or me.whose(one))
         }
         for one in roster.students if student not in roster else ():
-            ties = [x for mine in me.students for x in shared(one, mine)]
+            ties = [x for mine in me.students for x in agreements(one, mine)]
             if any(ties) or (not ties and same_name(one.name) in names):
                 found.add(one.id)
         yield term, sorted(found - {student})
