@@ -1,5 +1,6 @@
 """Verdicts in words: read aloud, they say what was asked, what came back and what to do."""
 
+import re
 from dataclasses import replace
 
 import numpy as np
@@ -121,6 +122,18 @@ def test_the_number_that_is_farthest_off_is_named():
     words = said(lambda x: np.array([0.0, 1.0, 9.0, 3.5]), question).splitlines()
     first = " ".join(map(str.strip, words[1:3]))
     assert first == "The number at index 2 is farthest off: it is 9 instead of 2, in `double(1.0)`."
+
+
+@pytest.mark.parametrize("expected", [1 / 3, np.sin(np.arange(4.0)), np.sin(np.ones((5, 7)))])
+def test_numbers_that_differ_little_do_not_look_the_same(expected):
+    """The digits show the difference, and float32, if that is the cause, is named."""
+    tests = (Test("a", (Call((), expected=expected),)),)
+    question = replace(DOUBLE, judge=Close(rtol=1e-9), tests=tests, mistakes=())
+    for given, cause in ((np.float32(expected), True), (expected * (1.0 + 2e-7), False)):
+        words = " ".join(said(lambda given=given: given, question).split())
+        shown = re.search(r"expected ([^,]*?|\[.*?\]),? got ([^,]*?|\[.*?\]) Stuck", words)
+        assert shown and shown[1] != shown[2]
+        assert ("It is float32, which has 7 digits; compute in float64" in words) == cause
 
 
 def test_a_withheld_tool_is_an_outcome_of_its_own():
