@@ -5,6 +5,7 @@ from __future__ import annotations
 import textwrap
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
+from fractions import Fraction
 
 from ..errors import ControllerError
 from .differences import likely_cause, sentence, words
@@ -224,7 +225,11 @@ def worth(test: TestResult, verdict: Verdict) -> str:
     """The points that a test is worth, or a remark that nothing counts without it."""
     if not test.weight:
         return " (needed before anything counts)"
-    return f" (worth {verdict.worth([test]):g} of {in_points(verdict.points)})"
+    share = Fraction(test.weight / sum(x.weight for x in verdict.tests)).limit_denominator(1000)
+    points = float(verdict.points * share)
+    if abs(points - round(points, 2)) < 1e-6:
+        return f" (worth {round(points, 2):g} of {in_points(verdict.points)})"
+    return f" (worth {share} of the {in_points(verdict.points)})"
 
 
 def why(test: TestResult) -> str:

@@ -82,6 +82,14 @@ def test_a_test_is_worth_what_it_earns_alone(points):
         assert worth(verdict.tests[passes], verdict) == f" {note}"
 
 
+def test_the_shares_of_the_points_have_their_sum():
+    """A share that has no two decimals is a fraction, so no hundredth is lost."""
+    tests = tuple(Test(f"test {k}", CALLS[:1], w) for k, w in enumerate((1.0, 1.0, 2.0, 3.0)))
+    verdict = mark(replace(DOUBLE, tests=tests), double)
+    shares = [worth(test, verdict) for test in verdict.tests]
+    assert shares == [f" (worth {x}/7 of the 4 points)" for x in (1, 1, 2, 3)]
+
+
 def test_a_known_mistake_is_named_first():
     """Its name and its sentence come before the tests, and the tests before the numbers."""
     words = said(square)
