@@ -5,6 +5,7 @@ import pytest
 
 import labkit as lk
 from labkit.course.advice import full_description, line_of
+from labkit.course.reply import reply
 
 STATE = lk.State(0.0, np.zeros(7), np.zeros(7))
 SAMPLE = lk.Sample(*np.zeros((3, 7)))
@@ -45,7 +46,6 @@ def misspells(angles=None):
         (lambda: np.zeros(3) - np.zeros(7), "so the sizes must be equal"),
         (lambda: np.linalg.inv(np.zeros((6, 7))), "only a square matrix"),
         (lambda: FIXED(2.0), "is a * missing"),
-        (lambda: writes(1), "leave the parameter names in the function's first line"),
     ],
 )
 def test_a_usual_slip_has_a_way_out(does, remedy):
@@ -54,6 +54,16 @@ def test_a_usual_slip_has_a_way_out(does, remedy):
         does()
     line = line_of(caught.value)  # it quotes this test's own table
     assert remedy in full_description(caught.value).replace(line, "")
+
+
+def test_only_the_answers_own_parameters_are_to_be_left():
+    """A wrong call within the answer is a matter of that line, and no parameter is changed."""
+    advice = "leave the parameter names in the function's first line as they were given"
+    assert advice in reply(writes, (1,), {})["says"]
+    assert advice in reply(lambda q: q, (), {"dq": 1.0})["says"]
+    for inside in (lambda: writes(1), lambda: np.dot(FIXED), lambda: lk.Model("left").gravity()):
+        says = reply(inside, (), {})["says"]
+        assert "argument" in says and advice not in says
 
 
 def test_no_space_comes_before_a_comma():
