@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 import textwrap
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
@@ -177,10 +178,16 @@ def _helps(verdict: Verdict) -> Iterator[str]:
     if verdict.mistake:
         yield mistake(verdict.mistake)
     elif lead := _lead(verdict):
-        says, call = sentence(lead), next(x.call for x in verdict.tests if x.difference is lead)
-        clear = len(call) <= 60 and not is_shortened(call) and not _is_value(call)
-        named = clear and lead.kind is Kind.NUMBERS and says.endswith(".")
-        yield f"{says[:-1]}, in `{call}`." if named else says
+        test = next(x for x in verdict.tests if x.difference is lead)
+        test = next(x for x in verdict.tests if x.difference is lead)
+        says, call = sentence(lead), test.call
+        clear = len(call) <= 60 and not is_shortened(call)
+        if likely_cause(lead) and not _is_value(call):  # the numbers of other calls may differ
+            where = f"`{call}`" if clear else f'the test "{test.name}"'
+            yield f"In {where}, {re.sub('^It ', 'it ', says)}"
+        else:
+            named = clear and not _is_value(call) and lead.kind is Kind.NUMBERS and says[-1] == "."
+            yield f"{says[:-1]}, in `{call}`." if named else says
 
 
 def _lead(verdict: Verdict) -> Difference | None:

@@ -141,7 +141,7 @@ def test_numbers_that_differ_little_do_not_look_the_same(expected):
         words = " ".join(said(lambda given=given: given, question).split())
         shown = re.search(r"expected ([^,]*?|\[.*?\]),? got ([^,]*?|\[.*?\]) Stuck", words)
         assert shown and shown[1] != shown[2]
-        assert ("It is float32, which has 7 digits; compute in float64" in words) == cause
+        assert ("t is float32, which has 7 digits; compute in float64" in words) == cause
 
 
 def test_a_withheld_tool_is_an_outcome_of_its_own():
@@ -173,7 +173,15 @@ def test_long_answers_stand_below_each_other():
     at = next(k for k, line in enumerate(lines) if "expected" in line)
     assert "double(<3 x 3 numbers>)" in lines[at - 1]
     assert lines[at].index("[0, 1") == lines[at + 1].index("[0, -1")
-    assert lines[1] == "  It has the other sign."
+    assert lines[1] == '  In the test "a long one", it has the other sign.'
+
+
+def test_the_likely_cause_is_told_of_its_own_test():
+    """Twice in the first test, and something else in the next, is not told of the whole answer."""
+    tests = [Test(f"{k} rows", (Call((np.eye(k),), expected=np.ones(9)),)) for k in (3, 4)]
+    question = replace(DOUBLE, tests=tuple(tests), mistakes=())
+    lines = said(lambda x: np.full(9, 2.0 if len(x) == 3 else 0.3), question).splitlines()
+    assert lines[1] == '  In the test "3 rows", it is twice what is expected.'
 
 
 def test_a_test_that_nobody_can_see_is_told():
@@ -199,7 +207,7 @@ def test_the_same_failure_is_told_once():
 @pytest.mark.parametrize(
     ("given", "first"),
     [
-        ((-1.0, 2.0), "kp has the other sign, in `double(1.0)`."),
+        ((-1.0, 2.0), "In `double(1.0)`, kp has the other sign."),
         ((float("inf"), 2.0), "kp is inf; look for a division by zero"),
         ((1.0, 2.5), "kd is 2.5 instead of 2, in `double(1.0)`."),
         ((1.0,), "It should be 2 values (kp, kd), not 1."),
