@@ -58,7 +58,7 @@ def remedy(error: BaseException) -> str:
         b, a = sizes.groups()
         return f"the left side of @ has {a} columns and the right side {b} rows; they must be equal"
     if "could not be broadcast together" in text:
-        return _unequal(re.findall(r"\((\d[\d,]*)\)", text))
+        return _unequal(text, line_of(error))
     wrong_call = isinstance(error, TypeError) and "argument" in text and "()" in text
     if wrong_call and not _is_inside(error):
         return "leave the parameter names in the function's first line as they were given"
@@ -74,15 +74,15 @@ def _similar(error: NameError) -> str:
     return f"did you mean {near[0]}?" if near else ""
 
 
-def _unequal(shapes: list[str]) -> str:
-    """What to do about arrays of different sizes; `@` is suggested only if one is a matrix."""
+def _unequal(text: str, line: str) -> str:
+    """What to do about arrays of different sizes; `@` is suggested only if it is possible."""
     says = "+, - and * work element by element, so the sizes must be equal"
-    sizes = [shape.strip(",") for shape in shapes]
-    if any("," in size for size in sizes):
-        return f"{says}; use @ to multiply matrices"
-    if sorted(sizes) == ["6", "7"]:
+    shapes = [shape.strip(",").split(",") for shape in re.findall(r"\((\d[\d,]*)\)", text)]
+    if sorted(shapes) == [["6"], ["7"]]:
         return f"{says}; the tip's velocity has 6 numbers, the joints' 7, and J relates them"
-    return says
+    a, b = (*shapes, [], [])[:2]
+    fits = len(a) > 1 and a[-1:] == b[-2:][:1]
+    return f"{says}; use @ to multiply matrices" if fits and "@" not in line else says
 
 
 _ARRAYS = {"State": "state.q", "Sample": "target.position", "PoseSample": "target.pose"}

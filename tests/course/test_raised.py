@@ -38,7 +38,6 @@ def misspells(angles=None):
             lambda: 2.0 @ np.zeros(3),
             "a single number beside @, in the line ``; @ needs an array on each side; use * for",
         ),
-        (lambda: np.zeros((7, 6)) * np.zeros((6, 6)), "use @ to multiply matrices"),
         (
             lambda: np.zeros(6) + np.zeros(7),
             "the tip's velocity has 6 numbers, the joints' 7",
@@ -54,6 +53,24 @@ def test_a_usual_slip_has_a_way_out(does, remedy):
         does()
     line = line_of(caught.value)  # it quotes this test's own table
     assert remedy in full_description(caught.value).replace(line, "")
+
+
+def test_matrices_are_to_be_multiplied_only_if_they_can_be():
+    """`@` is not suggested for a series, for a line that has one, or for sizes that do not fit."""
+    j, log = np.zeros((6, 7)), np.zeros((71, 7))
+    for wrong in (
+        lambda: np.zeros(71) * log,
+        lambda: j @ log.T * j,
+        lambda: j - np.eye(4),
+        lambda: np.eye(4) - np.zeros((2, 4)),
+    ):
+        says = reply(wrong, (), {})["says"]
+        assert "so the sizes must be equal" in says and "use @" not in says
+
+    def fits():
+        return j * np.eye(7)
+
+    assert reply(fits, (), {})["says"].endswith("; use @ to multiply matrices")
 
 
 def test_only_the_answers_own_parameters_are_to_be_left():
