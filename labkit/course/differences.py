@@ -50,7 +50,7 @@ def sentence(d: Difference) -> str:
         text = f"{d.part or 'it'} is {got} instead of {expected}"
     if guess:
         text = f"{d.part or 'it'} {guess}"
-    says = f"it {text.strip()}" if d.kind is Kind.RAISED else text
+    says = f"it{text}" if text.startswith(" ") else text
     if not (d.kind is Kind.CHANGED or _NAME.match(says)):
         says = says[:1].upper() + says[1:]
     return says if says.endswith((".", "?", "!", "`")) else f"{says}."
@@ -102,7 +102,9 @@ def words(d: Difference) -> tuple[str, str, str, str]:
         case Kind.NOTHING:
             text = "it returned nothing (None); does each of its branches end with a return?"
         case Kind.RAISED:
-            text = f" raised {d.found or d.error}"
+            found = str(d.found or d.error)
+            run = re.sub("^controller ", "the controller ", found)  # from `run`: a whole sentence
+            text = f" raised {found}" if found.startswith(d.error) else run
         case Kind.REFUSED | Kind.CHANGED:
             text = str(d.found or d.error)
         case Kind.OTHER:

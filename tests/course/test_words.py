@@ -7,10 +7,11 @@ import numpy as np
 import pytest
 from questions import CALLS, DOUBLE, HIDDEN, double, square
 
+from labkit import Hold
 from labkit.course import Call, Close, Test
 from labkit.course.marking import mark, not_counted
 from labkit.course.messages import head, message, summary, worth
-from labkit.course.question import in_points
+from labkit.course.question import Loop, in_points
 
 COMPLETE = replace(DOUBLE, tests=(*DOUBLE.tests[:2], Test("negative", CALLS[2:])))
 """The same question without anything to be tried later."""
@@ -113,6 +114,15 @@ def test_errors_are_told_with_their_call():
     assert "\n  It raised IndexError: list index out of range, in the line `" in words
     assert "\n  Where it fails:\n    double(2.0)\n" in words
     assert words.count("IndexError") == 1
+
+
+def test_a_run_that_fails_is_told_with_its_time():
+    """The sentence about the run stands by itself, and nobody "raised controller failed"."""
+    loop = Loop(Hold(np.zeros(7), 0.1), expected={"max_mm": 1.0})
+    question = replace(DOUBLE, tests=(Test("a run", (loop,)),), mistakes=())
+    words = said(lambda state, target: [][0], question)
+    assert "\n  The controller failed at t = 0.000 s, tick 0: IndexError: list" in words
+    assert "raised" not in words and "raised IndexError" in said(lambda x: [][0])
 
 
 def test_a_long_call_can_be_tried():
