@@ -30,6 +30,13 @@ def misspells(angles=None):
         (lambda: SAMPL.position, "did you mean SAMPLE?"),  # noqa: F821
         (misspells, "did you mean angles?"),
         (writes, "make a new array"),
+        (lambda: np.zeross(3), "did you mean zeros?"),
+        (lambda: FIXED.shap, "did you mean shape?"),
+        (lambda: 2.0 ^ 2, "a power is written with **"),
+        (lambda: FIXED ^ 2, "a power is written with **"),
+        (lambda: np.zeros(6, 7), "give the shape in one pair of brackets"),
+        (lambda: FIXED.sum + 1.0, "brackets call a method"),
+        (lambda: 1.0 - lk.Model("left").gravity, "brackets call a method"),
         (
             lambda: np.eye(4) @ np.zeros(3),
             "the left side of @ has 4 columns and the right side 3 rows",
@@ -53,6 +60,12 @@ def test_a_usual_slip_has_a_way_out(does, remedy):
         does()
     line = line_of(caught.value)  # it quotes this test's own table
     assert remedy in full_description(caught.value).replace(line, "")
+
+
+def test_a_library_that_gives_its_own_advice_is_not_interrupted():
+    """Of a name that numpy has removed, numpy says what to use."""
+    says = reply(lambda: np.float(1.0), (), {})["says"]
+    assert "deprecated" in says and "did you mean" not in says
 
 
 def test_matrices_are_to_be_multiplied_only_if_they_can_be():
