@@ -28,10 +28,8 @@ class ShapeError(LabkitError, ValueError):
         self.name, self.expected, self.actual = name, expected, actual
 
     def __str__(self) -> str:
-        hint = _hint(self.expected, self.actual)
-        return (
-            f"{self.name} has shape {self.actual}, expected {self.expected or 'one number'}{hint}"
-        )
+        hint, expected = _hint(self.expected, self.actual), self.expected or "one number"
+        return f"{self.name} has shape {self.actual}, expected {expected}{hint}"
 
 
 def _hint(expected: tuple[int, ...], actual: tuple[int, ...]) -> str:

@@ -39,11 +39,6 @@ def line_of(error: BaseException) -> str:
     return found if len(found) <= 100 else f"{found[:97]}..."
 
 
-def _is_inside(error: BaseException) -> bool:
-    """Whether an exception comes from a student's line, and not from the call of the answer."""
-    return any(not in_library(f.f_code.co_filename) for f, _ in walk_tb(error.__traceback__))
-
-
 def remedy(error: BaseException) -> str:
     """What to do about an exception whose own message does not help a student, or ""."""
     text = str(error)
@@ -62,8 +57,7 @@ def remedy(error: BaseException) -> str:
         return f"the left side of @ has {a} columns and the right side {b} rows; they must be equal"
     if "could not be broadcast together" in text:
         return _unequal(text, line_of(error))
-    wrong_call = isinstance(error, TypeError) and "argument" in text and "()" in text
-    if wrong_call and not _is_inside(error):
+    if isinstance(error, TypeError) and "argument" in text and "()" in text and not line_of(error):
         return "leave the parameter names in the function's first line as they were given"
     return next((todo for words, todo in _REMEDIES.items() if words in text), "")
 

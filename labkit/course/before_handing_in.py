@@ -164,8 +164,7 @@ def examine(path: Path) -> HandIn:
                 notes.append(f"{has}; it may have at most {most[1]}")
     unsaid = [name for name in predictions if (v := verdicts[name]) and not v.right]
     fine = (Outcome.RIGHT, Outcome.NOT_ATTEMPTED)
-    tried = [name for name, v in verdicts.items() if v and v.outcome not in fine]
-    wrong = [name for name in tried if name not in predictions]
+    wrong = [n for n, v in verdicts.items() if v and v.outcome not in fine and n not in predictions]
     for names, says in (
         (wrong, "not yet right: {}; the parts that are right count all the same"),
         (unsaid, "not predicted yet: {}; a prediction counts, whether it is right or wrong"),

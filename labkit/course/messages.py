@@ -179,7 +179,6 @@ def _helps(verdict: Verdict) -> Iterator[str]:
         yield mistake(verdict.mistake)
     elif lead := _lead(verdict):
         test = next(x for x in verdict.tests if x.difference is lead)
-        test = next(x for x in verdict.tests if x.difference is lead)
         says, call = sentence(lead), test.call
         clear = len(call) <= 60 and not is_shortened(call)
         if likely_cause(lead) and not _is_value(call):  # the numbers of other calls may differ

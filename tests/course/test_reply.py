@@ -226,6 +226,7 @@ def test_a_value_of_a_wrong_kind_is_returned_and_not_raised(made):
     assert "It returned a wrong kind of value: a" in words and "raised" not in words
 
 
+@pytest.mark.filterwarnings("ignore:the matrix subclass")
 def test_a_matrix_is_judged_as_an_array():
     """Numbers in an np.matrix are right if their shape is; otherwise the shape is told."""
     calls = (Call((), expected=np.eye(2)),)
