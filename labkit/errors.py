@@ -28,13 +28,13 @@ class ShapeError(LabkitError, ValueError):
         self.name, self.expected, self.actual = name, expected, actual
 
     def __str__(self) -> str:
-        hint = _hint(self.expected, self.actual)
-        return f"{self.name} has shape {self.actual}, expected {self.expected}{hint}"
+        hint, expected = _hint(self.expected, self.actual), self.expected or "one number"
+        return f"{self.name} has shape {self.actual}, expected {expected}{hint}"
 
 
 def _hint(expected: tuple[int, ...], actual: tuple[int, ...]) -> str:
     if expected == ():
-        return "; give one number, without brackets around it"
+        return "; write it without brackets around it" if set(actual) == {1} else ""
     if len(expected) != 1:
         return "; the transpose would fit" if actual == expected[::-1] else ""
     n = expected[0]

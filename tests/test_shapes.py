@@ -119,7 +119,7 @@ def test_a_bad_gain_is_named(x, error, words):
         ("two", TypeMismatch, "v_max is 'two'"),
         (None, TypeMismatch, "v_max is None"),
         ("2", TypeMismatch, r"v_max is '2' \(str\), expected one real number"),
-        ([1.0, 2.0], ShapeError, r"v_max has shape \(2,\).*give one number"),
+        ([1.0, 2.0], ShapeError, r"v_max has shape \(2,\), expected one number"),
         ([1.0], ShapeError, "without brackets"),
         (np.nan, NotFinite, "v_max is nan"),
         (np.inf, NotFinite, "v_max is inf"),

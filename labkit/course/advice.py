@@ -6,6 +6,7 @@ import builtins
 import linecache
 import re
 import sysconfig
+from collections.abc import Iterable, Iterator
 from difflib import get_close_matches
 from pathlib import Path
 from traceback import walk_tb
@@ -42,9 +43,11 @@ def remedy(error: BaseException) -> str:
     """What to do about an exception whose own message does not help a student, or ""."""
     text = str(error)
     if isinstance(error, NameError):
-        return _similar(error)
+        return _similar(error, _defined(error))
     if isinstance(error, AttributeError) and isinstance(error.obj, State | Sample | PoseSample):
         return f"it has {', '.join(error.obj._fields)}"
+    if isinstance(error, AttributeError) and text.endswith("'"):  # numpy may give its own advice
+        return _similar(error, (x for x in dir(error.obj) if not x.startswith("_")))
     if isinstance(error, TypeError) and (kinds := re.search("'(State|Sample|PoseSample)'", text)):
         return f"did you mean {_ARRAYS[kinds[1]]}?"
     if "read-only" in text:
@@ -53,30 +56,34 @@ def remedy(error: BaseException) -> str:
         b, a = sizes.groups()
         return f"the left side of @ has {a} columns and the right side {b} rows; they must be equal"
     if "could not be broadcast together" in text:
-        return _unequal(re.findall(r"\((\d[\d,]*)\)", text))
-    if isinstance(error, TypeError) and "argument" in text and "()" in text:
+        return _unequal(text, line_of(error))
+    if isinstance(error, TypeError) and "argument" in text and "()" in text and not line_of(error):
         return "leave the parameter names in the function's first line as they were given"
     return next((todo for words, todo in _REMEDIES.items() if words in text), "")
 
 
-def _similar(error: NameError) -> str:
-    """The defined name that is most like an unknown one, as Python itself suggests it, or ""."""
-    names = [*vars(builtins)]
-    for frame, _ in [*walk_tb(error.__traceback__)][-1:]:
-        names += [*frame.f_locals, *frame.f_globals]
+def _similar(error: NameError | AttributeError, names: Iterable[str]) -> str:
+    """The name that is most like an unknown one, as Python itself suggests it, or ""."""
     near = get_close_matches(str(error.name or ""), names, 1)
     return f"did you mean {near[0]}?" if near else ""
 
 
-def _unequal(shapes: list[str]) -> str:
-    """What to do about arrays of different sizes; `@` is suggested only if one is a matrix."""
+def _defined(error: NameError) -> Iterator[str]:
+    """The names that are defined where an exception was raised."""
+    yield from vars(builtins)
+    for frame, _ in [*walk_tb(error.__traceback__)][-1:]:
+        yield from (*frame.f_locals, *frame.f_globals)
+
+
+def _unequal(text: str, line: str) -> str:
+    """What to do about arrays of different sizes; `@` is suggested only if it is possible."""
     says = "+, - and * work element by element, so the sizes must be equal"
-    sizes = [shape.strip(",") for shape in shapes]
-    if any("," in size for size in sizes):
-        return f"{says}; use @ to multiply matrices"
-    if sorted(sizes) == ["6", "7"]:
+    shapes = [shape.strip(",").split(",") for shape in re.findall(r"\((\d[\d,]*)\)", text)]
+    if sorted(shapes) == [["6"], ["7"]]:
         return f"{says}; the tip's velocity has 6 numbers, the joints' 7, and J relates them"
-    return says
+    a, b = (*shapes, [], [])[:2]
+    fits = len(a) > 1 and a[-1:] == b[-2:][:1]
+    return f"{says}; use @ to multiply matrices" if fits and "@" not in line else says
 
 
 _ARRAYS = {"State": "state.q", "Sample": "target.position", "PoseSample": "target.pose"}
@@ -90,6 +97,10 @@ _REMEDIES = {
     "must be square": "only a square matrix can have an inverse",
     "object is not callable": "brackets after a name call a function; is a * missing, or did you "
     "use the name for something else?",
+    "for ^:": "a power is written with **",
+    "'bitwise_xor'": "a power is written with **",
+    "as a data type": "give the shape in one pair of brackets, as in np.zeros((6, 7))",
+    "method'": "brackets call a method, as in q.copy(); are they missing?",
     "cannot unpack non-iterable NoneType": "is a return missing?",
     "unsupported operand type(s) for -: 'list' and 'list'": "convert the lists with np.array "
     "first, or use np.subtract",

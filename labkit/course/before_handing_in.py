@@ -162,13 +162,15 @@ def examine(path: Path) -> HandIn:
             most = re.search(r"(\d+) words", above["source"])
             if most and words > int(most[1]):
                 notes.append(f"{has}; it may have at most {most[1]}")
-    wrong = [name for name, v in verdicts.items() if v and not v.right]
-    for says, predicted in (
-        ("not yet right: {}; the parts that are right count all the same", False),
-        ("not predicted yet: {}; a prediction counts, whether it is right or wrong", True),
+    unsaid = [name for name in predictions if (v := verdicts[name]) and not v.right]
+    fine = (Outcome.RIGHT, Outcome.NOT_ATTEMPTED)
+    wrong = [n for n, v in verdicts.items() if v and v.outcome not in fine and n not in predictions]
+    for names, says in (
+        (wrong, "not yet right: {}; the parts that are right count all the same"),
+        (unsaid, "not predicted yet: {}; a prediction counts, whether it is right or wrong"),
     ):
-        if which := [name for name in wrong if (name in predictions) == predicted]:
-            notes.append(says.format(", ".join(which)))
+        if names:
+            notes.append(says.format(", ".join(names)))
     return HandIn(name, tuple(problems), tuple(notes), verdicts, predictions, texts)
 
 

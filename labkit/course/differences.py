@@ -50,7 +50,7 @@ def sentence(d: Difference) -> str:
         text = f"{d.part or 'it'} is {got} instead of {expected}"
     if guess:
         text = f"{d.part or 'it'} {guess}"
-    says = f"it {text.strip()}" if d.kind is Kind.RAISED else text
+    says = f"it{text}" if text.startswith(" ") else text
     if not (d.kind is Kind.CHANGED or _NAME.match(says)):
         says = says[:1].upper() + says[1:]
     return says if says.endswith((".", "?", "!", "`")) else f"{says}."
@@ -60,7 +60,7 @@ def _farthest(d: Difference, expected: Array, found: Array) -> str:
     at = tuple(map(int, np.unravel_index(np.argmax(np.abs(found - expected)), found.shape)))
     where = _index(at)
     of = f"{d.part}: " if d.part else ""
-    is_, should = (_brief(float(x[at])) for x in (found, expected))
+    should, is_ = _apart(float(expected[at]), float(found[at]))
     return f"{of}the number at {where} is farthest off: it is {is_} instead of {should}"
 
 
@@ -79,7 +79,8 @@ def words(d: Difference) -> tuple[str, str, str, str]:
         case Kind.NUMBERS:
             at = f"at {_index(d.at)} " if d.at else ""
             also = ", or any that moves the tip in the same way" if d.several else ""
-            return f"{of}{at}", _brief(d.expected) + also, _brief(d.found), likely_cause(d)
+            expected, found = _apart(d.expected, d.found)
+            return f"{of}{at}", expected + also, found, likely_cause(d)
         case Kind.RESPONSE:
             return f"at {d.at[0]:g} rad/s ", _polar(d.expected), _polar(d.found), ""
         case Kind.MEASURE:
@@ -101,7 +102,9 @@ def words(d: Difference) -> tuple[str, str, str, str]:
         case Kind.NOTHING:
             text = "it returned nothing (None); does each of its branches end with a return?"
         case Kind.RAISED:
-            text = f" raised {d.found or d.error}"
+            found = str(d.found or d.error)
+            run = re.sub("^controller ", "the controller ", found)  # from `run`: a whole sentence
+            text = f" raised {found}" if found.startswith(d.error) else run
         case Kind.REFUSED | Kind.CHANGED:
             text = str(d.found or d.error)
         case Kind.OTHER:
@@ -110,7 +113,9 @@ def words(d: Difference) -> tuple[str, str, str, str]:
 
 
 def likely_cause(d: Difference) -> str:
-    """The likely cause of a factor; one number may be twice or half of another by chance."""
+    """The likely cause of wrong numbers; one may be twice or half of another by chance."""
+    if _is_rounded(d.expected, d.found):
+        return "is float32, which has 7 digits; compute in float64"
     if d.times is None:
         return ""
     single = isinstance(d.expected, float) and not d.at
@@ -130,10 +135,28 @@ def _instead(d: Difference) -> str:
     return f"{what}; return lk.{d.expected}(...) with one number for each joint"
 
 
-def _brief(x: Value) -> str:
+def _is_rounded(expected: Value, found: Value) -> bool:
+    """Whether numbers are right but for float32; a number of few digits need not be one."""
+    if not isinstance(found, float | tuple) or type(found) is not type(expected):
+        return False
+    a, b = np.array(found), np.array(expected)
+    short = all(x == float(f"{x:.6g}") for x in a.ravel().tolist())
+    tiny = 1e-6 * np.abs(b).max(initial=0.0)
+    alike = a.shape == b.shape and np.allclose(a, b, rtol=1e-5, atol=tiny)
+    return bool(alike and not short and (a == a.astype(np.float32)).all())
+
+
+def _apart(expected: Value, found: Value) -> tuple[str, str]:
+    """Two values in short notation, with more digits if they would look the same."""
+    short = _brief(expected), _brief(found)
+    more = ((_brief(expected, n), _brief(found, n)) for n in (9, 12, 17))
+    return short if short[0] != short[1] else next((x for x in more if x[0] != x[1]), short)
+
+
+def _brief(x: Value, digits: int = 0) -> str:
     if isinstance(x, float):
-        return f"{x:.6g}" if abs(x) > 1e-10 else "0"
-    return x if isinstance(x, str) else in_brief(x)
+        return f"{x:.{digits or 6}g}" if abs(x) > 1e-10 else "0"
+    return x if isinstance(x, str) else in_brief(x, digits or 5)
 
 
 def _polar(x: Value) -> str:

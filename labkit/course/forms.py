@@ -22,8 +22,10 @@ OWN_ARM = "it is true of your own arm"
 
 
 def letters(said: Any) -> str:
-    """A text in lower case and without spaces around it; "" for any other value."""
-    return said.strip().lower() if isinstance(said, str) else ""
+    """A text, or texts in a list, in lower case, without spaces and commas; "" for other values."""
+    if isinstance(said, list | tuple):
+        return "".join(map(letters, said))
+    return "".join(said.lower().replace(",", " ").split()) if isinstance(said, str) else ""
 
 
 class RightOrWrong:
@@ -56,8 +58,8 @@ class _Form(RightOrWrong):
 
     def same(self, answer: Any, other: Any) -> bool:
         """Whether two predictions are the same."""
-        if isinstance(answer, str):
-            return letters(answer) == letters(other)
+        if said := letters(answer):
+            return said == letters(other)
         return super().same(answer, other)
 
 
@@ -108,7 +110,8 @@ class Rank(_Form):
         """What is wrong with the form of a prediction, or ""."""
         if sorted(letters(said)) == sorted(self.options):
             return ""
-        return f"it is {said!r}; write each of the letters {''.join(self.options)} once"
+        every = "".join(self.options)
+        return f"it is {said!r}; write a text with each of the letters {every} once"
 
     def words(self, said: Any) -> str:
         """The prediction in words, as the object of a sentence."""

@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+import re
 import textwrap
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
+from fractions import Fraction
 
 from ..errors import ControllerError
 from .differences import likely_cause, sentence, words
@@ -176,10 +178,15 @@ def _helps(verdict: Verdict) -> Iterator[str]:
     if verdict.mistake:
         yield mistake(verdict.mistake)
     elif lead := _lead(verdict):
-        says, call = sentence(lead), next(x.call for x in verdict.tests if x.difference is lead)
-        clear = len(call) <= 60 and not is_shortened(call) and not _is_value(call)
-        named = clear and lead.kind is Kind.NUMBERS and says.endswith(".")
-        yield f"{says[:-1]}, in `{call}`." if named else says
+        test = next(x for x in verdict.tests if x.difference is lead)
+        says, call = sentence(lead), test.call
+        clear = len(call) <= 60 and not is_shortened(call)
+        if likely_cause(lead) and not _is_value(call):  # the numbers of other calls may differ
+            where = f"`{call}`" if clear else f'the test "{test.name}"'
+            yield f"In {where}, {re.sub('^It ', 'it ', says)}"
+        else:
+            named = clear and not _is_value(call) and lead.kind is Kind.NUMBERS and says[-1] == "."
+            yield f"{says[:-1]}, in `{call}`." if named else says
 
 
 def _lead(verdict: Verdict) -> Difference | None:
@@ -224,7 +231,11 @@ def worth(test: TestResult, verdict: Verdict) -> str:
     """The points that a test is worth, or a remark that nothing counts without it."""
     if not test.weight:
         return " (needed before anything counts)"
-    return f" (worth {verdict.worth([test]):g} of {in_points(verdict.points)})"
+    share = Fraction(test.weight / sum(x.weight for x in verdict.tests)).limit_denominator(1000)
+    points = float(verdict.points * share)
+    if abs(points - round(points, 2)) < 1e-6:
+        return f" (worth {round(points, 2):g} of {in_points(verdict.points)})"
+    return f" (worth {share} of the {in_points(verdict.points)})"
 
 
 def why(test: TestResult) -> str:

@@ -98,9 +98,17 @@ def _probed(
         return shares[0]
     for labels, does, other in ((stays, "stays the same", "changes"), (moves, "changes", "stays")):
         if labels:
-            when = " or when ".join(labels[:3]).replace(" is ", " is set to ")
-            return f"Your answer {does} when {when}; the right one {other}."
+            return f"Your answer {does} when {_when(labels)}; the right one {other}."
     return ""
+
+
+def _when(labels: Sequence[str]) -> str:
+    """Up to three arguments, each once, with the values to which they were set."""
+    values: dict[str, list[str]] = {}
+    for name, value in (label.split(" is ") for label in labels):
+        values.setdefault(name, []).append(value)
+    each = [f"{name} is set to {' or '.join(said)}" for name, said in values.items()]
+    return " or when ".join(each[:3])
 
 
 _SHARES = {

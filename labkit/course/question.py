@@ -304,13 +304,13 @@ def in_points(points: float) -> str:
     return f"{points:g} point{'' if points == 1 else 's'}"
 
 
-def in_brief(x: Any) -> str:
+def in_brief(x: Any, digits: int = 5) -> str:
     """A number, vector or matrix in short notation, such as "[1, 0.5]"."""
     a = np.asarray(x, dtype=float)
     if a.ndim:
         tiny = 1e-9 * max(1.0, float(np.max(np.abs(a), initial=0.0)))
-        return f"[{', '.join(map(in_brief, np.where(np.abs(a) < tiny, 0.0, a)))}]"
-    return f"{float(a) + 0.0:.5g}"  # adding zero removes the sign of -0
+        return f"[{', '.join(in_brief(x, digits) for x in np.where(np.abs(a) < tiny, 0.0, a))}]"
+    return f"{float(a) + 0.0:.{digits}g}"  # adding zero removes the sign of -0
 
 
 def is_shortened(call: str) -> bool:

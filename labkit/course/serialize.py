@@ -154,7 +154,7 @@ def encode(value: Any) -> Any:
             raise NotComparable(
                 f"an array of {value.dtype} cannot be compared; return real numbers"
             )
-        numbers = [_number(x) for x in value.ravel().tolist()]
+        numbers = [_number(x) for x in np.asarray(value).ravel().tolist()]  # a matrix stays 2-D
         return {"$": "array", "shape": list(value.shape), "numbers": numbers}
     name = type(value).__name__
     if type(value) is _ALL.get(name):

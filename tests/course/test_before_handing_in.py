@@ -12,6 +12,7 @@ from labkit import LabkitError
 from labkit.course.before_handing_in import HandIn, examine
 from labkit.course.brief import PLACEHOLDER
 from labkit.course.forms import COMMITTED, OWN_ARM
+from labkit.course.messages import HEADS
 from labkit.course.notebook import verdict_metadata
 from labkit.course.own_arm import FILE
 from labkit.course.receipt import _advice, hand_in, receipt
@@ -63,18 +64,20 @@ def test_only_what_there_is_is_counted():
     assert str(HandIn("a", (), (), {})) == "a: the notebook can be handed in as it is."
 
 
-def test_what_is_not_yet_right_is_named(folder):
-    """A wrong answer may be handed in, and is named beforehand."""
+@pytest.mark.parametrize("outcome", [Outcome.WRONG, Outcome.NOT_ATTEMPTED])
+def test_what_is_not_yet_right_is_named(folder, outcome):
+    """A wrong answer may be handed in, and is named beforehand; a stub is not wrong."""
 
     def change(cells):
         for cell in cells:
             if 'check("witness"' in "".join(cell["source"]):
-                cell["outputs"] = [output("witness", Outcome.WRONG)]
+                cell["outputs"] = [output("witness", outcome)]
         return cells
 
     found = examine(edited(folder / "01_paths.ipynb", change))
-    assert any(note.startswith("not yet right: witness;") for note in found.notes)
-    assert "  witness: not yet right. 0 of 2 points." in str(found).splitlines()
+    wrong = outcome is Outcome.WRONG
+    assert any(note.startswith("not yet right: witness;") for note in found.notes) == wrong
+    assert f"  witness: {HEADS[outcome]}. 0 of 2 points." in str(found).splitlines()
 
 
 def test_a_verdict_older_than_its_function_is_told(folder):

@@ -80,6 +80,14 @@ def test_an_answer_that_never_changes_is_told_so():
     assert seen(ratio, lambda x, y: x) != says
 
 
+def test_an_argument_that_has_no_effect_is_told_once():
+    """Its two values stand together, rather than in two clauses of one sentence."""
+    trial = Trial("any", (call(2.0, 3.0), call(5.0, 7.0)))
+    total = Problem("total", 1, "Give it.", lambda x, d: np.array([x * d, x + d]), (trial,))
+    says = seen(total, lambda x, d: np.array([x * x, x]))
+    assert says == "Your answer stays the same when `d` is set to 0 or 1; the right one changes."
+
+
 def test_only_the_wrong_parts_of_an_answer_are_spoken_of():
     """Of three parts two are wrong by a factor: these are named, and the rest is called right."""
     parts = Problem(

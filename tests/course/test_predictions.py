@@ -70,6 +70,15 @@ def test_a_capital_letter_is_the_same_letter(place, capsys):
     assert "You predicted: (b) down" in said and "That is what you said." in said
 
 
+@pytest.mark.parametrize("said", ["x, z, y", "x z y", " XZY", ["x", "z", "y"], ("x", "z", "y")])
+def test_an_order_may_have_commas(said):
+    """Letters in order are the same order with commas or spaces, or in a list."""
+    form = Rank({"x": "forwards", "y": "sideways", "z": "up"}, "the heaviest")
+    assert verdict(form, said).earned == 1.0 and form.words(said) == "forwards, up, sideways"
+    assert form.same(said, "xzy") and form.same("xzy", said) and not form.same(said, "xyz")
+    assert "each of the letters xyz once" in form.problem("x, z")
+
+
 def test_the_first_prediction_stays(place):
     """What is changed after the reveal is not what was committed to."""
     predict("x", "b")

@@ -5,6 +5,7 @@ import pytest
 
 import labkit as lk
 from labkit.course.advice import full_description, line_of
+from labkit.course.reply import reply
 
 STATE = lk.State(0.0, np.zeros(7), np.zeros(7))
 SAMPLE = lk.Sample(*np.zeros((3, 7)))
@@ -29,6 +30,13 @@ def misspells(angles=None):
         (lambda: SAMPL.position, "did you mean SAMPLE?"),  # noqa: F821
         (misspells, "did you mean angles?"),
         (writes, "make a new array"),
+        (lambda: np.zeross(3), "did you mean zeros?"),
+        (lambda: FIXED.shap, "did you mean shape?"),
+        (lambda: 2.0 ^ 2, "a power is written with **"),
+        (lambda: FIXED ^ 2, "a power is written with **"),
+        (lambda: np.zeros(6, 7), "give the shape in one pair of brackets"),
+        (lambda: FIXED.sum + 1.0, "brackets call a method"),
+        (lambda: 1.0 - lk.Model("left").gravity, "brackets call a method"),
         (
             lambda: np.eye(4) @ np.zeros(3),
             "the left side of @ has 4 columns and the right side 3 rows",
@@ -37,7 +45,6 @@ def misspells(angles=None):
             lambda: 2.0 @ np.zeros(3),
             "a single number beside @, in the line ``; @ needs an array on each side; use * for",
         ),
-        (lambda: np.zeros((7, 6)) * np.zeros((6, 6)), "use @ to multiply matrices"),
         (
             lambda: np.zeros(6) + np.zeros(7),
             "the tip's velocity has 6 numbers, the joints' 7",
@@ -45,7 +52,6 @@ def misspells(angles=None):
         (lambda: np.zeros(3) - np.zeros(7), "so the sizes must be equal"),
         (lambda: np.linalg.inv(np.zeros((6, 7))), "only a square matrix"),
         (lambda: FIXED(2.0), "is a * missing"),
-        (lambda: writes(1), "leave the parameter names in the function's first line"),
     ],
 )
 def test_a_usual_slip_has_a_way_out(does, remedy):
@@ -54,6 +60,40 @@ def test_a_usual_slip_has_a_way_out(does, remedy):
         does()
     line = line_of(caught.value)  # it quotes this test's own table
     assert remedy in full_description(caught.value).replace(line, "")
+
+
+def test_a_library_that_gives_its_own_advice_is_not_interrupted():
+    """Of a name that numpy has removed, numpy says what to use."""
+    says = reply(lambda: np.float(1.0), (), {})["says"]
+    assert "deprecated" in says and "did you mean" not in says
+
+
+def test_matrices_are_to_be_multiplied_only_if_they_can_be():
+    """`@` is not suggested for a series, for a line that has one, or for sizes that do not fit."""
+    j, log = np.zeros((6, 7)), np.zeros((71, 7))
+    for wrong in (
+        lambda: np.zeros(71) * log,
+        lambda: j @ log.T * j,
+        lambda: j - np.eye(4),
+        lambda: np.eye(4) - np.zeros((2, 4)),
+    ):
+        says = reply(wrong, (), {})["says"]
+        assert "so the sizes must be equal" in says and "use @" not in says
+
+    def fits():
+        return j * np.eye(7)
+
+    assert reply(fits, (), {})["says"].endswith("; use @ to multiply matrices")
+
+
+def test_only_the_answers_own_parameters_are_to_be_left():
+    """A wrong call within the answer is a matter of that line, and no parameter is changed."""
+    advice = "leave the parameter names in the function's first line as they were given"
+    assert advice in reply(writes, (1,), {})["says"]
+    assert advice in reply(lambda q: q, (), {"dq": 1.0})["says"]
+    for inside in (lambda: writes(1), lambda: np.dot(FIXED), lambda: lk.Model("left").gravity()):
+        says = reply(inside, (), {})["says"]
+        assert "argument" in says and advice not in says
 
 
 def test_no_space_comes_before_a_comma():

@@ -226,6 +226,16 @@ def test_a_value_of_a_wrong_kind_is_returned_and_not_raised(made):
     assert "It returned a wrong kind of value: a" in words and "raised" not in words
 
 
+@pytest.mark.filterwarnings("ignore:the matrix subclass")
+def test_a_matrix_is_judged_as_an_array():
+    """Numbers in an np.matrix are right if their shape is; otherwise the shape is told."""
+    calls = (Call((), expected=np.eye(2)),)
+    question = replace(DOUBLE, tests=(Test("a matrix", calls),), mistakes=())
+    assert mark(question, LocalFunction(lambda: np.matrix(np.eye(2)), ())).right
+    verdict = mark(question, LocalFunction(lambda: np.matrix(np.ones(2)), ()))
+    assert "has shape (1, 2), expected (2, 2)" in why(verdict.tests[0])
+
+
 def test_only_a_tool_of_the_question_is_withheld():
     """A student's process may say what it likes of other tools."""
     with pytest.raises(Withheld):

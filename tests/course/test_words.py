@@ -1,15 +1,17 @@
 """Verdicts in words: read aloud, they say what was asked, what came back and what to do."""
 
+import re
 from dataclasses import replace
 
 import numpy as np
 import pytest
 from questions import CALLS, DOUBLE, HIDDEN, double, square
 
+from labkit import Hold
 from labkit.course import Call, Close, Test
 from labkit.course.marking import mark, not_counted
 from labkit.course.messages import head, message, summary, worth
-from labkit.course.question import in_points
+from labkit.course.question import Loop, in_points
 
 COMPLETE = replace(DOUBLE, tests=(*DOUBLE.tests[:2], Test("negative", CALLS[2:])))
 """The same question without anything to be tried later."""
@@ -81,6 +83,14 @@ def test_a_test_is_worth_what_it_earns_alone(points):
         assert worth(verdict.tests[passes], verdict) == f" {note}"
 
 
+def test_the_shares_of_the_points_have_their_sum():
+    """A share that has no two decimals is a fraction, so no hundredth is lost."""
+    tests = tuple(Test(f"test {k}", CALLS[:1], w) for k, w in enumerate((1.0, 1.0, 2.0, 3.0)))
+    verdict = mark(replace(DOUBLE, tests=tests), double)
+    shares = [worth(test, verdict) for test in verdict.tests]
+    assert shares == [f" (worth {x}/7 of the 4 points)" for x in (1, 1, 2, 3)]
+
+
 def test_a_known_mistake_is_named_first():
     """Its name and its sentence come before the tests, and the tests before the numbers."""
     words = said(square)
@@ -106,6 +116,15 @@ def test_errors_are_told_with_their_call():
     assert words.count("IndexError") == 1
 
 
+def test_a_run_that_fails_is_told_with_its_time():
+    """The sentence about the run stands by itself, and nobody "raised controller failed"."""
+    loop = Loop(Hold(np.zeros(7), 0.1), expected={"max_mm": 1.0})
+    question = replace(DOUBLE, tests=(Test("a run", (loop,)),), mistakes=())
+    words = said(lambda state, target: [][0], question)
+    assert "\n  The controller failed at t = 0.000 s, tick 0: IndexError: list" in words
+    assert "raised" not in words and "raised IndexError" in said(lambda x: [][0])
+
+
 def test_a_long_call_can_be_tried():
     """A call that nobody could type comes with the line that fetches it."""
     question = replace(DOUBLE, tests=(Test("a long one", (Call((np.eye(3),), expected=1.0),)),))
@@ -121,6 +140,18 @@ def test_the_number_that_is_farthest_off_is_named():
     words = said(lambda x: np.array([0.0, 1.0, 9.0, 3.5]), question).splitlines()
     first = " ".join(map(str.strip, words[1:3]))
     assert first == "The number at index 2 is farthest off: it is 9 instead of 2, in `double(1.0)`."
+
+
+@pytest.mark.parametrize("expected", [1 / 3, np.sin(np.arange(4.0)), np.sin(np.ones((5, 7)))])
+def test_numbers_that_differ_little_do_not_look_the_same(expected):
+    """The digits show the difference, and float32, if that is the cause, is named."""
+    tests = (Test("a", (Call((), expected=expected),)),)
+    question = replace(DOUBLE, judge=Close(rtol=1e-9), tests=tests, mistakes=())
+    for given, cause in ((np.float32(expected), True), (expected * (1.0 + 2e-7), False)):
+        words = " ".join(said(lambda given=given: given, question).split())
+        shown = re.search(r"expected ([^,]*?|\[.*?\]),? got ([^,]*?|\[.*?\]) Stuck", words)
+        assert shown and shown[1] != shown[2]
+        assert ("t is float32, which has 7 digits; compute in float64" in words) == cause
 
 
 def test_a_withheld_tool_is_an_outcome_of_its_own():
@@ -152,7 +183,15 @@ def test_long_answers_stand_below_each_other():
     at = next(k for k, line in enumerate(lines) if "expected" in line)
     assert "double(<3 x 3 numbers>)" in lines[at - 1]
     assert lines[at].index("[0, 1") == lines[at + 1].index("[0, -1")
-    assert lines[1] == "  It has the other sign."
+    assert lines[1] == '  In the test "a long one", it has the other sign.'
+
+
+def test_the_likely_cause_is_told_of_its_own_test():
+    """Twice in the first test, and something else in the next, is not told of the whole answer."""
+    tests = [Test(f"{k} rows", (Call((np.eye(k),), expected=np.ones(9)),)) for k in (3, 4)]
+    question = replace(DOUBLE, tests=tuple(tests), mistakes=())
+    lines = said(lambda x: np.full(9, 2.0 if len(x) == 3 else 0.3), question).splitlines()
+    assert lines[1] == '  In the test "3 rows", it is twice what is expected.'
 
 
 def test_a_test_that_nobody_can_see_is_told():
@@ -178,7 +217,7 @@ def test_the_same_failure_is_told_once():
 @pytest.mark.parametrize(
     ("given", "first"),
     [
-        ((-1.0, 2.0), "kp has the other sign, in `double(1.0)`."),
+        ((-1.0, 2.0), "In `double(1.0)`, kp has the other sign."),
         ((float("inf"), 2.0), "kp is inf; look for a division by zero"),
         ((1.0, 2.5), "kd is 2.5 instead of 2, in `double(1.0)`."),
         ((1.0,), "It should be 2 values (kp, kd), not 1."),
