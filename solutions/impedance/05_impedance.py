@@ -371,7 +371,7 @@ def press(stiffness):
     last = pressed(log)[-20:].mean()
     who = "the tip" if yours else "a stand-in, which does not know K,"
     does = f"presses with {last:.1f} N" if last > 0.0 else "does not rest on the wall"
-    return figure, f"With K = {stiffness:.0f} N/m {who} {does}; expected are {force:.1f} N."
+    return figure, f"With K = {stiffness:.0f} N/m {who} {does}; {force:.1f} N is expected."
 
 
 if wall_force is not None:  # first comes your prediction
@@ -645,7 +645,7 @@ if four_times_the_mass is None:
     plt.close()  # the figure waits for your prediction
 else:
     lk.plotting.show(
-        "A push of 10 N on a tip that pretends to a mass. Displacement after 0.1 s and after 2 s: "
+        "A push of 10 N on a tip that pretends to have a mass. Displacement after 0.1 s and after 2 s: "
         + "; ".join(f"{a:.1f} and {b:.1f} mm with {kg:g} kg" for kg, (a, b) in early.items())
         + "."
     )
@@ -672,13 +672,14 @@ else:
 # %% [markdown]
 # ## Feel it
 #
-# The same arm, in real time, under your own law; below the picture it says so if a stand-in takes its place.
+# The same arm, in real time, under your own law; the line of numbers beside or below the picture begins
+# with the law, and says so if it is a stand-in.
 # Press *Start* and drag the tip with the mouse: the arrow is your force. By how much must 10 N move the tip,
 # with K = 300 N/m? Change the stiffness and drag again. Then drag the elbow: your law says nothing about it, so
 # what holds it back? Push the tip against the wall and move the wall. Finally choose *position mode* and pull
 # as hard as you can, which is 60 N here, first sideways and then down: at which force does the arm give way, in
-# which direction does it hold, and which motor has reached its torque limit? (The line of numbers below the
-# buttons names it.) You can do all this without a mouse: below the picture, choose where to push, how hard and
+# which direction does it hold, and which motor has reached its torque limit? (The line of
+# numbers names it.) You can do all this without a mouse: below the picture, choose where to push, how hard and
 # along which axis.
 
 # %%

@@ -264,12 +264,24 @@ def brakes_the_motion(
     return lk.JointTorque(tau.value - model.tip_jacobian(state.q).T @ pull)
 
 
-def damps_the_joints(
-    state: lk.State, target: lk.PoseSample, model: lk.Model, *, stiffness: Any, damping: Any
-) -> lk.JointTorque:
-    """A damper of 1 N m s/rad at each joint."""
-    tau = right.workspace_impedance(state, target, model, stiffness=stiffness, damping=damping)
-    return lk.JointTorque(tau.value - state.dq)
+@dataclass(frozen=True)
+class DampsTheJoints:
+    """A damper at each joint, in [N m s/rad]."""
+
+    damper: float
+
+    def __call__(
+        self,
+        state: lk.State,
+        target: lk.PoseSample,
+        model: lk.Model,
+        *,
+        stiffness: Any,
+        damping: Any,
+    ) -> lk.JointTorque:
+        """The torque."""
+        tau = right.workspace_impedance(state, target, model, stiffness=stiffness, damping=damping)
+        return lk.JointTorque(tau.value - self.damper * state.dq)
 
 
 def brakes_behind_speeds(
@@ -327,7 +339,7 @@ class TipLaw:
         swapped: Whether stiffness and damping are exchanged.
         pinv: Whether the pseudo-inverse replaces the transpose.
         body: Whether the Jacobian is that of the tool's axes.
-        tool: Whether the orientation error is in the tool's axes; 2 means that of position, too.
+        tool: Which error is in the tool's axes: 1 that of orientation, 3 that of position, 2 both.
     """
 
     e: float = 1.0
@@ -358,8 +370,9 @@ class TipLaw:
         J = (model.body_jacobian if self.body else model.tip_jacobian)(q)
         R_tw, inertia = T_wt[:3, :3].T, model.operational_inertia(q)
         e = self.e * lk.se3.pose_error(target.pose, T_wt)
-        place = R_tw @ e[:3] if self.tool == 2 else e[:3]
-        e = np.concatenate([place, self.turn * (R_tw @ e[3:] if self.tool else e[3:])])
+        place = R_tw @ e[:3] if self.tool >= 2 else e[:3]
+        turn = R_tw @ e[3:] if self.tool in (1, 2) else e[3:]
+        e = np.concatenate([place, self.turn * turn])
         de = self.de * (target.twist - J @ dq)
         a = self.feed * target.dtwist - self.drift * model.tip_jacobian_rate(q, dq) @ dq
         F = np.linalg.matrix_power(inertia, self.power) @ a + D * de + K * e

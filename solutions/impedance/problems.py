@@ -646,7 +646,14 @@ WORKSPACE_IMPEDANCE = Problem(
             "Error and Jacobian must be in the same axes.",
         ),
         Wrong(
-            "no springs for the turn",
+            "the position error in the tool's axes",
+            "The position error is in the tool's axes, but the Jacobian is in the world's. "
+            "lk.se3.pose_error gives it in world axes.",
+            mistakes.TipLaw(tool=3),
+            "Error and Jacobian must be in the same axes.",
+        ),
+        Wrong(
+            "no springs for the rotation",
             "The last three numbers of the error are missing, so the hand keeps any tilt. Use all "
             "six.",
             mistakes.TipLaw(turn=0.0),
@@ -741,7 +748,15 @@ WORKSPACE_IMPEDANCE = Problem(
             "-q̇ brakes every joint, and the tip feels this in addition to the dampers of the "
             "question. To brake the elbow alone, project the torque: (I - Jᵀ J̄ᵀ) τ, with J̄ = "
             "M⁻¹ Jᵀ Λ.",
-            mistakes.damps_the_joints,
+            mistakes.DampsTheJoints(1.0),
+            "Ask of each torque whether the tip feels it.",
+        ),
+        Wrong(
+            "a damper of 2 N m s/rad at the joints",
+            "-2 q̇ brakes every joint, and the tip feels this in addition to the dampers of the "
+            "question. To brake the elbow alone, project the torque: (I - Jᵀ J̄ᵀ) τ, with J̄ = "
+            "M⁻¹ Jᵀ Λ.",
+            mistakes.DampsTheJoints(2.0),
             "Ask of each torque whether the tip feels it.",
         ),
         Wrong(
@@ -1215,7 +1230,7 @@ APPARENT_STIFFNESS = Problem(
             "K is a matrix: one fit for all.",
         ),
         Wrong(
-            "from the first push on",
+            "measured from the first push",
             "You measure everything from the first push, so the noise of that push enters all the "
             "others. Measure from the mean.",
             mistakes.FitOf(lambda F, x: mistakes.solved(x - x[0], F - F[0])),

@@ -204,8 +204,8 @@ plt.xlabel("elbow e1 [rad]: near 0 the arm is stretched")
 plt.ylabel("inertia felt [kg m²]")
 plt.legend(frameon=False)
 lk.plotting.show(
-    "Inertia felt by three joints as the elbow bends from 0 to 2.4 rad: that of s1 falls from "
-    f"{felt[0, 1]:.2f} to {felt[-1, 1]:.2f} kg m²."
+    "Inertia felt by three joints as the elbow bends from 0 to 2.4 rad: that of s1 is "
+    f"{felt[0, 1]:.2f} kg m² at first and {felt[-1, 1]:.2f} kg m² at the end."
 )
 
 # %% predict="heaviest_direction"
@@ -264,6 +264,7 @@ def half_the_weight(q):
 
 
 g = use("gravity", gravity, half_the_weight, yours=gravity_at)
+your_g = "yours" if g is gravity_at else "a stand-in"
 
 
 def floats(state, target):
@@ -277,7 +278,7 @@ def as_in_the_report(state, target):
 
 floating = {}
 still = lk.Hold(q0, 0.35)
-for name, controller in (("yours", floats), ("the report's", as_in_the_report)):
+for name, controller in ((your_g, floats), ("the report's", as_in_the_report)):
     arm.reset(q0)
     floating[name] = lk.run(arm, still, controller)
 
@@ -300,16 +301,16 @@ lk.plotting.show(
 
 # %%
 if base_joint is not None:
-    print("your g at the ready pose [N m]:", ", ".join(f"{x:.1f}" for x in g(q0)))
+    print(f"g at the ready pose [N m], {your_g}:", ", ".join(f"{x:.1f}" for x in g(q0)))
 s0, elbow_torque = abs(g(q0)[0]), abs(g(q0)[3])
 predict("base_joint", truth="c" if s0 < 0.05 * elbow_torque else "a" if s0 > elbow_torque else "b")
 
 # %%
 lk.replay.show(
     lk.replay.motion_of(
-        floating["yours"],
+        floating[your_g],
         "Held by a gravity torque alone",
-        label="yours",
+        label=your_g,
         ghosts={"the report's": floating["the report's"]},
         reference=False,
     )
@@ -378,7 +379,8 @@ slope_T = [
 ]
 torque = M_rate @ dq - slope_T
 print("                  off skew by   torque off by")
-for name, matrix in (("yours", C(q, dq)), ("half of dM/dt", 0.5 * M_rate)):
+your_C = "yours" if C is coriolis_at else "a stand-in"
+for name, matrix in ((your_C, C(q, dq)), ("half of dM/dt", 0.5 * M_rate)):
     S = M_rate - 2 * matrix
     off = np.abs(matrix @ dq - torque).max()
     print(f"{name:15}  {np.abs(S + S.T).max():8.1e}      {off:8.1e} N m")

@@ -433,6 +433,12 @@ GRAVITY = Problem(
             "Use the value of a constant that the question states.",
         ),
         Wrong(
+            "9.80665 for g",
+            "In this question g is 9.81 m/s²; you used the standard gravity, 9.80665.",
+            mistakes.Weights(g=9.80665),
+            "Use the value of a constant that the question states.",
+        ),
+        Wrong(
             "g squared",
             "A weight is m g: g occurs only once.",
             mistakes.Weights(g=9.81**2),
@@ -513,7 +519,7 @@ CORIOLIS = Problem(
             "The factor 1/2 comes from the kinetic energy, and the 2h from a central difference.",
         ),
         Wrong(
-            "the minus on the wrong term",
+            "the transpose of C",
             "This is the transpose of C. Either you stored the entry in C[j, i], or the minus is "
             "on the wrong term: it belongs to the slope along the row's own joint, ∂M_jk/∂q_i.",
             mistakes.signs_mixed,

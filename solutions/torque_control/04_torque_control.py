@@ -647,6 +647,7 @@ def rethinks_example(model):
 
 
 my_choose_gains = use("choose_gains", choose_gains, rethinks_example)
+spring_law = "your springs" if my_choose_gains is choose_gains else "a stand-in, the springs of Rethink's example"
 
 loaded = replace(lk.BAXTER, name="with 1 kg", payload=1.0)
 occasions = (
@@ -657,7 +658,7 @@ occasions = (
 steps = np.array([0.5, 0.75, 1.0, 1.25, 1.6, 2.0])
 kp, kd = (np.asarray(gain) for gain in my_choose_gains(model))
 plt.figure(figsize=(7, 3.2), layout="constrained")
-yours = []
+middle = []
 shown = lk.plotting.progress("eighteen runs", len(occasions) * len(steps))
 for (name, plant, target), style in zip(occasions, ("-", "--", "-.")):
     errors = []
@@ -667,17 +668,17 @@ for (name, plant, target), style in zip(occasions, ("-", "--", "-.")):
         except lk.errors.Diverged as error:
             log = error.log
         errors.append(lk.metrics.summary(log).rms_mm)
-        shown(len(yours) * len(steps) + len(errors))
+        shown(len(middle) * len(steps) + len(errors))
     plt.plot(steps, errors, style, marker="o", mfc="none", label=name)
-    yours.append(f"{name} {errors[2]:.1f} mm")
+    middle.append(f"{name} {errors[2]:.1f} mm")
 plt.axvline(1.0, color="0.5", linewidth=1)
 plt.yscale("log")
 plt.yticks([3, 5, 10, 20, 50, 100], ["3", "5", "10", "20", "50", "100"])
 plt.minorticks_off()
-plt.xlabel("frequency, as a share of yours")
+plt.xlabel(f"factor on the frequency of {spring_law}")
 plt.ylabel("RMS error [mm]")
 plt.legend(frameon=False)
-lk.plotting.show(f"The error over the stiffness of your gains. Yours, in the middle: {', '.join(yours)}.")
+lk.plotting.show(f"The error over the stiffness. With {spring_law}, at factor 1: {', '.join(middle)}.")
 
 # %% [markdown]
 # To the left of the lowest point friction and load cause the error; to its right, the old state does. The
@@ -690,7 +691,6 @@ lk.plotting.show(f"The error over the stiffness of your gains. Yours, in the mid
 
 # %%
 ct = with_gains(my_computed_torque, lk.BAXTER, 120.0, 22.0, True)
-spring_law = "your springs" if my_choose_gains is choose_gains else "a stand-in, the springs of Rethink's example"
 sprung, computed = drive(loaded, lk.control.springs(kp, kd)), drive(loaded, ct)
 print(f"{spring_law}: {lk.metrics.summary(sprung)}")
 print(f"{ct.__name__}: {lk.metrics.summary(computed)}")
@@ -717,8 +717,8 @@ lk.replay.show(
 # %% [markdown]
 # Now pull the arm yourself. Press *Start*, and pull at the arm while it circles: the springs give way. Make
 # them softer and stiffer with the dial, which is the factor on their frequency as above; hang the kilogram
-# on; take the friction away. Then choose computed torque. (The sentence below the picture begins with what moves
-# the arm, and says so if it is a stand-in.)
+# on; take the friction away. Then choose computed torque. (The line of numbers beside or below the picture
+# begins with what moves the arm, and says so if it is a stand-in.)
 
 # %%
 def pulled(state, target, factor):

@@ -311,6 +311,13 @@ AUGMENTED_PD = Problem(
             "Units: say whether kp e is a torque or an acceleration.",
         ),
         Wrong(
+            "springs and dampers inside M",
+            "In this law M multiplies only the target's acceleration: kp e and kd ė are torques "
+            "already. Keep them outside M.",
+            mistakes.TorqueBy(lambda x: x.motion + x.M @ x.pull + x.g),
+            "Units: say whether kp e is a torque or an acceleration.",
+        ),
+        Wrong(
             "the weight where the target is",
             "The weight depends on where the arm is, not on where it should be: "
             "model.gravity(state.q).",
@@ -857,8 +864,8 @@ SAMPLED_JOINT = Problem(
         ),
         Wrong(
             "the new speed moves the angle",
-            "The angle moves with the speed at the end of the period. Use the mean of the old and "
-            "the new speed.",
+            "The angle moves with the speed at the end of the period: use the mean of the old and "
+            "the new speed. Or the ½ of ½ a dt² is missing: add it.",
             mistakes.new_speed_first,
             "Many simulators use this step, semi-implicit Euler. The question asks for the exact "
             "one.",

@@ -1,5 +1,6 @@
 """A notebook says whose function moves the arm: the student's or a stand-in."""
 
+import re
 import sys
 from functools import partial
 from pathlib import Path
@@ -9,7 +10,7 @@ import pytest
 import labkit
 
 sys.path.insert(0, str(Path(__file__).parent))
-from student import desk, run_here, solved
+from student import COURSE, desk, run_here, solved
 
 WRONG = """
 def workspace_impedance(state, target, model, *, stiffness, damping):
@@ -49,6 +50,16 @@ def test_the_live_arm_names_a_stand_in(name, stand_ins, tmp_path, monkeypatch, n
     labels.clear()
     run_here(name, solved(name), tmp_path, monkeypatch)
     assert not [law for law in laws + labels if "stand-in" in law]
+
+
+@pytest.mark.parametrize("name", ["02_model", "04_torque_control", "05_impedance"])
+def test_no_result_of_a_stand_in_is_called_yours(name, tmp_path, monkeypatch, named):
+    """Whoever has predicted, but solved nothing, reads "yours" or "your ..." of no result."""
+    parts = {p.name: p.solved() for p in COURSE.predictions(name)}
+    sheet = run_here(name, parts, tmp_path, monkeypatch)
+    said = [line for line in sheet.printed.splitlines() if not line.startswith("[")]
+    words = "\n".join(said + named[1])
+    assert not re.search(r"\byours\b|\byour\s(g|gains|springs|impedance)\b", words, re.IGNORECASE)
 
 
 def test_a_wrong_law_that_loses_the_arm_is_shown_as_the_students(tmp_path, monkeypatch, named):

@@ -136,6 +136,22 @@ def test_picture_curve_and_dials_are_on_one_screen(page, size):
     assert max(ends) - boxes[0]["y"] < size[1]
 
 
+def test_the_view_begins_with_its_title(page):
+    """As a replay does; so two views of a notebook are told apart."""
+    title = page.locator(".lk-live > .lk-title")
+    assert title.is_visible() and title.inner_text() == "Feel it"
+
+
+def test_no_box_of_a_dial_is_cut_at_the_edge_of_a_notebook_on_a_phone(page):
+    """JupyterLab leaves 275 of 390 pixels: box and unit stay within them."""
+    page.set_viewport_size({"width": 275 + 16, "height": 844})
+    page.wait_for_timeout(100)
+    edge = page.evaluate("document.querySelector('.lk-live').getBoundingClientRect().right")
+    for box in page.locator(".lk-dial > *").all():
+        place = box.bounding_box()
+        assert place["x"] + place["width"] <= edge - 1, box.inner_html()
+
+
 def test_the_path_of_the_target_is_drawn_and_goes_where_it_is_dragged(page, data):
     """Each point that the kernel told, moved with the target."""
     path = json.loads(data)["path"]

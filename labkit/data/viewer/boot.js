@@ -105,6 +105,11 @@ fieldset .lk-dial label { flex-basis: 2.6rem; }
 .lk-livedials.lk-dials { grid-template-columns: repeat(auto-fit, minmax(min(100%, 20rem), 1fr)); }
 .lk-livedials .lk-dial :is(label, .lk-unit) { flex-basis: auto; white-space: nowrap; }
 .lk-livedials .lk-dial label { min-width: 5rem; }
+@container (max-width: 24rem) { /* the name gets a row of its own, so that box and unit are not cut */
+  .lk-livedials .lk-dial { flex-wrap: wrap; }
+  .lk-livedials .lk-dial > label:first-child { flex-basis: 100%; }
+  .lk-livedials .lk-dial > input[type="range"] { flex-basis: 4rem; }
+}
 .lk-choice select { flex: 1 1 auto; min-width: 0; }
 .lk-recorded { margin: 0.5rem 0 0; font-size: 0.9rem; }
 .lk-badge { display: inline-block; padding: 0 0.5rem; border: 1px solid var(--lk-quiet); border-radius: 1rem; font-size: 0.8rem; margin-right: 0.4rem; }

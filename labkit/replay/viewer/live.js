@@ -37,6 +37,7 @@ export class LiveArm {
     this.plot = new Plot({ title: "Distance from the target [mm]", xName: "time [s]", zero: true, least: 1, ...this.curve() });
     const seen = h("div", {}, this.stagebox, this.note, this.buttons());
     const told = h("div", {}, h("div", { class: "lk-plots" }, this.plot.element), this.readout, this.dials());
+    this.element.append(h("p", { class: "lk-title" }, data.title));
     if (data.by) this.element.append(h("p", { class: "lk-say" }, data.by));
     this.element.append(h("div", { class: "lk-beside" }, seen, told), this.sight.element, this.hand(), this.status);
     host.append(this.element);
