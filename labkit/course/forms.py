@@ -17,7 +17,7 @@ from .verdict import Difference, Kind
 COMMITTED = "committed before the arm answers"
 """The one test of a prediction."""
 
-OWN_ARM = "it is true of your own arm"
+OWN_ARM = "it is right for your own arm"
 """The test of a number that a student measured; only the grader knows the arm."""
 
 

@@ -47,7 +47,7 @@ class Identification:
             Test(
                 OWN_ARM,
                 (Call((), expected=self._expected(), hidden=True),),
-                also="whether it is true of your own arm",
+                also="whether it is right for your own arm",
             ),
         )
         return Question(
@@ -98,8 +98,8 @@ def on_the_public_arm(question: Question, verdict: Verdict, answer: Any) -> tupl
     """The verdict on a plausible answer about the public arm, and a remark if it is right."""
     judge: Any = question.judge
     if judge(answer, judge.expected(draw(PUBLIC_SEED, DEMO))) is None:
-        return verdict, f"Your answer is true of the public arm, {DEMO!r}."
-    why = Difference(Kind.REFUSED, found=f"it is not true of the public arm, {DEMO!r}")
+        return verdict, f"Your answer is right for the public arm, {DEMO!r}."
+    why = Difference(Kind.REFUSED, found=f"it is not right for the public arm, {DEMO!r}")
     call = f"{question.name}()"
     wrong = replace(verdict.tests[-1], outcome=Outcome.WRONG, call=call, difference=why)
     tests = (*verdict.tests[:-1], wrong)

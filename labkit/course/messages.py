@@ -41,7 +41,7 @@ def head(verdict: Verdict) -> str:
     elif awaits_marking(verdict):
         return (
             f"{verdict.name}: a possible answer. When it is marked, it earns {points} if it is "
-            "true of your own arm."
+            "right for your own arm."
         )
     elif verdict.outcome is Outcome.RIGHT and not verdict.complete:
         return (

@@ -224,7 +224,7 @@ def test_a_measurement_of_the_public_arm_is_right_or_wrong_at_once(monkeypatch):
     notebook.user_ns["HANDLE"] = "kestrel"
     student.check("my_lag", 0.1)
     wrong, right, waiting = said
-    assert wrong.startswith("my_lag: not yet right.") and "not true of the public arm" in wrong
+    assert wrong.startswith("my_lag: not yet right.") and "not right for the public arm" in wrong
     assert "Where it fails" not in wrong and "0.03" not in wrong
-    assert "a possible answer" in right and "Your answer is true of the public arm" in right
+    assert "a possible answer" in right and "Your answer is right for the public arm" in right
     assert "a possible answer" in waiting and "public arm" not in waiting
