@@ -14,6 +14,7 @@ import shutil
 from collections.abc import Iterable, Mapping
 from contextlib import suppress
 from dataclasses import dataclass
+from functools import partial
 from pathlib import Path
 
 import nbformat
@@ -124,14 +125,15 @@ def _checks(made: Prepared) -> str:
     return text
 
 
-def same_but_for_rounding(a: object, b: object) -> bool:
+def same_but_for_rounding(a: object, b: object, rtol: float = 1e-9, atol: float = 1e-12) -> bool:
     """Whether two JSON values are the same but for what another machine rounds otherwise."""
+    same = partial(same_but_for_rounding, rtol=rtol, atol=atol)
     if isinstance(a, dict) and isinstance(b, dict):
-        return a.keys() == b.keys() and all(same_but_for_rounding(a[k], b[k]) for k in a)
+        return a.keys() == b.keys() and all(same(a[k], b[k]) for k in a)
     if isinstance(a, list) and isinstance(b, list):
-        return len(a) == len(b) and all(map(same_but_for_rounding, a, b))
+        return len(a) == len(b) and all(map(same, a, b))
     if isinstance(a, float) and isinstance(b, int | float):
-        return math.isclose(a, b, rel_tol=1e-9, abs_tol=1e-12)
+        return math.isclose(a, b, rel_tol=rtol, abs_tol=atol)
     return a == b
 
 
