@@ -145,10 +145,10 @@ def diagonal_only(M: Any, J: Any) -> Any:
 
 
 @dataclass(frozen=True)
-class Feeling:
-    """The right law plus a share of the torque that the sensors measure."""
+class WithTorque:
+    """The right law plus a torque that follows from the state."""
 
-    share: float
+    torque: Callable[[lk.State], np.ndarray]
 
     def __call__(
         self,
@@ -161,7 +161,7 @@ class Feeling:
     ) -> lk.JointTorque:
         """The torque."""
         tau = right.workspace_impedance(state, target, model, stiffness=stiffness, damping=damping)
-        return lk.JointTorque(tau.value + self.share * state.tau_ext)
+        return lk.JointTorque(tau.value + self.torque(state))
 
 
 def plus_in_front(
@@ -262,26 +262,6 @@ def brakes_the_motion(
     tau = right.workspace_impedance(state, target, model, stiffness=stiffness, damping=damping)
     pull = damping * np.asarray(target.twist)
     return lk.JointTorque(tau.value - model.tip_jacobian(state.q).T @ pull)
-
-
-@dataclass(frozen=True)
-class DampsTheJoints:
-    """A damper at each joint, in [N m s/rad]."""
-
-    damper: float
-
-    def __call__(
-        self,
-        state: lk.State,
-        target: lk.PoseSample,
-        model: lk.Model,
-        *,
-        stiffness: Any,
-        damping: Any,
-    ) -> lk.JointTorque:
-        """The torque."""
-        tau = right.workspace_impedance(state, target, model, stiffness=stiffness, damping=damping)
-        return lk.JointTorque(tau.value - self.damper * state.dq)
 
 
 def brakes_behind_speeds(

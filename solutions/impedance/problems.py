@@ -488,14 +488,14 @@ WORKSPACE_IMPEDANCE = Problem(
             "Your law subtracts what the torque sensors feel, so the arm does not give way: a "
             "person who pushes it meets a wall. An impedance needs no sensor: the push moves the "
             "tip, and the springs and dampers respond.",
-            mistakes.Feeling(-1.0),
+            mistakes.WithTorque(lambda state: -state.tau_ext),
             "What does the arm do under a push if this torque cancels the push?",
         ),
         Wrong(
             "the felt push added",
             "Your law adds what the torque sensors feel, so the push counts twice and the tip goes "
             "twice as far. The push acts on the arm by itself.",
-            mistakes.Feeling(1.0),
+            mistakes.WithTorque(lambda state: state.tau_ext),
             "The push is there already, and the sensors only report it.",
         ),
         Wrong(
@@ -748,7 +748,7 @@ WORKSPACE_IMPEDANCE = Problem(
             "-q̇ brakes every joint, and the tip feels this in addition to the dampers of the "
             "question. To brake the elbow alone, project the torque: (I - Jᵀ J̄ᵀ) τ, with J̄ = "
             "M⁻¹ Jᵀ Λ.",
-            mistakes.DampsTheJoints(1.0),
+            mistakes.WithTorque(lambda state: -state.dq),
             "Ask of each torque whether the tip feels it.",
         ),
         Wrong(
@@ -756,7 +756,7 @@ WORKSPACE_IMPEDANCE = Problem(
             "-2 q̇ brakes every joint, and the tip feels this in addition to the dampers of the "
             "question. To brake the elbow alone, project the torque: (I - Jᵀ J̄ᵀ) τ, with J̄ = "
             "M⁻¹ Jᵀ Λ.",
-            mistakes.DampsTheJoints(2.0),
+            mistakes.WithTorque(lambda state: -2.0 * state.dq),
             "Ask of each torque whether the tip feels it.",
         ),
         Wrong(
