@@ -37,8 +37,8 @@ _CAUSES = {
 """The likely cause of each factor by which all numbers are wrong."""
 
 
-def sentence(d: Difference) -> str:
-    """A difference as a sentence that tells a student where to begin."""
+def sentence(d: Difference, start: str = "") -> str:
+    """A difference as a sentence, after its ``start``, that tells a student where to begin."""
     text, expected, got, guess = words(d)
     if got and d.several:
         text = f"{text}it gives {got}. Expected: {expected}"
@@ -50,7 +50,7 @@ def sentence(d: Difference) -> str:
         text = f"{d.part or 'it'} is {got} instead of {expected}"
     if guess:
         text = f"{d.part or 'it'} {guess}"
-    says = f"it{text}" if text.startswith(" ") else text
+    says = f"{start}it{text}" if text.startswith(" ") else f"{start}{text}"
     if not (d.kind is Kind.CHANGED or _NAME.match(says)):
         says = says[:1].upper() + says[1:]
     return says if says.endswith((".", "?", "!", "`")) else f"{says}."
@@ -75,7 +75,7 @@ def words(d: Difference) -> tuple[str, str, str, str]:
     text = ""
     match d.kind:
         case Kind.NUMBERS if d.expected is None:
-            text = f"got {_brief(d.found)}, which is not one of the right values"
+            text = f"it gives {_brief(d.found)}, which is not one of the right values"
         case Kind.NUMBERS:
             at = f"at {_index(d.at)} " if d.at else ""
             also = ", or any that moves the tip in the same way" if d.several else ""

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import re
 import textwrap
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
@@ -179,14 +178,10 @@ def _helps(verdict: Verdict) -> Iterator[str]:
         yield mistake(verdict.mistake)
     elif lead := _lead(verdict):
         test = next(x for x in verdict.tests if x.difference is lead)
-        says, call = sentence(lead), test.call
-        clear = len(call) <= 60 and not is_shortened(call)
-        if likely_cause(lead) and not _is_value(call):  # the numbers of other calls may differ
-            where = f"`{call}`" if clear else f'the test "{test.name}"'
-            yield f"In {where}, {re.sub('^It ', 'it ', says)}"
-        else:
-            named = clear and not _is_value(call) and lead.kind is Kind.NUMBERS and says[-1] == "."
-            yield f"{says[:-1]}, in `{call}`." if named else says
+        clear = len(test.call) <= 60 and not is_shortened(test.call)
+        where = f"`{test.call}`" if clear else f'the test "{test.name}"'
+        of_one_call = lead.kind is Kind.NUMBERS and not _is_value(test.call)  # others may differ
+        yield sentence(lead, f"In {where}, " if of_one_call else "")
 
 
 def _lead(verdict: Verdict) -> Difference | None:

@@ -128,7 +128,7 @@ def test_within_intervals():
     """Several numbers may be right; the distance grows from the middle."""
     judge, intervals = Within(), [[0.9, 1.1], [2.0, 3.0]]
     assert judge(1.0, intervals) is None and judge(2.5, intervals) is None
-    assert "got 1.5" in says(judge(1.5, intervals))
+    assert "gives 1.5" in says(judge(1.5, intervals))
     assert judge(None, intervals) is not None
     assert judge(float("nan"), intervals) is not None
     assert judge.distance(1.0, intervals) < 1.0 < judge.distance(1.5, intervals)

@@ -63,7 +63,7 @@ def test_wrong_shows_the_call_and_both_numbers():
     """A failure holds the call as typed, what was expected and what came; passed tests are told."""
     assert said(lambda x: abs(2.0 * x) + (x < 0)).splitlines() == [
         "double: not yet right. 3 of 4 points.",
-        "  It is 3 instead of -2, in `double(-1.0)`.",
+        "  In `double(-1.0)`, it is 3 instead of -2.",
         "  [passed] two (needed before anything counts)",
         "  [passed] three (worth 3 of 4 points)",
         "  [failed] negative (worth 1 of 4 points)",
@@ -139,7 +139,7 @@ def test_the_number_that_is_farthest_off_is_named():
     question = replace(DOUBLE, tests=(Test("a vector", (call,)),), mistakes=())
     words = said(lambda x: np.array([0.0, 1.0, 9.0, 3.5]), question).splitlines()
     first = " ".join(map(str.strip, words[1:3]))
-    assert first == "The number at index 2 is farthest off: it is 9 instead of 2, in `double(1.0)`."
+    assert first == "In `double(1.0)`, the number at index 2 is farthest off: it is 9 instead of 2."
 
 
 @pytest.mark.parametrize("expected", [1 / 3, np.sin(np.arange(4.0)), np.sin(np.ones((5, 7)))])
@@ -219,7 +219,7 @@ def test_the_same_failure_is_told_once():
     [
         ((-1.0, 2.0), "In `double(1.0)`, kp has the other sign."),
         ((float("inf"), 2.0), "kp is inf; look for a division by zero"),
-        ((1.0, 2.5), "kd is 2.5 instead of 2, in `double(1.0)`."),
+        ((1.0, 2.5), "In `double(1.0)`, kd is 2.5 instead of 2."),
         ((1.0,), "It should be 2 values (kp, kd), not 1."),
     ],
 )
