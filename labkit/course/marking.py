@@ -314,4 +314,5 @@ def _earned(verdict: Verdict) -> float:
     failed = {test.outcome for test in verdict.tests if not test.weight}
     if failed - {Outcome.RIGHT, Outcome.NOT_TRIED} or verdict.outcome is Outcome.NOT_COUNTED:
         return 0.0
-    return verdict.worth(test for test in verdict.tests if test.outcome is Outcome.RIGHT)
+    right = sum(test.weight for test in verdict.tests if test.outcome is Outcome.RIGHT)
+    return round(verdict.points * right / sum(test.weight for test in verdict.tests), 2)

@@ -5,7 +5,6 @@ They do not contain sentences about the result; `messages` writes those.
 
 from __future__ import annotations
 
-from collections.abc import Iterable
 from dataclasses import dataclass
 from enum import StrEnum
 from typing import Annotated
@@ -138,11 +137,6 @@ class Verdict:
     withheld: tuple[str, ...] = ()
     complete: bool = True
     mistake: Misconception | None = None
-
-    def worth(self, tests: Iterable[TestResult]) -> float:
-        """The points that some of its tests earn if they, and all gates, are right."""
-        whole = sum(test.weight for test in self.tests)
-        return round(self.points * sum(test.weight for test in tests) / whole, 2)
 
     @property
     def right(self) -> bool:
