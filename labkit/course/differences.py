@@ -113,7 +113,7 @@ def words(d: Difference) -> tuple[str, str, str, str]:
 
 
 def likely_cause(d: Difference) -> str:
-    """The likely cause of wrong numbers; one may be twice or half of another by chance."""
+    """The likely cause of wrong numbers; a single one may be twice another by chance."""
     if _is_rounded(d.expected, d.found):
         return "is float32, which has 7 digits; compute in float64"
     if d.times is None:
@@ -136,7 +136,7 @@ def _instead(d: Difference) -> str:
 
 
 def _is_rounded(expected: Value, found: Value) -> bool:
-    """Whether numbers are right but for float32; a number of few digits need not be one."""
+    """Whether numbers are right but for float32; short numbers, such as 0.5, do not show it."""
     if not isinstance(found, float | tuple) or type(found) is not type(expected):
         return False
     a, b = np.array(found), np.array(expected)
@@ -148,9 +148,8 @@ def _is_rounded(expected: Value, found: Value) -> bool:
 
 def _apart(expected: Value, found: Value) -> tuple[str, str]:
     """Two values in short notation, with more digits if they would look the same."""
-    short = _brief(expected), _brief(found)
-    more = ((_brief(expected, n), _brief(found, n)) for n in (9, 12, 17))
-    return short if short[0] != short[1] else next((x for x in more if x[0] != x[1]), short)
+    pairs = [(_brief(expected, n), _brief(found, n)) for n in (0, 9, 12, 17)]
+    return next((pair for pair in pairs if pair[0] != pair[1]), pairs[0])
 
 
 def _brief(x: Value, digits: int = 0) -> str:
