@@ -174,13 +174,14 @@ def _doubt(one: LmsUser, students: int, roster: Roster) -> str:
     if not roster.students:
         return ""
     if not students:
-        alike = [str(x) for x in roster.alike(one.name)] if one.system == "moodle" else []
-        return (
+        says = (
             f"{one} is not in the roster, so their work is kept apart; import a list that "
             "has them, labkit students import LIST.csv, and collect again"
-            + f"; if they are {' or '.join(alike)}, import the assignment's grading worksheet"
-            * bool(alike)
         )
+        if one.system == "moodle" and (alike := roster.alike(one.name)):
+            people = " or ".join(map(str, alike))
+            says += f"; if they are {people}, import the assignment's grading worksheet"
+        return says
     until = f"their work is kept apart until {_TOLD_APART[one.system]}"
     if students > 1:
         return f"{one} has the name of {students} students of the roster; {until}"

@@ -10,7 +10,7 @@ import csv
 import io
 import unicodedata
 from dataclasses import asdict, dataclass, fields
-from functools import cached_property
+from functools import cache, cached_property
 
 from ...course.authoring.layout import Course
 from ...errors import LabkitError
@@ -59,13 +59,9 @@ class Roster:
         return [group for group in groups if len(group) > 1]
 
     def alike(self, name: str) -> list[Student]:
-        """Students of whose name two words are in another, as after a change of surname."""
+        """Students whose names share two words with ``name``, as after a change of surname."""
         words = _words(name)
-        return [student for student, other in self._words if len(words & other) > 1]
-
-    @cached_property
-    def _words(self) -> list[tuple[Student, frozenset[str]]]:
-        return [(student, _words(student.name)) for student in self.students]
+        return [student for student in self.students if len(words & _words(student.name)) > 1]
 
     @cached_property
     def _by_id(self) -> dict[str, Student]:
@@ -104,6 +100,7 @@ def same_name(name: str) -> tuple[str, ...]:
     return tuple(sorted(filter(None, words)))
 
 
+@cache
 def _words(name: str) -> frozenset[str]:
     return frozenset(same_name(name.replace("-", " ")))
 
