@@ -100,8 +100,8 @@ def import_list(
         assignment: The assignment, if the file is Moodle's grading worksheet.
 
     Returns:
-        Two lists of sentences, on what was done and on what a person should look at, such as one
-        student's work in two folders, or hand-in times that are not set.
+        Two lists of sentences: on what was done, and on what a person should look at, such as one
+        student's work in two folders or hand-in times that are not set.
 
     Raises:
         LabkitError: The list contradicts the roster or itself, or the file is not a list.
@@ -127,24 +127,24 @@ def import_list(
         tell_gradebook(course, done.roster)
         give_arms(course, done.roster, seed_of(course))
         left = move_to_owners(course, done.roster)
-        times, not_taken = list[str](), list[str]()
+        taken, late, look = 0, list[str](), list[str]()
         if assignment:
             left += keep_numbers(course, assignment, done.rows)
-            times, not_taken = keep_times(course, assignment, done.rows)
+            taken, late, look = keep_times(course, assignment, done.rows)
     listed = {student.id for _, student in done.rows}
-    absent = [str(one) for one in before.students if not (assignment or one.id in listed)]
+    absent = [one for one in before.students if one.id not in listed]
     everybody = how_many(len(done.roster.students), "student")
-    who = f": {few([str(one) for one in done.new])}" if before.students and done.new else ""
+    who = f": {few([*map(str, done.new)])}" if before.students and done.new else ""
     summary = [f"{FILE}: {everybody}, {len(done.new)} of them new{who}"]
-    if absent:
+    if absent and not assignment:
         summary.append(
-            f"not in this list, and still in the roster: {len(absent)} ({few(absent)}); keep their "
-            "rows, even if they have left the class"
+            f"not in this list, and still in the roster: {len(absent)} "
+            f"({few([*map(str, absent)])}); keep their rows, even if they have left the class"
         )
-    not_taken += about_doubles([x for x in before.students if x.id not in listed], done.new)
+    look += about_doubles(absent, done.new)
     named = {one.student for one in left}
     if others := [x for x in unlisted(course, done.roster) if x not in named]:
-        not_taken.append(
+        look.append(
             f"work in folders that belong to nobody in the roster: {', '.join(others)}; where it "
             "is a listed student's, import Moodle's grading worksheet, with --assignment, or copy "
             "the notebook that is to count to submitted/STUDENT/ASSIGNMENT/ASSIGNMENT.ipynb"
@@ -155,15 +155,16 @@ def import_list(
         )
     summary += about_teams(who for entry in entries if (who := entry.student.team))
     if assignment:
-        summary.append(f"{assignment}: {how_many(numbered, 'participant')}; {times[0]}")
-        summary += times[1:]
-    elif numbered:
-        summary.append(
-            "the participants' numbers are those of one assignment; --assignment NAME keeps them"
-        )
-    if not assignment:
+        set_now = f"{how_many(taken, 'hand-in time')} set"
+        summary += [f"{assignment}: {how_many(numbered, 'participant')}; {set_now}", *late]
+    else:
+        if numbered:
+            summary.append(
+                "the participants' numbers are those of one assignment; --assignment NAME keeps "
+                "them"
+            )
         summary += about_namesakes(done.roster, all_lms_users(course))
-    return summary, [*dict.fromkeys(one.why for one in left), *not_taken]
+    return summary, [*dict.fromkeys(one.why for one in left), *look]
 
 
 def marks(one: Student) -> dict[str, str]:

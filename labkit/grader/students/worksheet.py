@@ -8,19 +8,11 @@ from datetime import datetime, timedelta
 from zoneinfo import ZoneInfo
 
 from ...course.authoring.layout import Course
-from ..clean import few, how_many, span
+from ..clean import few, span
 from ..each import Failure
 from ..rules import Rules, read_rules
 from ..timestamp import read_time
-from .attempts import (
-    Attempt,
-    Counted,
-    attempts,
-    choose,
-    counted_attempt,
-    perhaps_late,
-    store,
-)
+from .attempts import Attempt, Counted, attempts, choose, counted_attempt, perhaps_late, store
 from .class_list import Entry, Student
 from .identity import lms_users, record_users
 from .installed import install, instead
@@ -46,22 +38,23 @@ def keep_numbers(
 
 def keep_times(
     course: Course, assignment: str, rows: Sequence[tuple[Entry, Student]]
-) -> tuple[list[str], list[str]]:
+) -> tuple[int, list[str], list[str]]:
     """Record when each counted attempt was handed in, as Moodle's worksheet says.
 
     Returns:
-        How many times were recorded, and a sentence for each student who is late by one of them or
-        perhaps late; and sentences on times that were not recorded, or that change what counts or
-        was returned.
+        How many times were recorded; a sentence for each student who is late or perhaps late; and
+        sentences on what a person should look at: times that were not recorded, or that change
+        which attempt counts or what feedback says.
     """
-    rules = read_rules(course)
-    zone, taken = ZoneInfo(rules.zone), 0
+    rules, taken = read_rules(course), 0
+    zone = ZoneInfo(rules.zone)
     late, left, waiting, returned = (list[str]() for _ in range(4))
     for entry, student in rows:
         all = attempts(course, student.id, assignment)
         chosen, said = choose(all, assignment), entry.handed_in.strip(" -")
         if chosen is None:
-            waiting += [str(student)] * bool(said)
+            if said:
+                waiting.append(str(student))
             continue
         first = chosen.first
         if first.origin != "moodle" or (first.exact and not said):
@@ -82,7 +75,8 @@ def keep_times(
             if after and (says := _late(rules, assignment, student, after.came.when)):
                 late.append(says)
                 page = course.root / "feedback" / student.id / assignment / f"{assignment}.html"
-                returned += [str(student)] * page.exists()
+                if page.exists():
+                    returned.append(str(student))
             taken += 1
     if left and not any(entry.handed_in for entry, _ in rows):
         left = [
@@ -99,11 +93,11 @@ def keep_times(
             f"{len(waiting)} handed in, and nothing of theirs was collected yet: {few(waiting)}; "
             "collect the download, then import the worksheet again"
         )
-    return [f"{how_many(taken, 'hand-in time')} set", *late], left
+    return taken, late, left
 
 
 def _late(rules: Rules, assignment: str, student: Student, when: datetime) -> str:
-    """The sentence that a student was late, and what is deducted; "" if in time."""
+    """The sentence that a student was late, and what is deducted; "" if the work was in time."""
     due = rules.due_for(student.id, assignment)
     if due is None or when <= due:
         return ""
@@ -111,8 +105,8 @@ def _late(rules: Rules, assignment: str, student: Student, when: datetime) -> st
     seconds = (when - due).total_seconds()
     share = rules.late.penalty(100.0, seconds)
     costs = f"; {share:g} % of the points earned are deducted" if share else ""
-    said = _local(due, ZoneInfo(rules.zone))
-    return f"late: {student}, {span(seconds)} after the due date {said}{costs}"
+    at = _local(due, ZoneInfo(rules.zone))
+    return f"late: {student}, {span(seconds)} after the due date {at}{costs}"
 
 
 def _time(
