@@ -137,11 +137,11 @@ def test_no_page_before_all_is_marked(written, capsys):
 
 def test_grading_says_for_how_many_a_person_still_has_to_mark(written):
     """Until nobody waits; the points by hand are in none of the marks that it prints."""
-    says = "not included: 6 points by hand, "
-    assert list(_on_top(written, NAME)) == [f"{says}of 2 students still to be marked"]
+    says = "not included: 6 points by hand; "
+    assert list(_on_top(written, NAME)) == [f"{says}2 students still to be marked"]
     for student, name in [("ada", WHY), ("ada", REPORT), ("bob", REPORT)]:
         give(written, student, name, 1.0)
-    assert list(_on_top(written, NAME)) == [f"{says}all marked"]
+    assert list(_on_top(written, NAME)) == [f"{says}all are marked"]
 
 
 def test_a_students_page_waits_for_their_own_marks_alone(written, capsys):

@@ -240,7 +240,7 @@ def test_grading_names_whose_file_counts_under_a_rule_that_changed(course, monke
     out = verb(course, capsys, "grade", NAME, "--diff")[1]
     would = says.replace("now ", "").replace("counts", "would count")
     assert would in out and f"to grade it, type: labkit grade {NAME}" in out
-    assert "1 student not compared with the file that would count (see above)" in out
+    assert "not compared: 1 student, for whom another file would count (see above)" in out
     assert path.read_bytes() == notebook_of("day 5")
     assert says in verb(course, capsys, "grade", NAME)[1]
     assert path.read_bytes() == notebook_of("day 1")

@@ -98,8 +98,8 @@ def grade(course: Course, assignment: str, student: str | None, as_json: bool, *
                 found = changes(course, assignment, who, options)
                 tell(summary(list(failures.sift(found, "not graded"))), sys.stdout)
             if others:
-                says = "not compared with the file that would count (see above)"
-                print(f"{how_many(len(others), 'student')} {says}")
+                says = f"{how_many(len(others), 'student')}, for whom another file would count"
+                print(f"not compared: {says} (see above)")
             tell(_on_top(course, assignment), sys.stdout)
             return failures.code
         graded: list[Result] = []
@@ -146,7 +146,7 @@ def _other_notebooks(results: Iterable[Result]) -> Iterator[Failure]:
 
 
 def _on_top(course: Course, assignment: str) -> Iterator[str]:
-    """The points that are not included in the printed marks, and how many still wait for them."""
+    """The points by hand, which the printed marks do not include, and who still waits for them."""
     from ...course.authoring.bundle import Bundle
     from ..nbgrader.gradebook import open_gradebook
 
@@ -154,8 +154,8 @@ def _on_top(course: Course, assignment: str) -> Iterator[str]:
         with open_gradebook(course) as book:
             found = book.assignment_submissions(assignment)
             waiting = sum(x.needs_manual_grade for x in found)
-        left = f"of {how_many(waiting, 'student')} still to be marked" if waiting else "all marked"
-        yield f"not included: {how_many(by_hand, 'point')} by hand, {left}"
+        left = f"{how_many(waiting, 'student')} still to be marked" if waiting else "all are marked"
+        yield f"not included: {how_many(by_hand, 'point')} by hand; {left}"
 
 
 def _line(one: GradedSubmission, as_json: bool, number: str = "") -> str:
