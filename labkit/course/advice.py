@@ -63,7 +63,7 @@ def remedy(error: BaseException) -> str:
 
 
 def _similar(error: NameError | AttributeError, names: Iterable[str]) -> str:
-    """The name that is most like an unknown one, as Python itself suggests it, or ""."""
+    """A suggestion of the name that is most like an unknown one, or ""."""
     near = get_close_matches(str(error.name or ""), names, 1)
     return f"did you mean {near[0]}?" if near else ""
 

@@ -103,7 +103,7 @@ def _probed(
 
 
 def _when(labels: Sequence[str]) -> str:
-    """Up to three arguments, each once, with the values to which they were set."""
+    """The end of a sentence about up to three arguments and the values to which they were set."""
     values: dict[str, list[str]] = {}
     for name, value in (label.split(" is ") for label in labels):
         values.setdefault(name, []).append(value)

@@ -200,8 +200,8 @@ def withheld_tools(cells: Iterable[Analysis], name: str, tools: Sequence[str]) -
         tools: Dotted names of the withheld tools, such as "labkit.Circle" or "pinocchio".
 
     Returns:
-        Those that are used, in the order given.  What is used counts as a part of one of them, the
-        one that its name begins with, if there is one.
+        Those that are used, in the order given.  Each use counts for one of them alone, preferably
+        the one with which the name that was used begins.
     """
     if not tools:
         return ()

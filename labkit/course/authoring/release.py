@@ -86,8 +86,8 @@ def prepare(course: Course, name: str, seed: int) -> Prepared:
 def write(made: Prepared, added: Iterable[str] = ()) -> None:
     """Write the source for nbgrader, the solved notebook and the graders' bundle.
 
-    Public cases that differ from those of the last release by rounding alone stay as they are, so
-    a release on another machine leaves the files under git unchanged.
+    If the public cases differ from those of the last release only by rounding, the old ones stay,
+    so that a release on another machine leaves the files under git unchanged.
 
     Args:
         made: What `prepare` made.
@@ -126,7 +126,7 @@ def _checks(made: Prepared) -> str:
 
 
 def same_but_for_rounding(a: object, b: object, rtol: float = 1e-9, atol: float = 1e-12) -> bool:
-    """Whether two JSON values are the same but for what another machine rounds otherwise."""
+    """Whether two JSON values differ only by what another machine rounds in another manner."""
     same = partial(same_but_for_rounding, rtol=rtol, atol=atol)
     if isinstance(a, dict) and isinstance(b, dict):
         return a.keys() == b.keys() and all(same(a[k], b[k]) for k in a)

@@ -200,7 +200,7 @@ def timestamp(course: Course, result: Result) -> tuple[datetime | None, str]:
 def automatic_scores(notebook: Any, result: Result) -> dict[str, float | None]:
     """The automatic score of each cell of the gradebook; None for what a person must mark.
 
-    An answer that is unchanged or in which nobody sees a word earns 0.
+    An answer that is unchanged or in which a reader sees no word earns 0.
 
     Args:
         notebook: The submission in the release's form.
