@@ -103,9 +103,9 @@ def seeds(course: Course, final: bool) -> tuple[int, ...]:
 
 
 def play(course: Course, today: date, final: bool) -> Iterator[Entry | Failure]:
-    """Run the last notebook of each handle, unless it was run last, at most `A_DAY` times a day.
+    """Run the last notebook of each handle, if it is new, at most `A_DAY` of a handle in a day.
 
-    The final has no such limit.
+    In the final, there is no such limit.
 
     Yields:
         Each entry that was run, or why it was not.
@@ -147,9 +147,9 @@ def of_student(course: Course, student: str) -> list[Entry]:
 
 
 def latest(course: Course, final: bool) -> dict[str, Entry]:
-    """By the present handles, the last entry of each on the board or in the final.
+    """The last entry of each present handle, on the board or in the final.
 
-    Of the entries of a team, the one whose notebook was handed in last.
+    The last entry of a team is the one whose notebook was handed in last.
     """
     runs = {handle: _runs(course, team, final) for handle, team in _entered(course).items()}
     return {handle: found[-1] for handle, found in runs.items() if found}
@@ -161,7 +161,7 @@ def _runs(course: Course, team: Sequence[str], final: bool) -> list[Entry]:
 
 
 def tied(course: Course) -> Iterator[str]:
-    """A sentence for each team of which another notebook may be the later one."""
+    """A sentence for each team whose last notebooks have the same time, but differ."""
 
     def notebook(student: str) -> bytes:
         return Submission.of(course, CUP, student).read()[0]

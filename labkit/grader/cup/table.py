@@ -47,19 +47,18 @@ def page(course: Course, found: Mapping[str, Entry], final: bool) -> str:
 def give_bonus(course: Course, found: Mapping[str, Entry]) -> None:
     """Write how many benchmarks an entry beats as extra credit of all who have its handle now.
 
-    A student who had such a bonus, and whose handle has no entry now, gets 0.
+    Students who had extra credit before, and whose handle has no entry now, get 0.
     """
     handles = Arms.of(course.root).handles
     with open_gradebook(course) as book:
         had = {x.student.id for x in book.assignment_submissions(CUP)}
         for student in sorted(had | handles.keys() | {x.student for x in found.values()}):
-            mine = {x: found[x] for x in [handles.get(student, student)] if x in found}
+            handle = handles.get(student, student)
+            mine = {name: entry for name, entry in found.items() if name == handle}
             if not (mine or student in had):
                 continue
-            text = "\n".join(as_text(mine))
-            for grade in enter_tasks(
-                course, book, CUP, student, {BONUS: f"```text\n{text}\n```"}, 0
-            ):
+            text = "```text\n{}\n```".format("\n".join(as_text(mine)))
+            for grade in enter_tasks(course, book, CUP, student, {BONUS: text}, 0):
                 grade.auto_score = 0.0
                 grade.extra_credit = float(sum(x.beaten for x in mine.values()))
                 grade.needs_manual_grade = False
