@@ -1,4 +1,4 @@
-"""What a person must do by hand to forget a student, and who may be meant by a name."""
+"""What a person must delete by hand to forget a student, and whom a name may mean."""
 
 from __future__ import annotations
 
@@ -52,8 +52,8 @@ def left_by_hand(course: Course, terms: Sequence[Course], student: str) -> Itera
     for term in terms:
         for sheet in sorted((term.submitted / student).glob("*_review")):
             yield (
-                f"the reviews that they wrote go too ({sheet.relative_to(course.root)}); pages of "
-                "other teams lack them once they are written again"
+                f"the reviews that they wrote go too ({sheet.relative_to(course.root)}); when you "
+                "write the feedback pages of other teams again, these reviews will be missing"
             )
     if any((x.root / _ZIP).exists() and student in Arms.of(x.root).handles for x in terms):
         yield f"{_ZIP} may still hold their arm; make it again: labkit student-bundle"
@@ -78,11 +78,11 @@ def unknown(course: Course, student: str, names: Collection[str]) -> LabkitError
 def _perhaps_theirs(
     course: Course, terms: Iterable[Course], student: str
 ) -> Iterator[tuple[Course, list[str]]]:
-    """Other folders that may be of the same person, in each term.
+    """Other folders that may belong to the same person, in each term.
 
-    A folder is that of another student of a roster who shares a login, an address or a number, or
-    only the name if nothing contradicts this; or of somebody outside the roster who has the name or
-    is the same user of a platform.
+    Such a folder belongs to another student of a roster with the same login, address or number, or
+    with the same name if nothing contradicts it; or to somebody outside the roster who has the same
+    name or is the same user of a platform.
     """
     me = Roster(tuple(one for term in terms if (one := read_roster(term).get(student))))
     used = [u[student] for term in terms for u in all_lms_users(term).values() if student in u]

@@ -62,7 +62,7 @@ def terms_of(course: Course, student: str, names: Collection[str] = ()) -> list[
     """The named terms, or all, in which a student is to be forgotten.
 
     Raises:
-        LabkitError: A term is unknown, or the rosters of two terms have this folder for two people.
+        LabkitError: A term is unknown, or this folder belongs to different people in two rosters.
     """
     known = all_terms(course)
     if unknown := [name for name in names if name not in known]:
@@ -110,9 +110,9 @@ def entries_of(terms: Iterable[Course], student: str) -> list[Path]:
 
 
 def shared_work(terms: Iterable[Course], student: str) -> list[tuple[Course, str, str]]:
-    """What a student handed in for a team: term, assignment, and new owner.
+    """What a student handed in for a team: term, assignment and new owner of each.
 
-    These are reports, and the cup's notebook if it is the team's only one.
+    Reports belong to it, and the cup's notebook if it is the team's only one.
 
     Raises:
         LabkitError: The roster or the release of a term is damaged.
@@ -126,8 +126,8 @@ def shared_work(terms: Iterable[Course], student: str) -> list[tuple[Course, str
         team = {mate.id for mate in roster.students if mate.team == one.team}
         for name in [CUP, *sorted(path.stem for path in term.bundle.glob("*.json"))]:
             own = team & {*students(term, name), *Results(term, name).students()}
-            first = len(own) == 1 if name == CUP else Bundle.of(term, name).is_report
-            if first and min(own, default="") == student and team - own:
+            shared = len(own) == 1 if name == CUP else Bundle.of(term, name).is_report
+            if shared and min(own, default="") == student and team - own:
                 found.append((term, name, min(team - own)))
     return found
 
@@ -135,7 +135,7 @@ def shared_work(terms: Iterable[Course], student: str) -> list[tuple[Course, str
 def shorter_extensions(
     course: Course, student: str, shared: Iterable[tuple[Course, str, str]]
 ) -> list[str]:
-    """A sentence for each of `shared_work` that would be late in its new owner's folder."""
+    """A sentence for each of `shared_work` whose new owner has a shorter extension."""
     said = []
     for term, name, mate in shared:
         file = term.root / RULES
@@ -160,8 +160,8 @@ def forget(
     Work for a team, on which the marks of others depend, is first moved to one of them.
 
     Raises:
-        LabkitError: Another command holds the lock, a file about the whole class is damaged, or the
-            team's report cannot be moved, or would be late.
+        LabkitError: Another command holds the lock, a file about the whole class is damaged, or
+            work for a team cannot be moved or has a new owner with a shorter extension.
     """
     with identity_lock(course):
         shared = shared_work(terms, student)
