@@ -180,7 +180,7 @@ class Chain:
 
 
 def _check_joint(number: int, end: Any, start: Any) -> None:
-    """Refuse a part of a chain that does not begin where the one before it, `number`, ends."""
+    """Refuse a part of a chain that does not begin where the part before, ``number``, ends."""
     one_kind = isinstance(end, AnySample) and type(start) is type(end)
     if not one_kind or np.shape(start[0]) != np.shape(end[0]):
         raise TypeMismatch(
