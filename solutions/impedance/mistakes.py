@@ -319,7 +319,8 @@ class TipLaw:
         swapped: Whether stiffness and damping are exchanged.
         pinv: Whether the pseudo-inverse replaces the transpose.
         body: Whether the Jacobian is that of the tool's axes.
-        tool: Which error is in the tool's axes: 1 that of orientation, 3 that of position, 2 both.
+        place_in_tool: Whether the error of position is in the tool's axes.
+        turn_in_tool: Whether the error of orientation is in the tool's axes.
     """
 
     e: float = 1.0
@@ -333,7 +334,8 @@ class TipLaw:
     swapped: bool = False
     pinv: bool = False
     body: bool = False
-    tool: int = 0
+    place_in_tool: bool = False
+    turn_in_tool: bool = False
 
     def __call__(
         self,
@@ -350,8 +352,8 @@ class TipLaw:
         J = (model.body_jacobian if self.body else model.tip_jacobian)(q)
         R_tw, inertia = T_wt[:3, :3].T, model.operational_inertia(q)
         e = self.e * lk.se3.pose_error(target.pose, T_wt)
-        place = R_tw @ e[:3] if self.tool >= 2 else e[:3]
-        turn = R_tw @ e[3:] if self.tool in (1, 2) else e[3:]
+        place = R_tw @ e[:3] if self.place_in_tool else e[:3]
+        turn = R_tw @ e[3:] if self.turn_in_tool else e[3:]
         e = np.concatenate([place, self.turn * turn])
         de = self.de * (target.twist - J @ dq)
         a = self.feed * target.dtwist - self.drift * model.tip_jacobian_rate(q, dq) @ dq

@@ -635,21 +635,21 @@ WORKSPACE_IMPEDANCE = Problem(
             "the turn in the tool's axes",
             "The rotation from tip to target must be in world axes, as the Jacobian is: "
             "lk.se3.pose_error gives it.",
-            mistakes.TipLaw(tool=1),
+            mistakes.TipLaw(turn_in_tool=True),
             "Error and Jacobian must be in the same axes.",
         ),
         Wrong(
             "the error in the tool's axes",
             "Both parts of the error are in the tool's axes, but the Jacobian is in the world's. "
             "lk.se3.pose_error gives both parts in world axes.",
-            mistakes.TipLaw(tool=2),
+            mistakes.TipLaw(place_in_tool=True, turn_in_tool=True),
             "Error and Jacobian must be in the same axes.",
         ),
         Wrong(
             "the position error in the tool's axes",
             "The position error is in the tool's axes, but the Jacobian is in the world's. "
             "lk.se3.pose_error gives it in world axes.",
-            mistakes.TipLaw(tool=3),
+            mistakes.TipLaw(place_in_tool=True),
             "Error and Jacobian must be in the same axes.",
         ),
         Wrong(

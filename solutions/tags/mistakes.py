@@ -109,7 +109,7 @@ def vector_in_the_rows(T: Array) -> Array:
 
 
 def vector_in_the_columns(T: Array) -> Array:
-    """The same of a rotation vector of shape (3, 1), as OpenCV returns it."""
+    """The same pose with a rotation vector of shape (3, 1), as OpenCV returns it."""
     R = vector_in_the_rows(T)[:3, :3].T
     return np.block([[R, T[:3, 3:]], [T[3:]]])
 
