@@ -172,12 +172,12 @@ def reviews(course: Course, assignment: str) -> tuple[dict[str, list[Review]], l
     for path in given:
         student = path.parents[1].name
         asked: dict[str, list[str]] = {}
-        now: dict[str, str] = {}
+        report: dict[str, str] = {}
         for cell in read_cells(path):
             if cell["cell_type"] == "raw":
                 who, _, row = cell["id"].partition("_")
                 asked.setdefault(who, []).append(row)
-                now[who] = _report_of(cell)
+                report[who] = _report_of(cell)
         said, wrong = _sheet_texts(course, name, student)
         me = [roster.get(student) or Student(student)]
         whole = 0
@@ -185,7 +185,7 @@ def reviews(course: Course, assignment: str) -> tuple[dict[str, list[Review]], l
             review = _review(rows, {row: said.get(f"{who}_{row}", "") for row in rows}, me)
             if review is not None:
                 whole += 1
-                found.setdefault(authors.get(now[who], ""), []).append(review)
+                found.setdefault(authors.get(report[who], ""), []).append(review)
         if whole < len(asked):
             waiting.append(f"{student}: {wrong or f'{whole} of {len(asked)} reviews'}")
     return found, waiting
@@ -211,7 +211,7 @@ def move_reviews(course: Course, assignment: str, old: str, new: str) -> None:
 
 
 def _report_of(cell: Mapping[str, Any]) -> str:
-    """The present pseudonym of the report that a form to fill in asks about."""
+    """The present pseudonym of the report about which a form in a sheet asks."""
     return str(cell["metadata"].get(_MOVED) or cell["id"].partition("_")[0])
 
 
