@@ -112,8 +112,8 @@ def test_who_came_late_is_named_and_so_is_feedback_that_does_not_say_so(bare, tm
     code, out, err = worksheet(bare, tmp_path, capsys, "Tuesday, 3 March 2026, 1:30 PM")
     late = "late: Ada Lovelace (Ada-Lovelace), 1 day 1 hour after the due date 2026-03-02 12:00 CET"
     assert f"1 hand-in time set\n{late}; 20 % of the points earned are deducted\n" in out
-    says = "the feedback of 1 does not say yet that they were late: Ada Lovelace (Ada-Lovelace); "
-    assert (code, err) == (1, f"{says}type: labkit feedback {NAME}\n")
+    says = "the feedback of 1 student does not say yet that they were late: "
+    assert (code, err) == (1, f"{says}Ada Lovelace (Ada-Lovelace); type: labkit feedback {NAME}\n")
     assert worksheet(bare, tmp_path, capsys, "Tuesday, 3 March 2026, 1:30 PM")[0] == 0
 
 
@@ -140,7 +140,9 @@ def test_a_worksheet_without_times_is_named_once(bare, tmp_path, capsys):
 def test_times_of_what_was_not_collected_are_named(bare, tmp_path, capsys):
     """Who imports the worksheet before collecting is told to import it once more."""
     code, _, err = worksheet(bare, tmp_path, capsys, IN_TIME)
-    assert code == 1 and err.startswith("1 handed in, and nothing of theirs was collected yet: Ada")
+    assert code == 1 and err.startswith(
+        "1 student handed in, and nothing of theirs was collected yet: Ada"
+    )
     take(bare, tmp_path)
     assert worksheet(bare, tmp_path, capsys, IN_TIME)[0] == 0
 

@@ -8,7 +8,7 @@ from datetime import datetime, timedelta
 from zoneinfo import ZoneInfo
 
 from ...course.authoring.layout import Course
-from ..clean import few, span
+from ..clean import few, how_many, span
 from ..each import Failure
 from ..rules import Rules, read_rules
 from ..timestamp import read_time
@@ -85,13 +85,13 @@ def keep_times(
         ]
     if returned:
         left.append(
-            f"the feedback of {len(returned)} does not say yet that they were late: "
-            f"{few(returned)}; type: labkit feedback {assignment}"
+            f"the feedback of {how_many(len(returned), 'student')} does not say yet that they were "
+            f"late: {few(returned)}; type: labkit feedback {assignment}"
         )
     if waiting:
         left.append(
-            f"{len(waiting)} handed in, and nothing of theirs was collected yet: {few(waiting)}; "
-            "collect the download, then import the worksheet again"
+            f"{how_many(len(waiting), 'student')} handed in, and nothing of theirs was collected "
+            f"yet: {few(waiting)}; collect the download, then import the worksheet again"
         )
     return taken, late, left
 
