@@ -161,7 +161,7 @@ def assign_folders(
         else:
             folder = folder or _own_folder(one, owners)
             owners.setdefault(folder.casefold(), set()).add(key)
-            found[key] = Place(folder, _doubt(one, len(students), roster))
+            found[key] = Place(folder, _doubt(one, roster))
     return found
 
 
@@ -170,9 +170,11 @@ def _claim(one: LmsUser, folder: str, roster: Roster) -> tuple[str, ...]:
     return (one.system, *([folder] if folder in roster else [s.id for s in roster.whose(one)]))
 
 
-def _doubt(one: LmsUser, students: int, roster: Roster) -> str:
+def _doubt(one: LmsUser, roster: Roster) -> str:
+    """Why the owner of this work is not certain, and what to do; "" without a roster."""
     if not roster.students:
         return ""
+    students = len(roster.whose(one))
     if not students:
         says = (
             f"{one} is not in the roster, so their work is kept apart; import a list that "

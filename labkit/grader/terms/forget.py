@@ -8,7 +8,7 @@ from collections.abc import Callable, Collection, Iterable, Iterator, Sequence
 from dataclasses import replace
 from datetime import timedelta
 from functools import partial
-from itertools import combinations
+from itertools import combinations, starmap
 from pathlib import Path
 from shlex import quote
 
@@ -69,9 +69,8 @@ def terms_of(course: Course, student: str, names: Collection[str] = ()) -> list[
         raise LabkitError(f"there is no term {unknown[0]!r}; there are {', '.join(known)}")
     terms = {name: term for name, term in known.items() if name in names or not names}
     people = {name: one for name, term in terms.items() if (one := read_roster(term).get(student))}
-    if any(
-        (alike := agreements(*two)) and not any(alike) for two in combinations(people.values(), 2)
-    ):
+    ties = starmap(agreements, combinations(people.values(), 2))
+    if any(tie and not any(tie) for tie in ties):
         listed = [f"{x}: {', '.join((y.name, *marks(y).values()))}" for x, y in people.items()]
         rest = [x for x, y in terms.items() if x not in people and files_of([y], student)]
         listed += [f"{x}: not in its roster" for x in rest]
