@@ -223,7 +223,7 @@ def test_who_is_forgotten_takes_no_mark_from_their_team(course, capsys):
         assert f"{says} to bob, with its mark, which is the team's: submitted/ada/{NAME}\n" in said
         assert f": feedback/bob/{NAME}/{NAME}.html\n" in said
         assert f"write it again: labkit feedback {NAME} --student bob\n" in said
-        assert f"reviews that they wrote go too (submitted/ada/{sheet_of(NAME)}); pages of" in said
+        assert f"reviews that they wrote go too (submitted/ada/{sheet_of(NAME)}); when" in said
     assert not page.exists()
     assert typed(course, "feedback", NAME, "--unmarked", "--student", "bob") == 0
     assert "Handed in by" not in page.read_text()
