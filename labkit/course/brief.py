@@ -20,7 +20,7 @@ PLACEHOLDER = "*Double-click here and write your text in place of this line.*"
 
 def words_of(text: str) -> list[str]:
     """The words that a reader sees, without placeholder, HTML comments and invisible characters."""
-    text = re.sub(r"<!--.*?(-->|\Z)", "", text.replace(PLACEHOLDER, ""), flags=re.DOTALL)
+    text = re.sub(r"<!--(-?>|.*?(-->|\Z))", "", text.replace(PLACEHOLDER, ""), flags=re.DOTALL)
     return "".join(x for x in text if unicodedata.category(x) != "Cf").split()
 
 

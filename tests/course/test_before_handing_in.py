@@ -10,7 +10,7 @@ import pytest
 
 from labkit import LabkitError
 from labkit.course.before_handing_in import HandIn, examine
-from labkit.course.brief import PLACEHOLDER
+from labkit.course.brief import PLACEHOLDER, words_of
 from labkit.course.forms import COMMITTED, OWN_ARM
 from labkit.course.messages import HEADS
 from labkit.course.notebook import verdict_metadata
@@ -291,6 +291,12 @@ def test_an_emptied_prediction_is_named(folder):
     assert not examine(edited(path, committed("2.0"))).problems
     (problem,) = examine(edited(path, committed("None"))).problems
     assert problem.startswith("the cell of twice_the_time says None, although you had committed")
+
+
+@pytest.mark.parametrize("comment", ["<!-- x -->", "<!-->", "<!--->", "<!--x\ny-->"])
+def test_a_text_after_a_comment_counts(comment):
+    """A comment in HTML ends where Jupyter ends it, also an empty one; the rest is read."""
+    assert words_of(f"{comment} Gravity pulls.") == ["Gravity", "pulls."]
 
 
 def test_words_of_a_text_are_counted_without_the_placeholder(folder):
