@@ -118,7 +118,8 @@ INSIDE = answers(
 
 _SYSCALLS = {
     "ptrace": "libc.ptrace(0, 0, 0, 0) == 0",
-    "memory of another process": "libc.syscall(310, os.getpid(), None, 0, None, 0, 0) == 0",
+    # the last argument lies on the stack, where an int leaves half of its 8 bytes to chance
+    "memory of another process": "libc.syscall(310, os.getpid(), None, 0, None, 0, ctypes.c_long(0)) == 0",
     "a namespace": "libc.unshare(0x00020000) == 0",
     "a user of a namespace": "(r := libc.syscall(56, 0x10000011, 0, 0, 0, 0)) > 0 or (r == 0 and os._exit(0))",
     "a mount": "libc.mount(b'x', b'/mnt', b'tmpfs', 0, None) == 0",
