@@ -21,6 +21,7 @@ from tests.synthetic import differences  # noqa: E402
 
 DEMO = ROOT / "build" / "demo"
 ASSIGNMENT = "01_paths"
+REPORT = DEMO / "class_report.md"
 LABKIT = str(Path(sys.executable).with_name("labkit"))
 SYNTHETIC = [sys.executable, "-m", "tests.synthetic"]
 COURSE = ["--course", str(DEMO)]
@@ -32,7 +33,10 @@ GRADING = (
     ("Grade the class, each submission in isolation", [LABKIT, "grade", ASSIGNMENT, *COURSE]),
     ("Compare the marks with those that are deserved", [sys.executable, __file__, "--compare"]),
     ("Write feedback", [LABKIT, "feedback", ASSIGNMENT, *COURSE]),
-    ("Report what the class misunderstood", [LABKIT, "class-report", ASSIGNMENT, *COURSE]),
+    (
+        "Report what the class misunderstood",
+        [LABKIT, "class-report", ASSIGNMENT, "--to", str(REPORT), *COURSE],
+    ),
 )
 
 
@@ -88,6 +92,8 @@ def say_where_to_look(seconds: float) -> None:
         ("the solved notebooks, for after the deadline", DEMO / "build/course/solution"),
         ("the marks with their reasons", DEMO / "results" / ASSIGNMENT),
         ("the feedback for each student", DEMO / "feedback"),
+        ("what the class misunderstood", REPORT),
+        ("the guide for instructors", ROOT / "book/_build/html/instructor_guide.html"),
     ):
         if where.exists():
             print(f"  {what}: {where.relative_to(ROOT)}")

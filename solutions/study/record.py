@@ -145,7 +145,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
     asked = {key: row for key, row in old.items() if key.partition("/")[0] in names}
     new = verdicts(course, names)
     found = [*changes(asked, new)]
-    print(f"{len(new)} known answers marked, {len(found)} verdicts changed.", *found, sep="\n")
+    print(f"Known answers marked: {len(new)}; verdicts changed: {len(found)}.", *found, sep="\n")
     if options.check:
         return bool(found)
     kept = {key: row for key, row in old.items() if options.names and key not in asked}

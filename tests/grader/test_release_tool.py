@@ -303,7 +303,7 @@ def test_a_release_with_a_reason_against_it_writes_nothing(tmp_path, monkeypatch
     before = {p: p.read_bytes() for p in course.root.rglob("*") if p.is_file()}
     bare = with_trials("inverse_transform", lambda k, t: replace(t, hidden=_none))
     monkeypatch.setattr(Course, "problems", lambda self, name: tuple(bare.values()))
-    with pytest.raises(LabkitError, match=rf"^{NAME}.py:\n") as caught:
+    with pytest.raises(LabkitError, match=rf"^solutions/{NAME[3:]}:\n") as caught:
         release(course, NAME, 1)
     assert str(caught.value).count("inverse_transform: ") == 3
     assert before == {p: p.read_bytes() for p in course.root.rglob("*") if p.is_file()}

@@ -77,7 +77,8 @@ def prepare(course: Course, name: str, seed: int) -> Prepared:
     predictions = course.predictions(name)
     source = source_notebook(course.notebook_source(name), questions, predictions)
     if reasons := refusals(source, problems, questions):
-        raise LabkitError("\n".join([f"{course.notebook_source(name).name}:", *reasons]))
+        folder = course.notebook_source(name).parent.relative_to(course.root)
+        raise LabkitError("\n".join([f"{folder}:", *reasons]))
     solved = solution_notebook(source, problems)
     questions |= {prediction.name: prediction.question() for prediction in predictions}
     return Prepared(course, name, seed, source, solved, questions)
