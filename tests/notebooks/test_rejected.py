@@ -177,10 +177,10 @@ def each(verdict):
     return lambda table: {claim: verdict(*map(np.array, rows)) for claim, rows in table.items()}
 
 
-def by_interval(a, b, t=None):
+def by_interval(a, b, t=None, p=0.975, ddof=1):
     d = np.subtract(a, b)
-    t = t or stats.t.ppf(0.975, len(d) - 1)
-    half = t * d.std(ddof=1) / sqrt(len(d))
+    t = t or stats.t.ppf(p, len(d) - 1)
+    half = t * d.std(ddof=ddof) / sqrt(len(d))
     return "undecided" if abs(d.mean()) <= half else "holds" if d.mean() > 0 else "does not hold"
 
 
@@ -248,6 +248,19 @@ REJECTED = [
         "07 verdicts",
         each(lambda a, b: by_interval(a, b, 2.776)),
         "Student's t of five pairs for any number",
+    ),
+    (
+        "07 verdicts",
+        each(lambda a, b: by_interval(a, b, ddof=0)),
+        "n instead of n - 1 in the deviation",
+    ),
+    *(
+        (
+            "07 verdicts",
+            each(lambda a, b, p=p: by_interval(a, b, p=p)),
+            "the quantile of another confidence",
+        )
+        for p in (0.99, 0.995)
     ),
     ("07 verdicts", each(lambda a, b: "undecided"), "every claim undecided"),
     ("07 verdicts", each(by_ten_percent), "a threshold instead of an interval"),
