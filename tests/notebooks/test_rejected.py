@@ -17,6 +17,7 @@ from labkit.course import Outcome
 from labkit.course.authoring.layout import Course
 from labkit.course.authoring.report_card import rejected_below
 from labkit.course.marking import mark
+from labkit.course.messages import message
 from solutions.comparison.hidden import RESERVE, UNSEEN, UNSEEN_LIMIT, stiffer
 
 COURSE = Course.here(Path(__file__))
@@ -302,6 +303,22 @@ def test_a_delay_of_second_order_is_right():
     off = abs(np.polyval(num, s) / np.polyval(den, s) / np.exp(-0.03 * s) - 1.0)
     assert off < 5e-4 < problem.judge.rtol
     assert mark(problem.question(2019), loop(2)).outcome is Outcome.RIGHT
+
+
+@pytest.mark.parametrize(
+    ("Kp", "where"),
+    [
+        (5.0, "on the first arm, with the chosen Kp"),
+        (60.0, "on the first arm, with 1.6 times the chosen Kp"),
+        (20.0, "on the second, slower arm, with the chosen Kp"),
+        (14.0, "on the second, slower arm, with 1.6 times the chosen Kp"),
+    ],
+)
+def test_a_choice_of_gains_is_told_on_which_arm_and_with_which_gain_it_fails(Kp, where):
+    """The arm may be the slower one, and the gain a multiple, where the runner gave a small one."""
+    asked = PROBLEMS["07 choose_gains"].question(2019).public()
+    words = " ".join(str(message(asked, mark(asked, lambda runner: (Kp, 0.0)))).split())
+    assert f"Where it fails: choose_gains(runner) {where} Stuck?" in words
 
 
 def test_no_typed_gains_serve_both_arms():
