@@ -224,6 +224,12 @@ RMS_ERROR = Problem(
             "Compare only what belongs to the same instant.",
         ),
         Wrong(
+            "all rows beside the last target",
+            "The target moves: each row has its own target, log.target.pose[k].",
+            mistakes.from_the_last_target,
+            "Compare only what belongs to the same instant.",
+        ),
+        Wrong(
             "how far the tip went",
             "This compares the tip with its own start. The error is the difference between the "
             "target and the tip.",

@@ -66,6 +66,31 @@ def too_high_a_triangle(t, distance, v_max, a_max):
     return tuple(x / distance for x in way)
 
 
+def halved_by_two_slashes(t, duration):
+    if t < 0 or t >= duration:
+        return float(t >= duration), 0.0, 0.0
+    a, left = 4 / duration**2, duration - t
+    if t < duration // 2:
+        return a * t**2 / 2, a * t, a
+    return 1 - a * left**2 / 2, a * left, -a
+
+
+def metres_before_the_end(t, distance, v_max, a_max):
+    right = lk.Trapezoid(distance, v_max, a_max)
+    return (1.0, 0.0, 0.0) if t >= right.duration else tuple(distance * x for x in right(t))
+
+
+def circle_from(angle, of_velocity=None):
+    def circle(s, start, centre):
+        x, y = np.subtract(start, centre)[:2]
+        r, w = np.hypot(x, y), 2 * np.pi
+        a, b = (f(x, y) + w * s for f in (angle, of_velocity or angle))
+        out, on = np.array([[np.cos(a), np.sin(a), 0], [-np.sin(b), np.cos(b), 0]]) * r
+        return lk.Sample(np.array([*centre[:2], start[2]]) + out, w * on, -w * w * out)
+
+    return circle
+
+
 def over_h(mass_matrix, q, dq):
     h = 1e-5
     slopes = [(mass_matrix(q + d) - mass_matrix(q - d)) / h for d in h * np.eye(7)]
@@ -157,6 +182,11 @@ def rms_of_the_left_arm(log, model):
     return PROBLEMS["07 rms_error"].answer(log, lk.Model("left"))
 
 
+def rms_of_the_last_target(log, model):
+    e = [log.target.pose[-1][:3, 3] - model.pose(q)[:3, 3] for q in log.q]
+    return np.sqrt(np.mean(np.sum(np.square(e), axis=1)))
+
+
 def norm_of_the_mean(log, model):
     e = [T[:3, 3] - model.pose(q)[:3, 3] for q, T in zip(log.q, log.target.pose, strict=True)]
     return np.linalg.norm(np.mean(e, axis=0))
@@ -216,7 +246,15 @@ REJECTED = [
     ("00 joint_error", wrapped, "the error wrapped to half a turn"),
     ("00 orientation_error", zero_by_zero, "0/0 where there is no turn"),
     ("00 orientation_error", turn_by_arcsine, "the arcsine of the turn"),
+    ("01 bang_bang", halved_by_two_slashes, "a rounded middle: // in place of /"),
     ("01 circle", circle_by_arccosine, "the arccosine of the start"),
+    ("01 circle", circle_from(np.arctan2), "x and y exchanged in the arctangent"),
+    (
+        "01 circle",
+        circle_from(lambda x, y: np.arctan2(y, x), lambda x, y: 0.0),
+        "no start angle in the velocity",
+    ),
+    ("01 trapezoid", metres_before_the_end, "metres in place of s until the end"),
     ("01 trapezoid", too_high_a_triangle, "a triangle that is too high"),
     ("02 coriolis", over_h, "twice the right matrix"),
     ("02 power_balance", lambda *x: left_over(*x, joints=6), "the power of only some joints"),
@@ -239,6 +277,7 @@ REJECTED = [
     ("06 tag_pose", vector_for_a_matrix((3, 1)), "a rotation vector in the columns of the matrix"),
     ("06 blend", three_coordinates, "three coordinates, however many there are"),
     ("07 rms_error", rms_of_the_left_arm, "the left arm's model for every arm"),
+    ("07 rms_error", rms_of_the_last_target, "all rows beside the last target"),
     ("07 rms_error", norm_of_the_mean, "the length of the mean error"),
     ("07 open_loop", plain_function, None),
     ("07 open_loop", loop(1), "a delay of first order"),
