@@ -247,12 +247,12 @@ def why(test: TestResult) -> str:
 def _numbers(question: Question, verdict: Verdict) -> list[str]:
     """The cases that failed, each difference once, and how to repeat such a call."""
     lines: list[str] = []
-    before: list[Difference] = []
+    before: list[TestResult] = []
     for test, result in zip(question.tests, verdict.tests, strict=True):
-        if (difference := result.difference) is not None:
-            if not _again(test, difference, before):
-                lines += _parts(result, difference is _lead(verdict))
-            before.append(difference)
+        if result.difference is not None:
+            if not _again(test, result.difference, result.call, before):
+                lines += _parts(result, result.difference is _lead(verdict))
+            before.append(result)
     if any(is_shortened(test.call) for test in verdict.tests):
         name = question.name
         lines += ["To try the first call yourself:", f'  args, kwargs = lk.course.case("{name}")']
@@ -260,13 +260,15 @@ def _numbers(question: Question, verdict: Verdict) -> list[str]:
     return lines
 
 
-def _again(test: Test, difference: Difference, before: list[Difference]) -> bool:
+def _again(test: Test, difference: Difference, call: str, before: list[TestResult]) -> bool:
     """Whether a difference repeats an earlier one, as when a run stops for a call's reason."""
+    earlier = [(x.difference, x.call) for x in before]
     if difference.kind is Kind.RAISED and any(isinstance(x, Loop | Tuned) for x in test.cases):
         if difference.error == ControllerError.__name__:
             return bool(before)
-        return any(x.kind is Kind.RAISED and x.error == difference.error for x in before)
-    return difference in before and not words(difference)[2]
+        return any(x and x.kind is Kind.RAISED and x.error == difference.error for x, _ in earlier)
+    numbers = words(difference)[2]  # the same ones may answer another call
+    return any(x == difference and (called == call or not numbers) for x, called in earlier)
 
 
 def _parts(test: TestResult, led: bool) -> list[str]:

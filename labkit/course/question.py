@@ -119,6 +119,7 @@ class Choice:
         trials: The recorded trials of which the runner reports.
         expected: The upper limit of ``worst_mm``.
         unseen: Other trials on which the choice is judged; None takes ``trials`` again.
+        judged: On which arm and with which gains it is judged, in words; "" if that is plain.
         budget: How many tries the runner has.
         hidden: Whether it is kept from students.
     """
@@ -126,6 +127,7 @@ class Choice:
     trials: Trials
     expected: Any
     unseen: Trials | None = None
+    judged: str = ""
     budget: int = 20
     hidden: bool = False
 
@@ -147,7 +149,7 @@ class Choice:
 
     def shown(self, name: str) -> str:
         """The choice in words."""
-        return f"{name}(runner) with {self.budget} tries"
+        return f"{name}(runner) {self.judged or f'with {self.budget} tries'}"
 
 
 @dataclass(frozen=True, eq=False)

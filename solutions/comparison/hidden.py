@@ -132,10 +132,12 @@ def no_delay(random: Random) -> Iterator[Call]:
 
 def on_the_line() -> Iterator[Choice]:
     """The line of both arms that a student may try, with the chosen Kp and a multiple of it."""
-    for slow in (1.0, SLOW):
+    for arm, slow in (("first", 1.0), ("second, slower", SLOW)):
         line = stiffer(ON_THE_LINE, slow)
-        for times in (1.0, FAR):
-            yield Choice(line, {"worst_mm": LINE_LIMIT}, stiffer(ON_THE_LINE, slow * times))
+        for gains, times in (("the chosen Kp", 1.0), (f"{FAR:g} times the chosen Kp", FAR)):
+            tried = stiffer(ON_THE_LINE, slow * times)
+            judged = f"on the {arm} arm, with {gains}"
+            yield Choice(line, {"worst_mm": LINE_LIMIT}, tried, judged)
 
 
 def unseen_cases(random: Random) -> Iterator[Choice]:

@@ -425,6 +425,12 @@ def from_the_first_target(log: lk.Log, model: lk.Model) -> float:
     return float(rms(np.array([p - model.pose(q)[:3, 3] for q in log.q])))
 
 
+def from_the_last_target(log: lk.Log, model: lk.Model) -> float:
+    """The distance of every row from the last target."""
+    p = log.target.pose[-1][:3, 3]  # type: ignore[union-attr]
+    return float(rms(np.array([p - model.pose(q)[:3, 3] for q in log.q])))
+
+
 def from_the_first_tip(log: lk.Log, model: lk.Model) -> float:
     """The distance that the tip moved, ignoring its target."""
     p = model.pose(log.q[0])[:3, 3]

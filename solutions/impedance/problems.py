@@ -475,7 +475,7 @@ WORKSPACE_IMPEDANCE = Problem(
         "then turn that force into joint torques with Jᵀ. Weight and Coriolis torques are added "
         "at the joints.",
         "e = lk.se3.pose_error(target.pose, model.pose(q)), ė = target.twist - J q̇. The motion "
-        "takes Λ times the acceleration that the *joints* must provide: target.dtwist minus J̇ "
+        "takes Λ times the acceleration that the joints must provide: target.dtwist minus J̇ "
         "q̇, because J̇ q̇ is there without any joint acceleration.",
         "First find the force at the tip: that of the springs and dampers, plus Λ times the "
         "acceleration that the motors must provide, which is the target's minus the part that "
@@ -816,7 +816,7 @@ SHAPED_IMPEDANCE = Problem(
     ),
     hints=(
         "First find an acceleration: the one that a body M_d would have under spring, damper and "
-        "hand. Then find the force of the *motors* that makes the real tip, with its own Λ, move "
+        "hand. Then find the force of the motors that makes the real tip, with its own Λ, move "
         "like that.",
         "M_d (a - dV_d) = D ė + K e + F. And Λ (a - J̇ q̇) = F_motors + F, because the hand "
         "provides a part of the force.",

@@ -379,23 +379,22 @@ arm.reset(q0)
 tour = lk.Chain([lk.Trajectory(side, lk.Trapezoid(side.length, 0.2, 0.4)) for side in sides])
 as_it_should = lk.run(arm, model.joint_trajectory(tour, q0), passes_on)
 
+upright = model.pose(q0)[:3, :3]
+poses = lk.PosePath(square, upright)  # your square, with the hand turned as at the start
+
 
 def follows_the_square(state, target, k=8.0):
-    """Feed-forward and feedback after your square; at most 0.5 m/s, should it jump."""
-    wanted = square(state.t)
-    pull = wanted.velocity + k * (wanted.position - model.pose(state.q)[:3, 3])
-    pull = pull * min(1.0, 0.5 / max(np.linalg.norm(pull), 1e-9))
-    turn = k * lk.se3.orientation_error(upright, model.pose(state.q)[:3, :3])
-    return lk.JointVelocity(np.linalg.pinv(model.tip_jacobian(state.q)) @ np.concatenate([pull, turn]))
+    """Feed-forward and feedback; at most 0.5 m/s, should your square jump."""
+    twist = target.twist + k * lk.se3.pose_error(target.pose, model.pose(state.q))
+    twist = twist * min(1.0, 0.5 / max(np.linalg.norm(twist[:3]), 1e-9))
+    return lk.JointVelocity(np.linalg.pinv(model.tip_jacobian(state.q)) @ twist)
 
 
-upright = model.pose(q0)[:3, :3]
 arm.reset(q0)
-log_square = lk.run(arm, lk.Hold(q0, sum(durations)), follows_the_square)
+log_square = lk.run(arm, poses, follows_the_square, duration=sum(durations))
 lk.replay.show(
     lk.replay.motion_of(
-        log_square, "Round four corners", label="your square", ghosts={"the square": as_it_should},
-        reference=False,
+        log_square, "Round four corners", label="your square", ghosts={"the square": as_it_should}
     )
 )
 

@@ -114,6 +114,12 @@ def starts_at_angle_zero(s: float, start: Any, centre: Any) -> lk.Sample:
     return lk.Sample(np.array([c[0], c[1], p[2]]) + out, w * on, -w * w * out)
 
 
+def velocity_from_angle_zero(s: float, start: Any, centre: Any) -> lk.Sample:
+    """Forgets the angle of the start in the velocity alone."""
+    x, _, ddx = circle(s, start, centre)
+    return lk.Sample(x, starts_at_angle_zero(s, start, centre).velocity, ddx)
+
+
 def rates_without_two_pi(s: float, start: Any, centre: Any) -> lk.Sample:
     """Derivatives with respect to the angle, without the inner derivative."""
     x, dx, ddx = circle(s, start, centre)
@@ -206,6 +212,14 @@ def way_for_s(t: float, distance: float, v_max: float, a_max: float) -> tuple[fl
     return s * distance, ds * distance, dds * distance
 
 
+def way_until_the_end(
+    t: float, distance: float, v_max: float, a_max: float
+) -> tuple[float, float, float]:
+    """The distance in metres, but 1 after the end."""
+    way = way_for_s(t, distance, v_max, a_max)
+    return (1.0, 0.0, 0.0) if way == (distance, 0.0, 0.0) else way
+
+
 def clockwise(s: float, start: Any, centre: Any) -> lk.Sample:
     """Goes round in the opposite direction."""
     x, dx, ddx = circle(-s, start, centre)
@@ -264,6 +278,7 @@ class Bang:
         after: Whether it rests after the end.
         end: The value at which it rests after the end.
         left: The seconds that are left, given t and T.
+        middle: When it begins to brake, given T.
         brake: (s, ds, dds) while braking, given t, T and a; None takes the right ones.
     """
 
@@ -276,6 +291,7 @@ class Bang:
     after: bool = True
     end: float = 1.0
     left: Callable[[float, float], float] = lambda t, T: T - t
+    middle: Callable[[float], float] = lambda T: T / 2.0
     brake: Callable[[float, float, float], tuple[float, float, float]] | None = None
 
     def __call__(self, t: float, duration: float) -> tuple[float, float, float]:
@@ -285,7 +301,7 @@ class Bang:
             return 0.0, 0.0, 0.0
         if t >= T and self.after:
             return self.end, 0.0, 0.0
-        if t < T / 2.0:
+        if t < self.middle(T):
             return self.half * a * t**2 / 2.0, a * t, a
         if self.brake:
             return self.brake(t, T, a)
@@ -373,6 +389,7 @@ class Spoke:
         centre: Factor of the centre.
         about_start: Whether the circle is around the start.
         mirrored: Whether sine and cosine are exchanged.
+        swapped: Whether the start's angle is that of (y, x).
     """
 
     start: float = 1.0
@@ -383,13 +400,14 @@ class Spoke:
     centre: float = 1.0
     about_start: bool = False
     mirrored: bool = False
+    swapped: bool = False
 
     def __call__(self, s: float, start: Any, centre: Any) -> lk.Sample:
         """The point and its derivatives."""
         x, y = start[0] - centre[0], start[1] - centre[1]
         r, yaw, w = (
             self.radius * float(np.hypot(x, y)) ** self.power,
-            atan2(y, x),
+            atan2(x, y) if self.swapped else atan2(y, x),
             2.0 * pi * self.turn,
         )
 

@@ -5,7 +5,7 @@ from labkit.course import Choose, Number, Prediction
 PREDICTIONS = (
     Prediction(
         "peak_acceleration",
-        "The *quintic* schedule is a polynomial of fifth order whose acceleration is zero at "
+        "The quintic schedule is a polynomial of fifth order whose acceleration is zero at "
         "both ends. Bang-bang jumps from one acceleration to the other. Both cover the same "
         "distance in the same time. Which of them has the higher peak of acceleration?",
         Choose({"a": "bang-bang", "b": "the quintic", "c": "both the same"}),

@@ -140,6 +140,13 @@ BANG_BANG = Problem(
             "Say for each time from which instant it is measured.",
         ),
         Wrong(
+            "a rounded middle: // in place of /",
+            "duration // 2 drops the fraction, so the middle of a motion of 1 s is at 0 s, and "
+            "it brakes from the start. Write duration / 2.",
+            mistakes.Bang(middle=lambda T: T // 2.0),
+            "// rounds down; / divides.",
+        ),
+        Wrong(
             "the braking half begins at rest",
             "In the middle, the motion has the speed a T/2. Your second half begins at rest, so "
             "s decreases.",
@@ -252,6 +259,13 @@ TRAPEZOID = Problem(
             "You returned the distance covered, in metres. s goes from 0 to 1: divide distance "
             "covered, speed and acceleration by `distance`.",
             mistakes.way_for_s,
+            "s has no unit.",
+        ),
+        Wrong(
+            "metres in place of s until the end",
+            "Your s is 1 after the end, but the distance covered, in metres, before it. Divide "
+            "distance covered, speed and acceleration by `distance` in every phase.",
+            mistakes.way_until_the_end,
             "s has no unit.",
         ),
         Wrong(
@@ -490,6 +504,20 @@ CIRCLE = Problem(
             "Your point has the right angle, but its derivatives do not: they need θ₀ + 2πs too.",
             mistakes.Spoke(rates=0.0),
             "Differentiating does not change the angle inside the cosine.",
+        ),
+        Wrong(
+            "no start angle in the velocity",
+            "Your point has the right angle, but your velocity does not: it needs θ₀ + 2πs too. "
+            "The report's equations have this mistake.",
+            mistakes.velocity_from_angle_zero,
+            "Differentiating does not change the angle inside the cosine.",
+        ),
+        Wrong(
+            "x and y exchanged in the arctangent",
+            "Your circle begins elsewhere. np.arctan2 takes y first: the start's angle is "
+            "np.arctan2(y, x), with x and y measured from the centre.",
+            mistakes.Spoke(swapped=True),
+            "Evaluate every path at s = 0: it must begin at the start.",
         ),
         Wrong(
             "half a turn",

@@ -420,7 +420,7 @@ class Follower:
 
 def position_mode(state, target):
     """Joint angles for the reference's pose; the arm's own position mode does the rest."""
-    shown(state.t)
+    shown(state.t - began)
     return lk.JointPosition(arm.model.inverse_kinematics(target.pose, state.q, posture=arm.robot.ready))
 
 
@@ -429,7 +429,7 @@ board.place(se3.pose(np.eye(3), round_it_goes(0.0).position))
 board.move(round_it_goes)
 watching = lk.Camera(world, lk.looking_at(centre + [0.75, -0.1, 0.45], centre))
 follow = lk.TagTarget(lk.TagStream(watching, board.tag, rate=10.0, delay=0.1), Follower())
-shown = lk.plotting.progress("following the tag", 10.0)
+shown, began = lk.plotting.progress("following the tag", 10.0), world.t
 log = lk.run(arm, follow, position_mode, rate=100.0, duration=10.0)
 shown(10.0)
 

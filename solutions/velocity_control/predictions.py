@@ -22,7 +22,7 @@ PREDICTIONS = (
     ),
     Identification(
         "my_lag",
-        "How long do the motors of *your* arm take to follow a commanded speed? Command a step "
+        "How long do the motors of your arm take to follow a commanded speed? Command a step "
         "of the speed, look at the log, and give the time constant of the lag.",
         Measured("lag", "s", 0.0, 0.5, 0.005),
         truth=0.033,

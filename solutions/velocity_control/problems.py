@@ -583,7 +583,7 @@ WORKSPACE_VELOCITY_PD = Problem(
     ),
     withheld=("labkit.Model.pose_error",),
     hints=(
-        "First say how the *tip* should move: six numbers, linear and angular. Only then ask "
+        "First say how the tip should move: six numbers, linear and angular. Only then ask "
         "which joint speeds produce this motion.",
         "e has six numbers: target.pose[:3, 3] minus the tip's position, then the turn "
         "lk.se3.orientation_error(R_wd, R_wt) of notebook 00. V = target.twist + kp * e.",

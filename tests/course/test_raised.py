@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+from scipy.optimize import brentq
 
 import labkit as lk
 from labkit.course.advice import full_description, line_of
@@ -52,6 +53,7 @@ def misspells(angles=None):
         (lambda: np.zeros(3) - np.zeros(7), "so the sizes must be equal"),
         (lambda: np.linalg.inv(np.zeros((6, 7))), "only a square matrix"),
         (lambda: FIXED(2.0), "is a * missing"),
+        (lambda: brentq(lambda w: 1.6 - w - 60.0, 0.0, 9.0), "degrees among radians"),
     ],
 )
 def test_a_usual_slip_has_a_way_out(does, remedy):

@@ -212,6 +212,9 @@ def test_the_same_failure_is_told_once():
     words = said(lambda x: None)
     assert words.count("t returned nothing (None)") == 1
     assert words.count("[failed]") == 3 and words.count("double(") == 1
+    tests = [Test(name, CALLS[:1]) for name in ("one", "a tour")]
+    words = said(lambda x: 5.0, replace(DOUBLE, tests=tuple(tests), mistakes=()))
+    assert words.count("double(2.0): expected 4, got 5") == 1
 
 
 @pytest.mark.parametrize(

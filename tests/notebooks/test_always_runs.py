@@ -8,7 +8,9 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from labkit import replay
 from labkit.course.predictions import Prediction
+from labkit.replay.motion import STILL
 
 sys.path.insert(0, str(Path(__file__).parent))
 from student import BROKEN, COURSE, FORGETS, STUB, questions, run_here, run_kernel, solved
@@ -67,6 +69,27 @@ def test_no_stand_in_tells_another_truth(name, tmp_path, monkeypatch):
     assert "That is not what you said" not in told
     for times in re.findall(r"Your number is ([\d.e+-]+) times", told):
         assert 0.8 < float(times) < 1.25  # theory says 4, where twelve noisy pictures say 3.6
+
+
+LONGER = ("04_torque_control", "05_impedance", "06_tags")
+WHOLE = [pytest.param(n, marks=pytest.mark.slow if n in LONGER else ()) for n in NAMES]
+
+
+@pytest.mark.parametrize("name", WHOLE)
+def test_every_arm_that_is_shown_moves(name, tmp_path, monkeypatch):
+    """Solved, an arm in a replay moves, unless the title says that it is held."""
+    motion_of, shown = replay.motion_of, []
+
+    def kept(*args, **options):
+        shown.append(motion_of(*args, **options))
+        return shown[-1]
+
+    monkeypatch.setattr(replay, "motion_of", kept)
+    run_here(name, solved(name), tmp_path, monkeypatch, shortest=np.inf)
+    assert shown
+    for motion in shown:
+        moves = np.ptp(motion.q, axis=0).max() > STILL
+        assert moves != (" held by " in f" {motion.title.lower()} "), motion.title
 
 
 @pytest.mark.parametrize("name", NAMES)

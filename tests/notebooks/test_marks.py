@@ -1,5 +1,6 @@
 """What the checks give: to answers, stubs, known mistakes and other right answers."""
 
+import re
 from functools import cache
 from itertools import combinations
 from pathlib import Path
@@ -156,6 +157,16 @@ def test_points_add_up(name):
     assert loops <= 0.3 * POINTS[name]
     assert sum(len(p.wrong) for p in problems) >= 10
     assert sum(len(p.variants) for p in problems) >= 4
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_no_text_that_is_printed_has_markup(name):
+    """Tasks, hints and explanations are printed as they are, so none emphasises a word by *."""
+    asked = [*COURSE.problems(name), *COURSE.predictions(name)]
+    texts = [text for x in asked for text in (x.asks, *getattr(x, "hints", ()))]
+    texts += [wrong.says for problem in COURSE.problems(name) for wrong in problem.wrong]
+    for text in texts:
+        assert not re.search(r"(?<![\w*])\*\w[^*]*\w\*(?!\w)", text), text
 
 
 def zeros_like(answer):

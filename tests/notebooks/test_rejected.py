@@ -17,6 +17,7 @@ from labkit.course import Outcome
 from labkit.course.authoring.layout import Course
 from labkit.course.authoring.report_card import rejected_below
 from labkit.course.marking import mark
+from labkit.course.messages import message
 from solutions.comparison.hidden import RESERVE, UNSEEN, UNSEEN_LIMIT, stiffer
 
 COURSE = Course.here(Path(__file__))
@@ -63,6 +64,31 @@ def too_high_a_triangle(t, distance, v_max, a_max):
         left = duration - t
         way = (distance - a_max * left**2 / 2, a_max * left, -a_max)
     return tuple(x / distance for x in way)
+
+
+def halved_by_two_slashes(t, duration):
+    if t < 0 or t >= duration:
+        return float(t >= duration), 0.0, 0.0
+    a, left = 4 / duration**2, duration - t
+    if t < duration // 2:
+        return a * t**2 / 2, a * t, a
+    return 1 - a * left**2 / 2, a * left, -a
+
+
+def metres_before_the_end(t, distance, v_max, a_max):
+    right = lk.Trapezoid(distance, v_max, a_max)
+    return (1.0, 0.0, 0.0) if t >= right.duration else tuple(distance * x for x in right(t))
+
+
+def circle_from(angle, of_velocity=None):
+    def circle(s, start, centre):
+        x, y = np.subtract(start, centre)[:2]
+        r, w = np.hypot(x, y), 2 * np.pi
+        a, b = (f(x, y) + w * s for f in (angle, of_velocity or angle))
+        out, on = np.array([[np.cos(a), np.sin(a), 0], [-np.sin(b), np.cos(b), 0]]) * r
+        return lk.Sample(np.array([*centre[:2], start[2]]) + out, w * on, -w * w * out)
+
+    return circle
 
 
 def over_h(mass_matrix, q, dq):
@@ -156,6 +182,11 @@ def rms_of_the_left_arm(log, model):
     return PROBLEMS["07 rms_error"].answer(log, lk.Model("left"))
 
 
+def rms_of_the_last_target(log, model):
+    e = [log.target.pose[-1][:3, 3] - model.pose(q)[:3, 3] for q in log.q]
+    return np.sqrt(np.mean(np.sum(np.square(e), axis=1)))
+
+
 def norm_of_the_mean(log, model):
     e = [T[:3, 3] - model.pose(q)[:3, 3] for q, T in zip(log.q, log.target.pose, strict=True)]
     return np.linalg.norm(np.mean(e, axis=0))
@@ -177,10 +208,10 @@ def each(verdict):
     return lambda table: {claim: verdict(*map(np.array, rows)) for claim, rows in table.items()}
 
 
-def by_interval(a, b, t=None):
+def by_interval(a, b, t=None, p=0.975, ddof=1):
     d = np.subtract(a, b)
-    t = t or stats.t.ppf(0.975, len(d) - 1)
-    half = t * d.std(ddof=1) / sqrt(len(d))
+    t = t or stats.t.ppf(p, len(d) - 1)
+    half = t * d.std(ddof=ddof) / sqrt(len(d))
     return "undecided" if abs(d.mean()) <= half else "holds" if d.mean() > 0 else "does not hold"
 
 
@@ -215,7 +246,15 @@ REJECTED = [
     ("00 joint_error", wrapped, "the error wrapped to half a turn"),
     ("00 orientation_error", zero_by_zero, "0/0 where there is no turn"),
     ("00 orientation_error", turn_by_arcsine, "the arcsine of the turn"),
+    ("01 bang_bang", halved_by_two_slashes, "a rounded middle: // in place of /"),
     ("01 circle", circle_by_arccosine, "the arccosine of the start"),
+    ("01 circle", circle_from(np.arctan2), "x and y exchanged in the arctangent"),
+    (
+        "01 circle",
+        circle_from(lambda x, y: np.arctan2(y, x), lambda x, y: 0.0),
+        "no start angle in the velocity",
+    ),
+    ("01 trapezoid", metres_before_the_end, "metres in place of s until the end"),
     ("01 trapezoid", too_high_a_triangle, "a triangle that is too high"),
     ("02 coriolis", over_h, "twice the right matrix"),
     ("02 power_balance", lambda *x: left_over(*x, joints=6), "the power of only some joints"),
@@ -238,6 +277,7 @@ REJECTED = [
     ("06 tag_pose", vector_for_a_matrix((3, 1)), "a rotation vector in the columns of the matrix"),
     ("06 blend", three_coordinates, "three coordinates, however many there are"),
     ("07 rms_error", rms_of_the_left_arm, "the left arm's model for every arm"),
+    ("07 rms_error", rms_of_the_last_target, "all rows beside the last target"),
     ("07 rms_error", norm_of_the_mean, "the length of the mean error"),
     ("07 open_loop", plain_function, None),
     ("07 open_loop", loop(1), "a delay of first order"),
@@ -248,6 +288,19 @@ REJECTED = [
         "07 verdicts",
         each(lambda a, b: by_interval(a, b, 2.776)),
         "Student's t of five pairs for any number",
+    ),
+    (
+        "07 verdicts",
+        each(lambda a, b: by_interval(a, b, ddof=0)),
+        "n instead of n - 1 in the deviation",
+    ),
+    *(
+        (
+            "07 verdicts",
+            each(lambda a, b, p=p: by_interval(a, b, p=p)),
+            "the quantile of another confidence",
+        )
+        for p in (0.99, 0.995)
     ),
     ("07 verdicts", each(lambda a, b: "undecided"), "every claim undecided"),
     ("07 verdicts", each(by_ten_percent), "a threshold instead of an interval"),
@@ -289,6 +342,22 @@ def test_a_delay_of_second_order_is_right():
     off = abs(np.polyval(num, s) / np.polyval(den, s) / np.exp(-0.03 * s) - 1.0)
     assert off < 5e-4 < problem.judge.rtol
     assert mark(problem.question(2019), loop(2)).outcome is Outcome.RIGHT
+
+
+@pytest.mark.parametrize(
+    ("Kp", "where"),
+    [
+        (5.0, "on the first arm, with the chosen Kp"),
+        (60.0, "on the first arm, with 1.6 times the chosen Kp"),
+        (20.0, "on the second, slower arm, with the chosen Kp"),
+        (14.0, "on the second, slower arm, with 1.6 times the chosen Kp"),
+    ],
+)
+def test_a_choice_of_gains_is_told_on_which_arm_and_with_which_gain_it_fails(Kp, where):
+    """The arm may be the slower one, and the gain a multiple, where the runner gave a small one."""
+    asked = PROBLEMS["07 choose_gains"].question(2019).public()
+    words = " ".join(str(message(asked, mark(asked, lambda runner: (Kp, 0.0)))).split())
+    assert f"Where it fails: choose_gains(runner) {where} Stuck?" in words
 
 
 def test_no_typed_gains_serve_both_arms():
