@@ -14,7 +14,7 @@ from dataclasses import dataclass, replace
 from itertools import chain, count
 from pathlib import Path
 
-from ...course.authoring.layout import CUP, Course
+from ...course.authoring.layout import Course
 from ...errors import LabkitError
 from ..clean import few, how_many, safe_name
 from ..seeds import seed_of
@@ -97,7 +97,8 @@ def import_list(
     Args:
         course: The course.
         file: A CSV file; see `read_list`.
-        assignment: The assignment, if the file is Moodle's grading worksheet.
+        assignment: The assignment, if the file is Moodle's grading worksheet; it may be that of a
+            peer review, such as ``08_report_review``.
 
     Returns:
         Two lists of sentences: on what was done, and on what a person should look at, such as one
@@ -106,8 +107,6 @@ def import_list(
     Raises:
         LabkitError: The list contradicts the roster or itself, or the file is not a list.
     """
-    if assignment and assignment != CUP:
-        course.notebook_source(assignment)
     rows = read_list(file)
     entries = [entry for entry in rows if not entry.is_canvas_test_student]
     if not entries:
