@@ -25,7 +25,7 @@ from .list_remarks import about_doubles, about_namesakes, about_teams
 from .move import move_to_owners, unlisted
 from .platforms import LmsUser
 from .roster import FILE, Roster, read_roster, same_name, save_roster, tell_gradebook
-from .worksheet import keep_numbers, keep_times
+from .worksheet import keep_numbers, keep_times, refuse_another
 
 _Mark = tuple[str, object]
 _KEYS = ("login", "email", "lms_user_id", "id_number", "github")
@@ -105,7 +105,8 @@ def import_list(
         student's work in two folders or hand-in times that are not set.
 
     Raises:
-        LabkitError: The list contradicts the roster or itself, or the file is not a list.
+        LabkitError: The list contradicts the roster or itself, the file is not a list, or it is the
+            worksheet of another assignment.
     """
     rows = read_list(file)
     entries = [entry for entry in rows if not entry.is_canvas_test_student]
@@ -122,6 +123,8 @@ def import_list(
     with identity_lock(course):
         before = read_roster(course)
         done = enrol(before, entries, all_lms_users(course))
+        if assignment:
+            refuse_another(course, assignment, done.roster, done.rows)
         save_roster(course, done.roster)
         tell_gradebook(course, done.roster)
         give_arms(course, done.roster, seed_of(course))
