@@ -313,6 +313,21 @@ def test_the_import_says_what_groups_become(tmp_path):
     assert not any("teams" in sentence for sentence in import_list(course, file)[0])
 
 
+def test_a_changed_team_is_named(tmp_path):
+    """With what becomes of report and arm; of a first list, and of the same once more, nobody."""
+    course, file = bare_course(tmp_path / "course"), tmp_path / "list.csv"
+    said = []
+    for ed, zoe in ("Blue", ""), ("Red", "Red"), ("Red", "Red"):
+        file.write_text(f"name,team\nAda Ay,Blue\nEd Ee,{ed}\nZoe Zet,{zoe}\n")
+        said.append(import_list(course, file)[1])
+    first, (changed,), again = said
+    names = "Ed Ee (Ed-Ee) from 'Blue' to 'Red', Zoe Zet (Zoe-Zet) from no team to 'Red'"
+    assert changed.startswith(f"teams changed: {names}; this also concerns work")
+    assert "keep that team in the list until its marks are exported" in changed
+    assert "make the zip again, labkit student-bundle" in changed
+    assert (first, again) == ([], [])
+
+
 def test_one_student_with_another_address_is_not_taken_for_two(tmp_path, capsys):
     """The import asks for a look, exit code 1, and what it advises leaves one row and one folder.
 

@@ -21,7 +21,7 @@ from ..seeds import seed_of
 from .arms import give_arms
 from .class_list import Entry, Student, read_list
 from .identity import all_lms_users, assign_folders, identity_lock
-from .list_remarks import about_doubles, about_namesakes, about_teams
+from .list_remarks import about_changed_teams, about_doubles, about_namesakes, about_teams
 from .move import move_to_owners, unlisted
 from .platforms import LmsUser
 from .roster import FILE, Roster, read_roster, same_name, save_roster, tell_gradebook
@@ -143,7 +143,7 @@ def import_list(
             f"not in this list, and still in the roster: {len(absent)} "
             f"({few([*map(str, absent)])}); keep their rows, even if they have left the class"
         )
-    look += about_doubles(absent, done.new)
+    look += [*about_doubles(absent, done.new), *about_changed_teams(before, done.rows)]
     named = {one.student for one in left}
     if others := [x for x in unlisted(course, done.roster) if x not in named]:
         look.append(

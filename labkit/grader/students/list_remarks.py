@@ -6,7 +6,7 @@ from collections import Counter
 from collections.abc import Iterable, Iterator, Mapping
 
 from ..clean import few, how_many
-from .class_list import Student
+from .class_list import Entry, Student
 from .platforms import LmsUser
 from .roster import FILE, Roster, same_name
 
@@ -21,6 +21,23 @@ def about_teams(named: Iterable[str]) -> Iterator[str]:
             f"{most}; a team has one arm and hands in one report. If "
             "these are other groups, such as tutorials, delete their column from the list, clear "
             f"the column team of {FILE}, and import the list again"
+        )
+
+
+def about_changed_teams(before: Roster, rows: Iterable[tuple[Entry, Student]]) -> Iterator[str]:
+    """Students whom a list gives another team, and with it another arm and another report."""
+    changed = [
+        f"{now} from {f'{old.team!r}' if old.team else 'no team'} to {now.team!r}"
+        for now in dict.fromkeys(student for _, student in rows)
+        if (old := before.get(now.id)) and old.team != now.team
+    ]
+    if changed:
+        yield (
+            f"teams changed: {few(changed)}; this also concerns work that is handed in already: "
+            "the next grading judges answers about their own arm by the new team's arm, and unless "
+            "they handed in a report themselves, they have the mark of the new team's. If they "
+            "wrote one with the old team, keep that team in the list until its marks are exported; "
+            "for the new arm make the zip again, labkit student-bundle, and hand it out"
         )
 
 
