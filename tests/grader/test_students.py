@@ -328,6 +328,21 @@ def test_a_changed_team_is_named(tmp_path):
     assert (first, again) == ([], [])
 
 
+def test_who_has_no_team_in_a_list_of_teams_is_named(tmp_path):
+    """The old team stays, and the import says how to take somebody out of it, which helps."""
+    course, file = bare_course(tmp_path / "course"), tmp_path / "list.csv"
+    stays = "still in the team they had: Ed Ee (Ed-Ee) in 'Red'; to take somebody out of a team, "
+    said = []
+    for ed, ada in ("Red", "Red"), ("", ""), ("", "Red"), ("", "Red"):
+        file.write_text(f"name,team\nAda Ay,{ada}\nEd Ee,{ed}\n")
+        said.append(stays in "\n".join(import_list(course, file)[0]))
+        if said[-1]:
+            roster = course.root / FILE
+            roster.write_text(roster.read_text().replace("Ed,Ee,,,,,,Red", "Ed,Ee,,,,,,"))
+    assert said == [False, False, True, False]
+    assert [one.team for one in read_roster(course).students] == ["Red", ""]
+
+
 def test_one_student_with_another_address_is_not_taken_for_two(tmp_path, capsys):
     """The import asks for a look, exit code 1, and what it advises leaves one row and one folder.
 

@@ -155,7 +155,7 @@ def import_list(
         summary.append(
             "not taken: Test Student, whom Canvas adds for the instructor's student view"
         )
-    summary += about_teams(who for entry in entries if (who := entry.student.team))
+    summary += about_teams(done.rows)
     if assignment:
         set_now = f"{how_many(taken, 'hand-in time')} set"
         summary += [f"{assignment}: {how_many(numbered, 'participant')}; {set_now}", *late]

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 
 from ..clean import few, how_many
 from .class_list import Entry, Student
@@ -11,9 +11,10 @@ from .platforms import LmsUser
 from .roster import FILE, Roster, same_name
 
 
-def about_teams(named: Iterable[str]) -> Iterator[str]:
-    """A remark on a list's teams, which may be groups that were made for another purpose."""
-    teams = Counter(named)
+def about_teams(rows: Sequence[tuple[Entry, Student]]) -> Iterator[str]:
+    """Remarks on a list's teams, which may be groups that were made for another purpose."""
+    named = {student.id for entry, student in rows if entry.student.team}
+    teams = Counter(entry.student.team for entry, _ in rows if entry.student.team)
     if teams:
         most = how_many(max(teams.values()), "student")
         yield (
@@ -21,6 +22,13 @@ def about_teams(named: Iterable[str]) -> Iterator[str]:
             f"{most}; a team has one arm and hands in one report. If "
             "these are other groups, such as tutorials, delete their column from the list, clear "
             f"the column team of {FILE}, and import the list again"
+        )
+    stay = [f"{x} in {x.team!r}" for _, x in rows if x.team and x.id not in named]
+    if teams and stay:
+        yield (
+            f"without a team in this list, and still in the team they had: {few(stay)}; to take "
+            f"somebody out of a team, clear their cell in the column team of {FILE}, and import "
+            "the list again"
         )
 
 
