@@ -307,10 +307,14 @@ def test_the_import_says_what_groups_become(tmp_path):
     rows = "Ada,Ay,a@x,Monday\nBob,Be,b@x,Monday\nEve,Ee,e@x,No groups\nZoe,Zet,z@x,No groups\n"
     file.write_text(head + rows)
     (_, teams), _ = import_list(course, file)
-    assert teams.startswith("teams in this list: 1 (Monday), the largest of 2 students; a team has")
+    assert teams.startswith("teams in this list: 1 ('Monday'), the largest of 2 students; a team")
     assert [s.team for s in read_roster(course).students] == ["Monday", "Monday", "", ""]
+    file.write_text(head + rows.replace("Monday", '"Blue, Monday"'))
+    teams, two = import_list(course, file)[0][1:]
+    assert "teams in this list: 1 ('Blue, Monday'), the" in teams
+    assert two.startswith("teams with a comma: 'Blue, Monday'; the students of each are probably")
     file.write_text("First name,Last name,Email address\nAda,Ay,a@x\n")
-    assert not any("teams" in sentence for sentence in import_list(course, file)[0])
+    assert not any("team" in sentence for sentence in import_list(course, file)[0])
 
 
 def test_a_changed_team_is_named(tmp_path):

@@ -16,12 +16,18 @@ def about_teams(rows: Sequence[tuple[Entry, Student]]) -> Iterator[str]:
     named = {student.id for entry, student in rows if entry.student.team}
     teams = Counter(entry.student.team for entry, _ in rows if entry.student.team)
     if teams:
-        most = how_many(max(teams.values()), "student")
+        names, most = [*map(repr, sorted(teams))], how_many(max(teams.values()), "student")
         yield (
-            f"teams in this list: {len(teams)} ({few(sorted(teams))}), the largest of "
+            f"teams in this list: {len(teams)} ({few(names)}), the largest of "
             f"{most}; a team has one arm and hands in one report. If "
             "these are other groups, such as tutorials, delete their column from the list, clear "
             f"the column team of {FILE}, and import the list again"
+        )
+    if two := [repr(team) for team in sorted(teams) if "," in team]:
+        yield (
+            f"teams with a comma: {few(two)}; the students of each are probably in two groups, "
+            "which labkit takes for one more team; leave one group for each student in the list, "
+            "and import it again"
         )
     stay = [f"{x} in {x.team!r}" for _, x in rows if x.team and x.id not in named]
     if teams and stay:
