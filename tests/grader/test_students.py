@@ -300,6 +300,20 @@ def test_a_roster_is_read_as_it_was_written(rows):
         assert read_roster(course) == again
 
 
+def test_names_in_a_guessed_encoding_are_named(tmp_path):
+    """A Mac's is read as Windows's; in UTF-8, and without such a name, nothing is said."""
+    course, file = bare_course(tmp_path / "course"), tmp_path / "list.csv"
+    for name, encoding in ("Ada Ay", "ascii"), ("Joséf Ay", "utf-8"), ("José Ay", "mac_roman"):
+        file.write_text(f"name,email\n{name},{encoding}@x\n", encoding)
+        said = [x for x in import_list(course, file)[0] if "Windows-1252" in x]
+        assert len(said) == (encoding == "mac_roman")
+    assert "check these names: JosŽ Ay. If one is wrong, then, before you collect any" in said[0]
+    (course.root / FILE).unlink()
+    file.write_text("name,email\nJosé Ay,mac_roman@x\n", "utf-8")
+    import_list(course, file)
+    assert [one.id for one in read_roster(course).students] == ["José-Ay"]
+
+
 def test_the_import_says_what_groups_become(tmp_path):
     """Moodle's groups become teams, which share an arm; who is in none gets no team."""
     course, file = bare_course(tmp_path / "course"), tmp_path / "list.csv"

@@ -21,7 +21,13 @@ from ..seeds import seed_of
 from .arms import give_arms
 from .class_list import Entry, Student, read_list
 from .identity import all_lms_users, assign_folders, identity_lock
-from .list_remarks import about_changed_teams, about_doubles, about_namesakes, about_teams
+from .list_remarks import (
+    about_changed_teams,
+    about_doubles,
+    about_encoding,
+    about_namesakes,
+    about_teams,
+)
 from .move import move_to_owners, unlisted
 from .platforms import LmsUser
 from .roster import FILE, Roster, read_roster, same_name, save_roster, tell_gradebook
@@ -155,7 +161,10 @@ def import_list(
         summary.append(
             "not taken: Test Student, whom Canvas adds for the instructor's student view"
         )
-    summary += about_teams(done.rows)
+    summary += [
+        *about_encoding(file, (entry.student for entry in entries)),
+        *about_teams(done.rows),
+    ]
     if assignment:
         set_now = f"{how_many(taken, 'hand-in time')} set"
         summary += [f"{assignment}: {how_many(numbered, 'participant')}; {set_now}", *late]

@@ -4,11 +4,23 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Iterable, Iterator, Mapping, Sequence
+from pathlib import Path
 
 from ..clean import few, how_many
-from .class_list import Entry, Student
+from .class_list import GUESS, Entry, Student, encoding_of
 from .platforms import LmsUser
 from .roster import FILE, Roster, same_name
+
+
+def about_encoding(file: Path, students: Iterable[Student]) -> Iterator[str]:
+    """Names that may be wrong, as the encoding of the list is a guess."""
+    names = dict.fromkeys(one.name for one in students if not one.name.isascii())
+    if names and encoding_of(file.read_bytes()) == GUESS:
+        yield (
+            f"{file} is not in UTF-8, and was read as Windows-1252; check these names: "
+            f"{few([*names])}. If one is wrong, then, before you collect any work, delete the new "
+            f"rows from {FILE}, save the list in UTF-8, and import it again"
+        )
 
 
 def about_teams(rows: Sequence[tuple[Entry, Student]]) -> Iterator[str]:
