@@ -771,6 +771,22 @@ def test_what_a_mac_puts_beside_files_is_passed_over(bare, tmp_path):
     assert said == ["bob: x.ipynb: taken, as 01_paths.ipynb"]
 
 
+def test_a_file_with_the_name_of_two_students_is_named_with_a_cure_that_helps(bare, tmp_path):
+    """The roster is right, so the file needs another name: that of a student's folder, say."""
+    roster(bare, "kim1,Kim,Lee,,,,", "kim2,Kim,Lee,,,,")
+    for name, told in (
+        ("Kim Lee", "Kim Lee/x.ipynb: not taken; 'Kim Lee' matches 2 students of the roster; name "
+         "the file or folder by kim1 or kim2, or by a login or number, and collect again"),
+        ("kim2", "kim2: x.ipynb: taken, as 01_paths.ipynb"),
+        ("Jo", "Jo/x.ipynb: not taken; 'Jo' matches 0 students of the roster; correct the roster "
+         "with labkit students import LIST.csv, and collect again"),
+    ):  # fmt: skip
+        work = tmp_path / name / name / "x.ipynb"
+        work.parent.mkdir(parents=True)
+        work.write_text("{}")
+        assert take(bare, tmp_path / name, named="{student}/*.ipynb") == [told]
+
+
 def test_a_time_to_come_is_refused(bare, tmp_path, capsys):
     """A year too late by a slip of the finger: the time, now, and what to write."""
     source = zipped(tmp_path / "1.zip", [BOB])

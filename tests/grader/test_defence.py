@@ -120,13 +120,17 @@ def test_what_cannot_be_asked_or_marked_is_a_sentence(course, solved, capsys):
     hand_in(course, NAME, "eve", solved)
     hand_in(course, NAME, "bob", solved)
     Results(course, NAME).keep(result_of(course, "bob", share=0.5, data=raw(solved)))
-    save_roster(course, Roster((Student("Ada-Lovelace", "Ada", "Lovelace"),)))
+    kims = (Student(f"kim{k}", "Kim", "Lee") for k in (1, 2))
+    save_roster(course, Roster((Student("Ada-Lovelace", "Ada", "Lovelace"), *kims)))
+    (course.submitted / "Kim-Lee-903").mkdir()
     nothing = "and no mark to enter; --absent-zero of labkit export counts the missing defence as 0"
     for words, sentence in [
         (["Ada-Lovelace"], f"handed in nothing, so there is nothing to ask about {nothing}"),
         (["zoe"], "there is no student 'zoe'"),
         (["bbo"], "name of the student's folder; did you mean bob?"),
         (["ada-lovelce"], "name of the student's folder; did you mean Ada-Lovelace?"),
+        (["Lee, Kim"], "folder; there are Kim Lee (kim1), Kim Lee (kim2)"),
+        (["Kim Lee"], "folder; did you mean Kim Lee (kim1), Kim Lee (kim2)?"),
         (["eve"], "eve has 0; 01_paths: handed in but not graded"),
         (["bob", "--mark", "2,3"], "2,3 is not a mark; give 3 whole numbers from 0 to 3"),
         (["bob", "--mark", "2,3,4"], "2,3,4 is not a mark"),

@@ -141,6 +141,28 @@ def test_what_one_member_hands_in_counts_for_the_team(course, capsys):
     assert "handed in nothing" not in said.err and "bob,0" not in said.out
 
 
+def test_an_extension_of_a_member_who_did_not_hand_in_is_named(course, capsys):
+    """The report is late by Ada's due date; who exports is told to give the days to Ada too."""
+    rules, stamp = course.root / "course.toml", course.submitted / "ada" / NAME / "timestamp.txt"
+    stamp.write_text("2026-11-04 12:00 UTC")
+    due = f"[assignments.{NAME}]\ndue = 2026-11-02T12:00:00\n"
+    granted = '[[extensions]]\nstudent = "bob"\ndays = 5\n'
+    says = f"bob's extension of 5 days has no effect on {NAME}, which ada handed in for the team, "
+    for text, named in (
+        (due, False),
+        (due + granted, True),
+        (due + granted + granted.replace("bob", "ada"), False),
+        (due.replace("-02T", "-05T") + granted, False),
+    ):
+        rules.write_text(text)
+        for words in (["export", NAME], ["export"]):
+            typed(course, *words)
+            found = f"{says}2 days late; in course.toml, give it to ada too\n"
+            assert (found in capsys.readouterr().err) is named
+    rules.unlink()
+    stamp.unlink()
+
+
 def test_reports_go_out_and_reviews_come_back_without_names(course, monkeypatch, capsys):
     """By the commands that the guide shows: out, back, and onto the authors' pages."""
     monkeypatch.chdir(course.root)

@@ -300,6 +300,20 @@ def test_a_roster_is_read_as_it_was_written(rows):
         assert read_roster(course) == again
 
 
+def test_names_in_a_guessed_encoding_are_named(tmp_path):
+    """A Mac's is read as Windows's; in UTF-8, and without such a name, nothing is said."""
+    course, file = bare_course(tmp_path / "course"), tmp_path / "list.csv"
+    for name, encoding in ("Ada Ay", "ascii"), ("Joséf Ay", "utf-8"), ("José Ay", "mac_roman"):
+        file.write_text(f"name,email\n{name},{encoding}@x\n", encoding)
+        said = [x for x in import_list(course, file)[0] if "Windows-1252" in x]
+        assert len(said) == (encoding == "mac_roman")
+    assert "check these names: JosŽ Ay. If one is wrong, then, before you collect any" in said[0]
+    (course.root / FILE).unlink()
+    file.write_text("name,email\nJosé Ay,mac_roman@x\n", "utf-8")
+    import_list(course, file)
+    assert [one.id for one in read_roster(course).students] == ["José-Ay"]
+
+
 def test_the_import_says_what_groups_become(tmp_path):
     """Moodle's groups become teams, which share an arm; who is in none gets no team."""
     course, file = bare_course(tmp_path / "course"), tmp_path / "list.csv"
@@ -307,10 +321,44 @@ def test_the_import_says_what_groups_become(tmp_path):
     rows = "Ada,Ay,a@x,Monday\nBob,Be,b@x,Monday\nEve,Ee,e@x,No groups\nZoe,Zet,z@x,No groups\n"
     file.write_text(head + rows)
     (_, teams), _ = import_list(course, file)
-    assert teams.startswith("teams in this list: 1 (Monday), the largest of 2 students; a team has")
+    assert teams.startswith("teams in this list: 1 ('Monday'), the largest of 2 students; a team")
     assert [s.team for s in read_roster(course).students] == ["Monday", "Monday", "", ""]
+    file.write_text(head + rows.replace("Monday", '"Blue, Monday"'))
+    teams, two = import_list(course, file)[0][1:]
+    assert "teams in this list: 1 ('Blue, Monday'), the" in teams
+    assert two.startswith("teams with a comma: 'Blue, Monday'; the students of each are probably")
     file.write_text("First name,Last name,Email address\nAda,Ay,a@x\n")
-    assert not any("teams" in sentence for sentence in import_list(course, file)[0])
+    assert not any("team" in sentence for sentence in import_list(course, file)[0])
+
+
+def test_a_changed_team_is_named(tmp_path):
+    """With what becomes of report and arm; of a first list, and of the same once more, nobody."""
+    course, file = bare_course(tmp_path / "course"), tmp_path / "list.csv"
+    said = []
+    for ed, zoe in ("Blue", ""), ("Red", "Red"), ("Red", "Red"):
+        file.write_text(f"name,team\nAda Ay,Blue\nEd Ee,{ed}\nZoe Zet,{zoe}\n")
+        said.append(import_list(course, file)[1])
+    first, (changed,), again = said
+    names = "Ed Ee (Ed-Ee) from 'Blue' to 'Red', Zoe Zet (Zoe-Zet) from no team to 'Red'"
+    assert changed.startswith(f"teams changed: {names}; this also concerns work")
+    assert "keep that team in the list until its marks are exported" in changed
+    assert "make the zip again, labkit student-bundle" in changed
+    assert (first, again) == ([], [])
+
+
+def test_who_has_no_team_in_a_list_of_teams_is_named(tmp_path):
+    """The old team stays, and the import says how to take somebody out of it, which helps."""
+    course, file = bare_course(tmp_path / "course"), tmp_path / "list.csv"
+    stays = "still in the team they had: Ed Ee (Ed-Ee) in 'Red'; to take somebody out of a team, "
+    said = []
+    for ed, ada in ("Red", "Red"), ("", ""), ("", "Red"), ("", "Red"):
+        file.write_text(f"name,team\nAda Ay,{ada}\nEd Ee,{ed}\n")
+        said.append(stays in "\n".join(import_list(course, file)[0]))
+        if said[-1]:
+            roster = course.root / FILE
+            roster.write_text(roster.read_text().replace("Ed,Ee,,,,,,Red", "Ed,Ee,,,,,,"))
+    assert said == [False, False, True, False]
+    assert [one.team for one in read_roster(course).students] == ["Red", ""]
 
 
 def test_one_student_with_another_address_is_not_taken_for_two(tmp_path, capsys):

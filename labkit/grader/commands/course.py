@@ -137,7 +137,8 @@ def student_bundle(
 @click.option(
     "--assignment",
     metavar="NAME",
-    help="FILE is Moodle's grading worksheet of this assignment: it has the students' numbers.",
+    help="FILE is Moodle's grading worksheet of this assignment: it has the students' numbers. For "
+    "peer reviews write 08_report_review.",
 )
 @of_course
 def students(course: Course, action: str, file: Path, assignment: str | None) -> int:
@@ -148,8 +149,11 @@ def students(course: Course, action: str, file: Path, assignment: str | None) ->
     Exit code: 0 if the list was imported, 1 if it was and somebody's row, work or hand-in time
     needs a look (named at the end), 2 if the list was not imported.
     """
+    from ..peers.readers import sheet_of
     from ..students.enrol import import_list
 
+    if assignment and assignment not in {CUP, *map(sheet_of, course.names())}:
+        course.notebook_source(assignment)
     summary, left = import_list(course, file, assignment)
     print("\n".join(summary))
     for sentence in left:

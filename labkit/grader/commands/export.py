@@ -74,7 +74,7 @@ def export(
     was graded, and the total with the weights of course.toml.
     """
     from ..marks.export import LAYOUTS, as_csv, of_term, remarks, unmatched
-    from ..marks.table import marks_of, unknown_extensions
+    from ..marks.table import idle_extensions, marks_of, unknown_extensions
     from ..rules import read_rules
 
     if column and layout not in NAMED:
@@ -99,6 +99,7 @@ def export(
         if name not in UNRELEASED:
             course.notebook_source(name)
         found = list(marks_of(course, name))
+        doubts.extend(idle_extensions(course, name, found))
         return [] if all(mark.absent for mark in found) else found
 
     def filled(name: str, marks: list[Mark]) -> list[Mark]:

@@ -29,7 +29,7 @@ from ..sandbox.launch import Sandbox
 from ..sandbox.limits import Limits, slowness
 from ..sandbox.session import RemoteFunction, Session
 from ..seeds import seed_of
-from ..students.roster import read_roster
+from ..students.roster import read_roster, same_name
 from ..submission import Submission, did_you_mean, is_name
 from ..whys import rank
 from .edits import Edit, edits, shown
@@ -140,7 +140,8 @@ def accepted(course: Course, student: str) -> tuple[list[Accepted], list[str]]:
     """
     found: list[Accepted] = []
     missing: list[str] = []
-    roster = [one.id for one in read_roster(course).students]
+    people = read_roster(course).students
+    roster = [one.id for one in people]
     worked = False
     for name in sorted(path.stem for path in course.bundle.glob("*.json")):
         for result in current_results(course, name, student):
@@ -162,10 +163,11 @@ def accepted(course: Course, student: str) -> tuple[list[Accepted], list[str]]:
         )
     if not worked:
         folders = [path.name for path in course.submitted.glob("*") if is_name(path.name)]
+        namesakes = [str(one) for one in people if same_name(one.name) == same_name(student)]
         raise LabkitError(
             f"there is no student {student!r}: not in the roster, and nothing of theirs is in "
             "submitted/ or results/; give the name of the student's folder"
-            f"{did_you_mean(student, [*roster, *folders])}"
+            f"{did_you_mean(student, namesakes or [*roster, *folders])}"
         )
     return found, missing
 

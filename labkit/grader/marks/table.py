@@ -10,6 +10,7 @@ from __future__ import annotations
 import shlex
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
+from datetime import timedelta
 from typing import Any
 
 from ...course.authoring.bundle import Bundle
@@ -121,6 +122,19 @@ def unknown_extensions(course: Course) -> Iterator[str]:
     for name in sorted({x.student for x in read_rules(course).extensions} - known):
         said = f"an extension for {clean_line(name, 60)!r}, who is not a student"
         yield f"{RULES} has {said}{did_you_mean(name, known)}"
+
+
+def idle_extensions(course: Course, assignment: str, marks: Sequence[Mark]) -> Iterator[str]:
+    """A sentence for each extension without effect, as a mate handed in the team's report late."""
+    rules = read_rules(course)
+    for mark in marks:
+        author, longer = mark.author, rules.longer(mark.student, assignment)
+        if author and mark.late and longer > rules.longer(author, assignment):
+            yield (
+                f"{mark.student}'s extension of {longer / timedelta(days=1):g} days has no effect "
+                f"on {assignment}, which {author} handed in for the team, {mark.late} late; in "
+                f"{RULES}, give it to {author} too"
+            )
 
 
 def mark_of(result: Result) -> Mark:

@@ -43,6 +43,8 @@ _NOT_A_STUDENT = "points possible"
 _NO_TEAM = {"no groups", "keine gruppen"}
 """Entries in Moodle's column Groups for a student who is in no group."""
 _PARTICIPANT = re.compile(r"[^\d]*([0-9]{1,19})")
+GUESS = "cp1252"
+"""The encoding of a file that is neither UTF-8 nor UTF-16; a Mac's is another one."""
 _LONG_LINE = 100_000
 """The part of the first line that is searched for the delimiter, in characters."""
 
@@ -172,17 +174,24 @@ def _read_text(path: Path) -> str:
         raise LabkitError(f"there is no file {path}")
     check_size(path.stat().st_size, LARGEST)
     data = path.read_bytes()
-    if data.startswith((b"\xff\xfe", b"\xfe\xff")):
-        try:
-            return data.decode("utf-16")
-        except UnicodeDecodeError:
-            raise LabkitError(f"{path} is cut off; download or save it again") from None
-    if data.startswith(b"PK\x03\x04") or b"\0" in data:
+    encoding = encoding_of(data)
+    if encoding != "utf-16" and (data.startswith(b"PK\x03\x04") or b"\0" in data):
         raise LabkitError(f"{path} is not a text; save the spreadsheet as CSV")
     try:
-        return data.decode("utf-8-sig")
+        return data.decode(encoding, errors="replace" if encoding == GUESS else "strict")
     except UnicodeDecodeError:
-        return data.decode("cp1252", errors="replace")
+        raise LabkitError(f"{path} is cut off; download or save it again") from None
+
+
+def encoding_of(data: bytes) -> str:
+    """The encoding of a file's text; `GUESS` if it is neither UTF-8 nor UTF-16."""
+    if data.startswith((b"\xff\xfe", b"\xfe\xff")):
+        return "utf-16"
+    try:
+        data.decode("utf-8-sig")
+    except UnicodeDecodeError:
+        return GUESS
+    return "utf-8-sig"
 
 
 def _columns(heads: Sequence[str]) -> dict[str, int]:

@@ -14,18 +14,24 @@ from dataclasses import dataclass, replace
 from itertools import chain, count
 from pathlib import Path
 
-from ...course.authoring.layout import CUP, Course
+from ...course.authoring.layout import Course
 from ...errors import LabkitError
 from ..clean import few, how_many, safe_name
 from ..seeds import seed_of
 from .arms import give_arms
 from .class_list import Entry, Student, read_list
 from .identity import all_lms_users, assign_folders, identity_lock
-from .list_remarks import about_doubles, about_namesakes, about_teams
+from .list_remarks import (
+    about_changed_teams,
+    about_doubles,
+    about_encoding,
+    about_namesakes,
+    about_teams,
+)
 from .move import move_to_owners, unlisted
 from .platforms import LmsUser
 from .roster import FILE, Roster, read_roster, same_name, save_roster, tell_gradebook
-from .worksheet import keep_numbers, keep_times
+from .worksheet import keep_numbers, keep_times, refuse_another
 
 _Mark = tuple[str, object]
 _KEYS = ("login", "email", "lms_user_id", "id_number", "github")
@@ -97,17 +103,17 @@ def import_list(
     Args:
         course: The course.
         file: A CSV file; see `read_list`.
-        assignment: The assignment, if the file is Moodle's grading worksheet.
+        assignment: The assignment, if the file is Moodle's grading worksheet; it may be that of a
+            peer review, such as ``08_report_review``.
 
     Returns:
         Two lists of sentences: on what was done, and on what a person should look at, such as one
         student's work in two folders or hand-in times that are not set.
 
     Raises:
-        LabkitError: The list contradicts the roster or itself, or the file is not a list.
+        LabkitError: The list contradicts the roster or itself, the file is not a list, or it is the
+            worksheet of another assignment.
     """
-    if assignment and assignment != CUP:
-        course.notebook_source(assignment)
     rows = read_list(file)
     entries = [entry for entry in rows if not entry.is_canvas_test_student]
     if not entries:
@@ -123,6 +129,8 @@ def import_list(
     with identity_lock(course):
         before = read_roster(course)
         done = enrol(before, entries, all_lms_users(course))
+        if assignment:
+            refuse_another(course, assignment, done.roster, done.rows)
         save_roster(course, done.roster)
         tell_gradebook(course, done.roster)
         give_arms(course, done.roster, seed_of(course))
@@ -141,7 +149,7 @@ def import_list(
             f"not in this list, and still in the roster: {len(absent)} "
             f"({few([*map(str, absent)])}); keep their rows, even if they have left the class"
         )
-    look += about_doubles(absent, done.new)
+    look += [*about_doubles(absent, done.new), *about_changed_teams(before, done.rows)]
     named = {one.student for one in left}
     if others := [x for x in unlisted(course, done.roster) if x not in named]:
         look.append(
@@ -153,7 +161,10 @@ def import_list(
         summary.append(
             "not taken: Test Student, whom Canvas adds for the instructor's student view"
         )
-    summary += about_teams(who for entry in entries if (who := entry.student.team))
+    summary += [
+        *about_encoding(file, (entry.student for entry in entries)),
+        *about_teams(done.rows),
+    ]
     if assignment:
         set_now = f"{how_many(taken, 'hand-in time')} set"
         summary += [f"{assignment}: {how_many(numbered, 'participant')}; {set_now}", *late]

@@ -31,7 +31,8 @@ from .roster import Roster
 
 FILE = "course_private/lms.json"
 _TOLD_APART = {
-    "moodle": "you import the assignment's grading worksheet",
+    "moodle": "you import the assignment's grading worksheet: labkit students import "
+    "WORKSHEET.csv --assignment {}",
     "canvas": "you import Canvas's own list",
     "exchange": "you import a list with each student's login",
     "files": "the file is named by the student's login, address or number, and collected again",
@@ -161,7 +162,7 @@ def assign_folders(
         else:
             folder = folder or _own_folder(one, owners)
             owners.setdefault(folder.casefold(), set()).add(key)
-            found[key] = Place(folder, _doubt(one, roster))
+            found[key] = Place(folder, _doubt(one, assignment, roster))
     return found
 
 
@@ -170,7 +171,7 @@ def _claim(one: LmsUser, folder: str, roster: Roster) -> tuple[str, ...]:
     return (one.system, *([folder] if folder in roster else [s.id for s in roster.whose(one)]))
 
 
-def _doubt(one: LmsUser, roster: Roster) -> str:
+def _doubt(one: LmsUser, assignment: str, roster: Roster) -> str:
     """Why the owner of this work is not certain, and what to do; "" without a roster."""
     if not roster.students:
         return ""
@@ -184,7 +185,7 @@ def _doubt(one: LmsUser, roster: Roster) -> str:
             people = " or ".join(map(str, alike))
             says += f"; if they are {people}, import the assignment's grading worksheet"
         return says
-    until = f"their work is kept apart until {_TOLD_APART[one.system]}"
+    until = f"their work is kept apart until {_TOLD_APART[one.system].format(assignment)}"
     if students > 1:
         return f"{one} has the name of {students} students of the roster; {until}"
     return f"{one} has the name of a student, and so has somebody else who handed in; {until}"

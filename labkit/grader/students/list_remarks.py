@@ -3,24 +3,67 @@
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from pathlib import Path
 
 from ..clean import few, how_many
-from .class_list import Student
+from .class_list import GUESS, Entry, Student, encoding_of
 from .platforms import LmsUser
 from .roster import FILE, Roster, same_name
 
 
-def about_teams(named: Iterable[str]) -> Iterator[str]:
-    """A remark on a list's teams, which may be groups that were made for another purpose."""
-    teams = Counter(named)
-    if teams:
-        most = how_many(max(teams.values()), "student")
+def about_encoding(file: Path, students: Iterable[Student]) -> Iterator[str]:
+    """Names that may be wrong, as the encoding of the list is a guess."""
+    names = dict.fromkeys(one.name for one in students if not one.name.isascii())
+    if names and encoding_of(file.read_bytes()) == GUESS:
         yield (
-            f"teams in this list: {len(teams)} ({few(sorted(teams))}), the largest of "
+            f"{file} is not in UTF-8, and was read as Windows-1252; check these names: "
+            f"{few([*names])}. If one is wrong, then, before you collect any work, delete the new "
+            f"rows from {FILE}, save the list in UTF-8, and import it again"
+        )
+
+
+def about_teams(rows: Sequence[tuple[Entry, Student]]) -> Iterator[str]:
+    """Remarks on a list's teams, which may be groups that were made for another purpose."""
+    named = {student.id for entry, student in rows if entry.student.team}
+    teams = Counter(entry.student.team for entry, _ in rows if entry.student.team)
+    if teams:
+        names, most = [*map(repr, sorted(teams))], how_many(max(teams.values()), "student")
+        yield (
+            f"teams in this list: {len(teams)} ({few(names)}), the largest of "
             f"{most}; a team has one arm and hands in one report. If "
             "these are other groups, such as tutorials, delete their column from the list, clear "
             f"the column team of {FILE}, and import the list again"
+        )
+    if two := [repr(team) for team in sorted(teams) if "," in team]:
+        yield (
+            f"teams with a comma: {few(two)}; the students of each are probably in two groups, "
+            "which labkit takes for one more team; leave one group for each student in the list, "
+            "and import it again"
+        )
+    stay = [f"{x} in {x.team!r}" for _, x in rows if x.team and x.id not in named]
+    if teams and stay:
+        yield (
+            f"without a team in this list, and still in the team they had: {few(stay)}; to take "
+            f"somebody out of a team, clear their cell in the column team of {FILE}, and import "
+            "the list again"
+        )
+
+
+def about_changed_teams(before: Roster, rows: Iterable[tuple[Entry, Student]]) -> Iterator[str]:
+    """Students whom a list gives another team, and with it another arm and another report."""
+    changed = [
+        f"{now} from {f'{old.team!r}' if old.team else 'no team'} to {now.team!r}"
+        for now in dict.fromkeys(student for _, student in rows)
+        if (old := before.get(now.id)) and old.team != now.team
+    ]
+    if changed:
+        yield (
+            f"teams changed: {few(changed)}; this also concerns work that is handed in already: "
+            "the next grading judges answers about their own arm by the new team's arm, and they "
+            "get the mark of the new team's report, unless they handed in one themselves. If they "
+            "wrote one with the old team, keep that team in the list until its marks are exported; "
+            "for the new arm make the zip again, labkit student-bundle, and hand it out"
         )
 
 

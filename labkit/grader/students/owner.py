@@ -13,11 +13,14 @@ def find_owner(file: File, roster: Roster) -> Named | str:
         return file.refused or "not taken; its name does not say who handed it in"
     if len(file.readings) == 1:
         who = file.readings[0].who
-        if who.system == "files" and roster.students and len(roster.whose(who)) != 1:
-            known = how_many(len(roster.whose(who)), "student")
+        ids = [one.id for one in roster.whose(who)]
+        if who.system == "files" and roster.students and len(ids) != 1:
+            cure = "correct the roster with labkit students import LIST.csv"
+            if ids:
+                cure = f"name the file or folder by {' or '.join(ids)}, or by a login or number"
+            known = how_many(len(ids), "student")
             return (
-                f"not taken; {who.name!r} matches {known} of the roster; correct the roster with "
-                "labkit students import LIST.csv, and collect again"
+                f"not taken; {who.name!r} matches {known} of the roster; {cure}, and collect again"
             )
         return file.readings[0]
     fits = [named for named in file.readings if _is_called_so(named.who, roster)]

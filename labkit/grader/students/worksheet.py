@@ -8,16 +8,44 @@ from datetime import datetime, timedelta
 from zoneinfo import ZoneInfo
 
 from ...course.authoring.layout import Course
+from ...errors import LabkitError
 from ..clean import few, how_many, span
 from ..each import Failure
 from ..rules import Rules, read_rules
 from ..timestamp import read_time
 from .attempts import Attempt, Counted, attempts, choose, counted_attempt, perhaps_late, store
 from .class_list import Entry, Student
-from .identity import lms_users, record_users
+from .identity import FILE, all_lms_users, assign_folders, lms_users, record_users
 from .installed import install, instead
 from .move import move_work
 from .platforms import LmsUser
+from .roster import Roster
+
+
+def refuse_another(
+    course: Course, assignment: str, roster: Roster, rows: Iterable[tuple[Entry, Student]]
+) -> None:
+    """Refuse a worksheet that gives students other numbers than this assignment has already.
+
+    Of two students who change places, both numbers are known; of another assignment's, none is.
+
+    Raises:
+        LabkitError: Most of the students who have a number would get a new one.
+    """
+    known = all_lms_users(course)
+    users = {x.key: x for x in known.get(assignment, {}).values() if x.system == "moodle"}
+    found = assign_folders(users.values(), assignment, known, roster)
+    numbered = {place.folder for place in found.values()}
+    here = [("moodle", e.participant) for e, s in rows if e.participant and s.id in numbered]
+    differ = sum(key not in users for key in here)
+    if differ > max(1, len(here) - differ):
+        raise LabkitError(
+            f"nothing was imported: {differ} of {how_many(len(here), 'student')} have another "
+            f"number in {assignment}, so this is probably another assignment's worksheet; give "
+            f"that one's name with --assignment. If {assignment} was made again in Moodle, or its "
+            f"recorded numbers are wrong, delete the entry {assignment!r} from {FILE}, and import "
+            "this worksheet again"
+        )
 
 
 def keep_numbers(
