@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 import builtins
+import re
 import textwrap
-from collections.abc import Collection, Iterable, Iterator
+from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from typing import Any
 
-from .notebook import checks, defines
+from .brief import WORDS, words_in_all, words_of
+from .notebook import checks, defines, grade_id, kind
 from .source import analyse
 from .unfinished import defined_in
 
@@ -87,16 +89,50 @@ def _shown(text: str, most: int) -> str:
     return textwrap.shorten(text, most, placeholder=" ...")
 
 
-def how_to_restore(question: str, name: str, is_text: bool) -> str:
-    """How to restore the cell of a question."""
-    if is_text:
-        return f"the cell of {question} is not code any more; click on it, press Esc and then Y"
+def how_to_restore(name: str) -> str:
+    """How to restore a cell of a notebook."""
     return (
-        f"no cell defines {question}. To restore its cell, put a fresh copy of the notebook into "
-        "a folder `fresh` beside this file, and run in a new cell: "
-        f"!labkit merge {name}.ipynb fresh/{name}.ipynb --to again.ipynb (again.ipynb then holds "
-        f"all your work; call it {name}.ipynb)"
+        "To restore its cell, put a fresh copy of the notebook into a folder `fresh` beside this "
+        f"file, and run in a new cell: !labkit merge {name}.ipynb fresh/{name}.ipynb --to "
+        f"again.ipynb (again.ipynb then holds all your work; call it {name}.ipynb)"
     )
+
+
+def review_texts(
+    cells: Sequence[dict[str, Any]], asked: Mapping[str, str], name: str
+) -> tuple[dict[str, int], list[str], list[str]]:
+    """The number of words in each text that a person marks, and problems and notes about them.
+
+    Args:
+        cells: The cells of the notebook.
+        asked: The id of each text's cell, by its name; empty in an older release.
+        name: The notebook's name.
+    """
+    texts, problems, notes = {}, [], []
+    named = {grade_id(cell): "" for cell in cells if kind(cell) == "why" and grade_id(cell)}
+    for text, home in (asked or named).items():
+        found = _cells_of_text(cells, text, home)
+        parts = {cells[k]["source"]: None for k in found}
+        words = texts[text] = len(words_of("\n\n".join(parts)))
+        has = f"{text} has {words_in_all(words)}"
+        if not found:
+            problems.append(f"no cell holds the text {text}. {how_to_restore(name)}")
+        elif words < WORDS[0]:
+            notes.append(f"{has}; it needs at least {WORDS[0]}")
+        else:
+            most = re.search(r"(\d+) words", cells[found[0] - 1]["source"])
+            if most and words > int(most[1]):
+                notes.append(f"{has}; it may have at most {most[1]}")
+        if len(found) > 1:
+            notes.append(f"there are {len(found)} cells of {text}; all of them will be read")
+    return texts, problems, notes
+
+
+def _cells_of_text(cells: Sequence[dict[str, Any]], text: str, home: str) -> list[int]:
+    """The positions of a text's cells, which the grader finds by its name, else by its id."""
+    named = [k for k, cell in enumerate(cells) if grade_id(cell) == text]
+    nameless = (k for k, cell in enumerate(cells) if not grade_id(cell) and cell.get("id") == home)
+    return named or [*nameless]
 
 
 def changed_since(cells: list[dict[str, Any]], question: str) -> bool:
