@@ -25,6 +25,7 @@ from .gaps import (
     how_to_restore,
     review_texts,
     undefined_names,
+    unreadable,
 )
 from .messages import head
 from .notebook import check_id, defines, grade_id, last_verdict, read_cells
@@ -122,6 +123,7 @@ def examine(path: Path) -> HandIn:
         more, worth_knowing = _review(cells, question["name"], name)
         problems += more
         notes += worth_knowing
+    problems += unreadable(cells)
     problems += undefined_names(cells, [question["name"] for question in questions])
     code = [cell["source"] for cell in cells if cell["cell_type"] == "code"]
     for question in questions:

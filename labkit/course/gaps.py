@@ -41,6 +41,17 @@ def undefined_names(cells: list[dict[str, Any]], asked: Collection[str]) -> Iter
             )
 
 
+def unreadable(cells: list[dict[str, Any]]) -> Iterator[str]:
+    """A sentence for each code cell that Python cannot read."""
+    for cell in cells:
+        if cell["cell_type"] == "code" and (broken := analyse(cell["source"])["broken"]):
+            yield (
+                f"Python cannot read the cell that begins with `{_first_line(cell['source'])}` "
+                f"({_shown(broken, 120)}), so what it defines earns nothing; correct it, run all "
+                "cells from the top and save the file"
+            )
+
+
 def calculated_from_runs(sources: Iterable[str], question: str) -> str:
     """A sentence if an answer is calculated from runs of the student's own arm, else "".
 
@@ -69,7 +80,8 @@ def first_error(cells: list[dict[str, Any]]) -> str:
     for cell in cells:
         outputs = cell.get("outputs")
         for output in outputs if isinstance(outputs, list) else ():
-            if isinstance(output, dict) and output.get("output_type") == "error":
+            failed = isinstance(output, dict) and output.get("output_type") == "error"
+            if failed and not analyse(cell["source"])["broken"]:  # those are `unreadable`
                 says = _shown(f"{output.get('ename')}: {output.get('evalue')}", 120)
                 return (
                     f"the cell that begins with `{_first_line(cell['source'])}` ended with an "

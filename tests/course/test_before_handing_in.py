@@ -217,6 +217,30 @@ def test_a_given_cell_that_is_gone_and_an_error_are_named(folder):
     assert any("ended with an error (NameError: no lk)" in text for text in problems)
 
 
+def test_a_cell_that_python_cannot_read_is_to_be_mended(folder):
+    """What was right when it ran earns nothing once a colon is lost, so the check's word is old."""
+    ran = [output("circle", Outcome.RIGHT, 4.0, complete=False)]
+    found = answered(folder, "circle", "def circle(s, start, centre)\n    return 1", ran)
+    assert found.problems == (
+        "Python cannot read the cell that begins with `def circle(s, start, centre)` (SyntaxError: "
+        "expected ':', line 1), so what it defines earns nothing; correct it, run all cells from "
+        "the top and save the file",
+    )
+    assert "01_paths: correct what is marked with [fix] first." in str(found)
+    assert not answered(folder, "circle", "%%time\n!ls\ndef circle(*a): return 1").problems
+
+
+def test_a_cell_that_python_cannot_read_is_named_once(folder):
+    """The error that its run left is the same one."""
+
+    def change(cells):
+        error = {"output_type": "error", "ename": "SyntaxError", "evalue": "invalid syntax"}
+        return [*cells, {**cells[-1], "source": "1 +", "outputs": [error]}]
+
+    (problem,) = examine(edited(folder / "01_paths.ipynb", change)).problems
+    assert problem.startswith("Python cannot read the cell that begins with `1 +`")
+
+
 def test_an_answer_turned_into_text_is_told_how_to_turn_it_back(folder):
     """Where the cell is there and is not code, two keys bring it back."""
 
@@ -435,7 +459,7 @@ def test_the_last_word_says_whether_to_hand_in(folder):
     ]
     assert says[0] == "f was saved 5 s ago and is complete: hand it in now."
     assert "[note]" in says[1] and "if you have changed nothing" in says[2]
-    assert "but does not hold the circle that you ran last" in says[3]
+    assert "but does not hold the circle that you ran last: run all cells, save it" in says[3]
     word = "f was saved 5 s ago, before any check had run: save it and run this cell again."
     assert _advice("f", blank, timedelta(seconds=5), []) == word
 
