@@ -41,6 +41,14 @@ def line_of(error: BaseException) -> str:
     return found if len(found) <= 100 else f"{found[:97]}..."
 
 
+def unwritten(error: BaseException) -> str:
+    """The stub that raised an exception because a student's function called it, or ""."""
+    codes = (frame.f_code for frame, _ in walk_tb(error.__traceback__))
+    mine = [code for code in codes if not in_library(code.co_filename)]
+    called = isinstance(error, NotImplementedError) and len({*mine}) > 1
+    return mine[-1].co_name if called else ""
+
+
 def remedy(error: BaseException) -> str:
     """What to do about an exception whose own message does not help a student, or ""."""
     text = str(error)
