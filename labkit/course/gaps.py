@@ -9,7 +9,7 @@ from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from typing import Any
 
 from .brief import WORDS, words_in_all, words_of
-from .notebook import checks, defines, grade_id, kind
+from .notebook import cells_made_for, checks, defines, grade_id, kind
 from .source import analyse
 from .unfinished import defined_in
 
@@ -123,28 +123,20 @@ def review_texts(
     texts, problems, notes = {}, [], []
     named = {grade_id(cell): "" for cell in cells if kind(cell) == "why" and grade_id(cell)}
     for text, home in (asked or named).items():
-        found = _cells_of_text(cells, text, home)
-        parts = {cells[k]["source"]: None for k in found}
-        words = texts[text] = len(words_of("\n\n".join(parts)))
+        found = cells_made_for(cells, text, home)
+        words = texts[text] = len(words_of("\n\n".join({cell["source"]: 0 for cell in found})))
         has = f"{text} has {words_in_all(words)}"
         if not found:
             problems.append(f"no cell holds the text {text}. {how_to_restore(name)}")
         elif words < WORDS[0]:
             notes.append(f"{has}; it needs at least {WORDS[0]}")
         else:
-            most = re.search(r"(\d+) words", cells[found[0] - 1]["source"])
+            most = re.search(r"(\d+) words", cells[cells.index(found[0]) - 1]["source"])
             if most and words > int(most[1]):
                 notes.append(f"{has}; it may have at most {most[1]}")
         if len(found) > 1:
             notes.append(f"there are {len(found)} cells of {text}; all of them will be read")
     return texts, problems, notes
-
-
-def _cells_of_text(cells: Sequence[dict[str, Any]], text: str, home: str) -> list[int]:
-    """The positions of a text's cells, which the grader finds by its name, else by its id."""
-    named = [k for k, cell in enumerate(cells) if grade_id(cell) == text]
-    nameless = (k for k, cell in enumerate(cells) if not grade_id(cell) and cell.get("id") == home)
-    return named or [*nameless]
 
 
 def changed_since(cells: list[dict[str, Any]], question: str) -> bool:
