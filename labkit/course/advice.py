@@ -79,7 +79,7 @@ def _unknown(error: NameError) -> str:
         return f"to use it, begin the cell with `{_IMPORTS[name]}`"
     in_numpy = [f"np.{name}"] if hasattr(np, name) else []
     frames = [frame for frame, _ in walk_tb(error.__traceback__)][-1:]
-    own = [name for frame in frames for name in (*frame.f_locals, *frame.f_globals)]
+    own = [x for frame in frames for x in (*frame.f_locals, *frame.f_globals)]
     near = _near(name, own, 0.85 if in_numpy else 0.6)
     return _did_you_mean([*near, *in_numpy] or _near(name, dir(builtins), 0.8))
 
