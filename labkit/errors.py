@@ -34,7 +34,8 @@ class ShapeError(LabkitError, ValueError):
 
 def _hint(expected: tuple[int, ...], actual: tuple[int, ...]) -> str:
     if expected == ():
-        return "; write it without brackets around it" if set(actual) == {1} else ""
+        one = "; take the one number out of it, as in x[0], or leave out the brackets around it"
+        return one if set(actual) == {1} else ""
     if len(expected) != 1:
         return "; the transpose would fit" if actual == expected[::-1] else ""
     n = expected[0]

@@ -187,7 +187,7 @@ def _check_joint(number: int, end: Any, start: Any) -> None:
             f"part {number + 1} of the Chain begins with {shown(start)}, and part {number} ends "
             f"with {shown(end)}; return lk.Sample of one size from both, or lk.PoseSample"
         )
-    if (jump := float(np.abs(start[0] - end[0]).max())) > LARGEST_JUMP:
+    if not (jump := float(np.abs(start[0] - end[0]).max())) <= LARGEST_JUMP:
         raise OutOfRange(
             f"part {number + 1} of the Chain begins {jump:.3g} from where part {number} ends, and "
             f"at most {LARGEST_JUMP:g} is allowed; put a trajectory between the two"

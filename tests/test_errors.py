@@ -47,7 +47,7 @@ def test_an_error_is_also_the_builtin_one_that_is_usual(error, builtin):
         ((7,), (), "give all 7"),
         ((7,), (7, 7), "a matrix came where a vector belongs"),
         ((3, 4), (4, 3), "the transpose would fit"),
-        ((), (1,), "expected one number; write it without brackets"),
+        ((), (1,), "expected one number; take the one number out of it, as in x[0], or"),
         ((), (7,), "has shape (7,), expected one number"),
     ],
 )

@@ -120,7 +120,11 @@ def test_a_bad_gain_is_named(x, error, words):
         (None, TypeMismatch, "v_max is None"),
         ("2", TypeMismatch, r"v_max is '2' \(str\), expected one real number"),
         ([1.0, 2.0], ShapeError, r"v_max has shape \(2,\), expected one number"),
-        ([1.0], ShapeError, "without brackets"),
+        (
+            [1.0],
+            ShapeError,
+            r"take the one number out of it, as in x\[0\], or leave out the brackets",
+        ),
         (np.nan, NotFinite, "v_max is nan"),
         (np.inf, NotFinite, "v_max is inf"),
         (0.0, OutOfRange, "v_max is 0; it must be greater than 0"),

@@ -26,6 +26,12 @@ from labkit import (
 from labkit.errors import LabkitError, NotFinite, OutOfRange, ShapeError, TypeMismatch
 
 A, B, C = [0.6, 0.2, 0.1], [0.5, -0.2, 0.3], [0.4, 0.0, 0.0]
+
+
+def lost(s):
+    return Sample(*np.full((3, 3), np.nan))
+
+
 PATHS = {"line": Line(A, B), "circle": Circle(A, C)}
 SCALINGS = (BangBang(2.0), Cubic(2.0), Quintic(2.0), Trapezoid(1.0, 0.8, 1.6))
 turns = arrays(np.float64, 3, elements=st.floats(-1.7, 1.7))
@@ -231,6 +237,11 @@ skewed = np.diag([1.0, 1.0, 1.1])
             lambda: Chain([Hold(A, 1.0), Hold(A, 1.0), Hold([0.6, 0.2, 0.1 + 2e-4], 1.0)]),
             OutOfRange,
             "part 3 of the Chain begins 0.0002 from where part 2 ends, and at most 0.0001 is",
+        ),
+        (
+            lambda: Chain([Hold(A, 1.0), Trajectory(lost, Cubic(1.0))]),
+            OutOfRange,
+            "part 2 of the Chain begins nan from where part 1 ends",
         ),
         (
             lambda: Chain([Hold(A, 1.0), Hold([0.0] * 7, 1.0)]),

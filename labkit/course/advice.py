@@ -6,10 +6,12 @@ import builtins
 import linecache
 import re
 import sysconfig
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable
 from difflib import get_close_matches
 from pathlib import Path
 from traceback import walk_tb
+
+import numpy as np
 
 from ..control import State
 from ..trajectory import PoseSample, Sample
@@ -39,15 +41,23 @@ def line_of(error: BaseException) -> str:
     return found if len(found) <= 100 else f"{found[:97]}..."
 
 
+def unwritten(error: BaseException) -> str:
+    """The stub that raised an exception because a student's function called it, or ""."""
+    codes = (frame.f_code for frame, _ in walk_tb(error.__traceback__))
+    mine = [code for code in codes if not in_library(code.co_filename)]
+    called = isinstance(error, NotImplementedError) and len({*mine}) > 1
+    return mine[-1].co_name if called else ""
+
+
 def remedy(error: BaseException) -> str:
     """What to do about an exception whose own message does not help a student, or ""."""
     text = str(error)
     if isinstance(error, NameError):
-        return _similar(error, _defined(error))
+        return _unknown(error)
     if isinstance(error, AttributeError) and isinstance(error.obj, State | Sample | PoseSample):
         return f"it has {', '.join(error.obj._fields)}"
     if isinstance(error, AttributeError) and text.endswith("'"):  # numpy may give its own advice
-        return _similar(error, (x for x in dir(error.obj) if not x.startswith("_")))
+        return _did_you_mean(_near(str(error.name or ""), dir(error.obj)))
     if isinstance(error, TypeError) and (kinds := re.search("'(State|Sample|PoseSample)'", text)):
         return f"did you mean {_ARRAYS[kinds[1]]}?"
     if "read-only" in text:
@@ -62,17 +72,25 @@ def remedy(error: BaseException) -> str:
     return next((todo for words, todo in _REMEDIES.items() if words in text), "")
 
 
-def _similar(error: NameError | AttributeError, names: Iterable[str]) -> str:
-    """A suggestion of the name that is most like an unknown one, or ""."""
-    near = get_close_matches(str(error.name or ""), names, 1)
-    return f"did you mean {near[0]}?" if near else ""
+def _unknown(error: NameError) -> str:
+    """The import that an unknown name needs, else a name in NumPy or a similar one, or ""."""
+    name = str(error.name or "")
+    if name in _IMPORTS:
+        return f"to use it, begin the cell with `{_IMPORTS[name]}`"
+    in_numpy = [f"np.{name}"] if hasattr(np, name) else []
+    frames = [frame for frame, _ in walk_tb(error.__traceback__)][-1:]
+    own = [x for frame in frames for x in (*frame.f_locals, *frame.f_globals)]
+    near = _near(name, own, 0.85 if in_numpy else 0.6)
+    return _did_you_mean([*near, *in_numpy] or _near(name, dir(builtins), 0.8))
 
 
-def _defined(error: NameError) -> Iterator[str]:
-    """The names that are defined where an exception was raised."""
-    yield from vars(builtins)
-    for frame, _ in [*walk_tb(error.__traceback__)][-1:]:
-        yield from (*frame.f_locals, *frame.f_globals)
+def _near(name: str, names: Iterable[str], cutoff: float = 0.6) -> list[str]:
+    """The public name that is most like an unknown one; none if it is not like it at all."""
+    return get_close_matches(name, [x for x in names if x[:1] != "_"], 1, cutoff)
+
+
+def _did_you_mean(names: Iterable[str]) -> str:
+    return f"did you mean {' or '.join(names)}?" if names else ""
 
 
 def _unequal(text: str, line: str) -> str:
@@ -86,6 +104,16 @@ def _unequal(text: str, line: str) -> str:
     return f"{says}; use @ to multiply matrices" if fits and "@" not in line else says
 
 
+_IMPORTS = {
+    line.split()[-1]: line
+    for line in (
+        "import math", "import numpy as np", "import numpy", "import scipy", "import control",
+        "import control as ct", "import matplotlib.pyplot as plt", "import labkit as lk",
+        "import labkit", "import pinocchio", "import pinocchio as pin", "import cv2",
+        "from scipy import stats", "from labkit import se3",
+    )
+}  # fmt: skip
+"""The line that imports each module of the course, by the name that it binds."""
 _ARRAYS = {"State": "state.q", "Sample": "target.position", "PoseSample": "target.pose"}
 """What students usually mean when they use one of these as an array."""
 _REMEDIES = {

@@ -11,17 +11,24 @@ from collections import Counter
 from collections.abc import Collection, Mapping
 from dataclasses import dataclass, field
 from importlib.metadata import version
-from itertools import pairwise
 from pathlib import Path
 from typing import Any
 
 from ..sim import chosen
-from .brief import WORDS, words_of
+from .brief import words_in_all
 from .checks_file import read_checks
 from .forms import COMMITTED, OWN_ARM
-from .gaps import calculated_from_runs, changed_since, first_error, how_to_restore, undefined_names
+from .gaps import (
+    calculated_from_runs,
+    changed_since,
+    first_error,
+    how_to_restore,
+    review_texts,
+    undefined_names,
+    unreadable,
+)
 from .messages import head
-from .notebook import check_id, defines, grade_id, kind, last_verdict, read_cells
+from .notebook import check_id, defines, grade_id, last_verdict, read_cells
 from .own_arm import FILE, arms_for, opens_the_public_arm
 from .serialize import decode
 from .source import analyse
@@ -62,7 +69,7 @@ class HandIn:
         lines += [f"[note] {text}" for text in self.notes]
         lines += [f"  {line}" for line in self.lines]
         for name, n in self.texts.items():
-            said = f"{_words(n)}; your instructor will read it" if n else "not written"
+            said = f"{words_in_all(n)}; your instructor will read it" if n else "not written"
             lines.append(f"  {name}: {said}")
         right = {name for name, v in self.verdicts.items() if v is not None and v.right}
         tasks = self.verdicts.keys() - set(self.predictions)
@@ -116,6 +123,7 @@ def examine(path: Path) -> HandIn:
         more, worth_knowing = _review(cells, question["name"], name)
         problems += more
         notes += worth_knowing
+    problems += unreadable(cells)
     problems += undefined_names(cells, [question["name"] for question in questions])
     code = [cell["source"] for cell in cells if cell["cell_type"] == "code"]
     for question in questions:
@@ -152,16 +160,9 @@ def examine(path: Path) -> HandIn:
             f"{unrun} of {len(verdicts)} checks have left no result in the saved file; if you have "
             "run them, save the file and try again (all checks are run when it is marked)"
         )
-    texts = {}
-    for above, cell in pairwise(cells):
-        if kind(cell) == "why" and grade_id(cell):
-            words = texts[grade_id(cell)] = len(words_of(cell["source"]))
-            has = f"{grade_id(cell)} has {_words(words)}"
-            if words < WORDS[0]:
-                notes.append(f"{has}; it needs at least {WORDS[0]}")
-            most = re.search(r"(\d+) words", above["source"])
-            if most and words > int(most[1]):
-                notes.append(f"{has}; it may have at most {most[1]}")
+    texts, lost, told = review_texts(cells, data["texts"], name)
+    problems += lost
+    notes += told
     unsaid = [name for name in predictions if (v := verdicts[name]) and not v.right]
     fine = (Outcome.RIGHT, Outcome.NOT_ATTEMPTED)
     wrong = [n for n, v in verdicts.items() if v and v.outcome not in fine and n not in predictions]
@@ -172,10 +173,6 @@ def examine(path: Path) -> HandIn:
         if names:
             notes.append(says.format(", ".join(names)))
     return HandIn(name, tuple(problems), tuple(notes), verdicts, predictions, texts)
-
-
-def _words(count: int) -> str:
-    return f"{count} word{'s' * (count != 1)}"
 
 
 def _on_the_public_arm(
@@ -219,7 +216,9 @@ def _review(cells: list[dict[str, Any]], question: str, name: str) -> tuple[list
             f"the cell of {question} begins with %%{magic}, so the notebook does not see what it "
             "defines; delete that line"
             if magic
-            else how_to_restore(question, name, any(cell["cell_type"] != "code" for cell in homes))
+            else f"the cell of {question} is not code any more; click on it, press Esc and then Y"
+            if any(cell["cell_type"] != "code" for cell in homes)
+            else f"no cell defines {question}. {how_to_restore(name)}"
         )
     for each in (question, check_id(question)):
         if not ids[each]:

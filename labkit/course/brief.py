@@ -24,6 +24,11 @@ def words_of(text: str) -> list[str]:
     return "".join(x for x in text if unicodedata.category(x) != "Cf").split()
 
 
+def words_in_all(count: int) -> str:
+    """A number of words with its unit, such as "1 word" or "30 words"."""
+    return f"{count} word{'s' * (count != 1)}"
+
+
 def brief_of_why(name: str, points: float, asks: str) -> str:
     """The text above a why, with its rubric."""
     least, most = WORDS

@@ -13,7 +13,10 @@ FILE = "checks.json"
 
 
 def read_checks(folder: Path) -> dict[str, Any]:
-    """The data in a notebook's folder: the name of its ``assignment``, and its ``questions``.
+    """The data in a notebook's folder: its ``assignment``, its ``questions`` and its ``texts``.
+
+    The texts, which a person marks, map the name of each to the id of its cell; the files of older
+    releases have none.
 
     Raises:
         LabkitError: The file is missing or damaged.
@@ -26,6 +29,8 @@ def read_checks(folder: Path) -> dict[str, Any]:
             raise TypeError
         check_stamp(data, f"{FILE} in {folder.name!r}", remedy)
         if not isinstance(data["assignment"], str) or not isinstance(data["questions"], list):
+            raise TypeError
+        if not isinstance(data.setdefault("texts", {}), dict):
             raise TypeError
     except (FileNotFoundError, KeyError, TypeError, ValueError) as error:
         there = "no" if isinstance(error, FileNotFoundError) else "only a damaged"

@@ -141,6 +141,8 @@ class Number(_Form):
         """What is wrong with the form of a prediction, or ""."""
         if isinstance(said, bool) or not isinstance(said, int | float | np.integer | np.floating):
             example = "with a point, such as 8.5" if "," in str(said) else f"({self.unit})"
+            if isinstance(said, str) and said.replace(".", "", 1).lstrip("-").isdecimal():
+                example = "without quotes"
             return f"it is {said!r}; write one number {example}"
         if not self.least <= said <= self.most:
             return f"it is {said:g} {self.unit}; write {self.how}"

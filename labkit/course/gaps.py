@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 import builtins
+import re
 import textwrap
-from collections.abc import Collection, Iterable, Iterator
+from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from typing import Any
 
-from .notebook import checks, defines
+from .brief import WORDS, words_in_all, words_of
+from .notebook import cells_made_for, checks, defines, grade_id, kind
 from .source import analyse
 from .unfinished import defined_in
 
@@ -39,6 +41,17 @@ def undefined_names(cells: list[dict[str, Any]], asked: Collection[str]) -> Iter
             )
 
 
+def unreadable(cells: list[dict[str, Any]]) -> Iterator[str]:
+    """A sentence for each code cell that Python cannot read."""
+    for cell in cells:
+        if cell["cell_type"] == "code" and (broken := analyse(cell["source"])["broken"]):
+            yield (
+                f"Python cannot read the cell that begins with `{_first_line(cell['source'])}` "
+                f"({_shown(broken, 120)}), so what it defines earns nothing; correct it, run all "
+                "cells from the top and save the file"
+            )
+
+
 def calculated_from_runs(sources: Iterable[str], question: str) -> str:
     """A sentence if an answer is calculated from runs of the student's own arm, else "".
 
@@ -67,7 +80,8 @@ def first_error(cells: list[dict[str, Any]]) -> str:
     for cell in cells:
         outputs = cell.get("outputs")
         for output in outputs if isinstance(outputs, list) else ():
-            if isinstance(output, dict) and output.get("output_type") == "error":
+            failed = isinstance(output, dict) and output.get("output_type") == "error"
+            if failed and not analyse(cell["source"])["broken"]:  # those are `unreadable`
                 says = _shown(f"{output.get('ename')}: {output.get('evalue')}", 120)
                 return (
                     f"the cell that begins with `{_first_line(cell['source'])}` ended with an "
@@ -87,16 +101,42 @@ def _shown(text: str, most: int) -> str:
     return textwrap.shorten(text, most, placeholder=" ...")
 
 
-def how_to_restore(question: str, name: str, is_text: bool) -> str:
-    """How to restore the cell of a question."""
-    if is_text:
-        return f"the cell of {question} is not code any more; click on it, press Esc and then Y"
+def how_to_restore(name: str) -> str:
+    """How to restore a cell of a notebook."""
     return (
-        f"no cell defines {question}. To restore its cell, put a fresh copy of the notebook into "
-        "a folder `fresh` beside this file, and run in a new cell: "
-        f"!labkit merge {name}.ipynb fresh/{name}.ipynb --to again.ipynb (again.ipynb then holds "
-        f"all your work; call it {name}.ipynb)"
+        "To restore its cell, put a fresh copy of the notebook into a folder `fresh` beside this "
+        f"file, and run in a new cell: !labkit merge {name}.ipynb fresh/{name}.ipynb --to "
+        f"again.ipynb (again.ipynb then holds all your work; call it {name}.ipynb)"
     )
+
+
+def review_texts(
+    cells: Sequence[dict[str, Any]], asked: Mapping[str, str], name: str
+) -> tuple[dict[str, int], list[str], list[str]]:
+    """The number of words in each text that a person marks, and problems and notes about them.
+
+    Args:
+        cells: The cells of the notebook.
+        asked: The id of each text's cell, by its name; empty in an older release.
+        name: The notebook's name.
+    """
+    texts, problems, notes = {}, [], []
+    named = {grade_id(cell): "" for cell in cells if kind(cell) == "why" and grade_id(cell)}
+    for text, home in (asked or named).items():
+        found = cells_made_for(cells, text, home)
+        words = texts[text] = len(words_of("\n\n".join({cell["source"]: 0 for cell in found})))
+        has = f"{text} has {words_in_all(words)}"
+        if not found:
+            problems.append(f"no cell holds the text {text}. {how_to_restore(name)}")
+        elif words < WORDS[0]:
+            notes.append(f"{has}; it needs at least {WORDS[0]}")
+        else:
+            most = re.search(r"(\d+) words", cells[cells.index(found[0]) - 1]["source"])
+            if most and words > int(most[1]):
+                notes.append(f"{has}; it may have at most {most[1]}")
+        if len(found) > 1:
+            notes.append(f"there are {len(found)} cells of {text}; all of them will be read")
+    return texts, problems, notes
 
 
 def changed_since(cells: list[dict[str, Any]], question: str) -> bool:

@@ -9,7 +9,8 @@ from collections.abc import Callable
 from typing import Any
 
 from ..errors import LabkitError
-from .notebook import defines, grade_id, is_edited, nbgrader_info, released
+from .brief import words_of
+from .notebook import cells_made_for, defines, grade_id, is_edited, kind, nbgrader_info, released
 from .source import is_stub, plain
 
 Cells = list[dict[str, Any]]
@@ -41,8 +42,8 @@ def merge(mine: Cells, new: Cells) -> Cells:
     merged = copy.deepcopy(new)
     home = _homes(mine, new)
     asked = [cell for cell in merged if _is_answer(cell)]
-    answers = [_answer(mine, grade_id(cell)) for cell in asked]
-    if asked and not any(_cells_for(mine, grade_id(cell)) for cell in asked):
+    answers = [_answer(mine, cell) for cell in asked]
+    if asked and not any(_cells_for(mine, cell) for cell in asked):
         raise LabkitError(
             f"your notebook answers no question of the new one ({grade_id(asked[0])}, ...); "
             "are they two releases of the same assignment?"
@@ -121,16 +122,20 @@ def _as_comment(cell: dict[str, Any]) -> dict[str, Any]:
     return made | {"cell_type": "markdown"}
 
 
-def _answer(mine: Cells, name: str) -> str | None:
-    """The last cell with a written answer, which is the one that counts in marking."""
-    sources = [str(cell["source"]) for cell in _cells_for(mine, name)]
+def _answer(mine: Cells, asked: dict[str, Any]) -> str | None:
+    """What counts in marking: the last cell with a written answer, or all cells of a text."""
+    sources = [str(cell["source"]) for cell in _cells_for(mine, asked)]
+    if asked["cell_type"] == "markdown":
+        return "\n\n".join(dict.fromkeys(filter(words_of, sources))) or None
     return next((source for source in reversed(sources) if not _is_unwritten(source)), None)
 
 
-def _cells_for(mine: Cells, name: str) -> Cells:
+def _cells_for(mine: Cells, asked: dict[str, Any]) -> Cells:
     """The cells that define an answer, or if there are none, those that were made for it."""
+    name = grade_id(asked)
     defining = [cell for cell in mine if defines(cell, name)]
-    return defining or [cell for cell in mine if grade_id(cell) == name]
+    likely = [cell for cell in mine if kind(cell) in ("", kind(asked))]  # another may have its id
+    return defining or cells_made_for(likely, name, asked["id"])
 
 
 def _is_unwritten(source: str) -> bool:

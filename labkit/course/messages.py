@@ -128,9 +128,11 @@ def message(
             call = f'hint("{question.name}", 1)'
             hint = f"Stuck? Run `{call}` in a new cell (press Esc, then B). It is free."
         if depends_on:
-            names, one = " and ".join(depends_on), len(depends_on) == 1
-            says = "is not right yet; correct that" if one else "are not right yet; correct those"
-            helps.append(f"It uses your {names}, which {says} first.")
+            was, it = ("was", "it") if len(depends_on) == 1 else ("were", "them")
+            helps.append(
+                f"It uses your {' and '.join(depends_on)}, which {was} not right when you last "
+                f"checked {it}; correct {it} and check {it} again first."
+            )
     tests: list[str] = []
     numbers: list[str] = []
     match verdict.outcome:

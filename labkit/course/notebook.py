@@ -97,6 +97,12 @@ def grade_id(cell: Cell) -> str:
     return found if isinstance(found, str) else ""
 
 
+def cells_made_for(cells: Sequence[dict[str, Any]], name: str, home: str) -> list[dict[str, Any]]:
+    """The cells made for an answer, found as the grader does, by its name, else by the id."""
+    named = [cell for cell in cells if grade_id(cell) == name]
+    return named or [cell for cell in cells if not grade_id(cell) and cell.get("id") == home]
+
+
 def nbgrader_info(cell: Cell) -> Mapping[str, Any]:
     """A cell's metadata for nbgrader: grade_id, grade, solution, points; empty for most cells."""
     found = _metadata(cell).get("nbgrader")

@@ -69,7 +69,8 @@ def _advice(file: str, found: HandIn, age: timedelta, unsaved: Collection[str]) 
     says = f"{file} was saved {ago} ago"
     again = "save it and run this cell again"
     if unsaved:
-        return f"{says}, but does not hold the {', '.join(unsaved)} that you ran last: {again}."
+        lacks = f"but does not hold the {', '.join(unsaved)} that you ran last"
+        return f"{says}, {lacks}: run all cells, {again}."
     if found.verdicts and not any(found.verdicts.values()):
         return f"{says}, before any check had run: {again}."
     if found.problems:

@@ -8,14 +8,14 @@ from __future__ import annotations
 import signal
 import threading
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from itertools import islice
 from typing import Any
 
 import numpy as np
 
 from ..errors import LabkitError, TypeMismatch
-from .advice import description
+from .advice import description, unwritten
 from .calling import ArgumentChanged, call
 from .serialize import NotComparable, decode_answer, encode
 from .withheld import Withheld
@@ -24,6 +24,9 @@ LONGEST = 400
 """Number of characters of an exception's message that are kept."""
 MOST_ITEMS = 100_000
 """Number of items that are read from an answer that is not a list but can be iterated."""
+
+NOT_WRITTEN = "NotWritten"
+"""The kind of exception if a function calls a stub, and so is not a stub itself."""
 
 
 class TimeUp(BaseException):
@@ -69,6 +72,10 @@ def reply(
     except Withheld as error:
         return {"withheld": error.tool}
     except BaseException as error:
+        with suppress(BaseException):  # its author may have made this raise
+            if stub := unwritten(error):
+                says = f"it calls {stub[:60]}, which is not written yet; write it or do without it"
+                return {"raised": NOT_WRITTEN, "says": says}
         return {"raised": kind(error), "says": sentence(error)}
 
 
@@ -91,7 +98,7 @@ def answer(data: Mapping[str, Any], withheld: Sequence[str]) -> Any:
     if data.get("withheld") in withheld:
         raise Withheld(data["withheld"])
     raised, says = str(data.get("raised", "Exception")), str(data.get("says", ""))
-    if raised == ArgumentChanged.__name__:
+    if raised in (ArgumentChanged.__name__, NOT_WRITTEN):
         raise NoAnswer(raised, says)
     if raised == NotComparable.__name__:
         raise NoAnswer(raised, f"it returned a wrong kind of value: {says}")

@@ -14,12 +14,13 @@ from .messages import wrapped
 from .student import desk, shell
 
 
-def predict(name: str, said: Any = None, *, truth: Any = None) -> Any:
+def predict(name: str, said: Any = None, *more: Any, truth: Any = None) -> Any:
     """Commit to a prediction; or, with the truth, compare the prediction with it.
 
     Args:
         name: The prediction's name.
         said: What you predict; None shows controls for choosing it.
+        more: Nothing; what follows a decimal comma would be here.
         truth: The result: a letter, letters, a number, or a curve as (places, heights).
 
     Returns:
@@ -28,12 +29,17 @@ def predict(name: str, said: Any = None, *, truth: Any = None) -> Any:
 
     Raises:
         UnknownName: There is no such question.
-        LabkitError: The question asks for a function, not for a prediction.
+        LabkitError: The question asks for a function, or two values are given.
     """
     place = desk()
     form = place.question(name).judge
     if not isinstance(form, Form):
         raise LabkitError(f"{name} is a task, not a prediction; write check({name!r}, {name})")
+    if more:
+        raise LabkitError(
+            f"{name} takes one value, but {len(more) + 1} are given; write {form.how}, with a "
+            "point in a number such as 0.25"
+        )
     if truth is not None:
         _reveal(name, form, truth)
         return None

@@ -105,11 +105,12 @@ class Desk:
         return verdict, out.text, found
 
     def wrong_dependencies(self, name: str, function: Callable[..., Any]) -> tuple[str, ...]:
-        """Other answers that a function calls by name and that have been checked and are wrong."""
+        """Other answers that a function calls by name and that were wrong when last checked."""
         code = getattr(function, "__code__", None)
         steps = dis.get_instructions(code) if code else ()
         called = [step.argval for step in steps if step.opname == "LOAD_GLOBAL"]
-        wrong = {other for other, (_, verdict) in self.checked.items() if not verdict.right}
+        fine = (Outcome.RIGHT, Outcome.NOT_ATTEMPTED)  # to call a stub is an error of its own
+        wrong = {other for other, (_, v) in self.checked.items() if v.outcome not in fine}
         return tuple(other for other in dict.fromkeys(called) if other in wrong - {name})
 
 

@@ -12,8 +12,9 @@ from labkit import LabkitError
 from labkit.course.before_handing_in import HandIn, examine
 from labkit.course.brief import PLACEHOLDER, words_of
 from labkit.course.forms import COMMITTED, OWN_ARM
+from labkit.course.merge import merge
 from labkit.course.messages import HEADS
-from labkit.course.notebook import verdict_metadata
+from labkit.course.notebook import read_cells, verdict_metadata
 from labkit.course.own_arm import FILE
 from labkit.course.receipt import _advice, hand_in, receipt
 from labkit.course.verdict import Outcome, TestResult, Verdict
@@ -216,6 +217,30 @@ def test_a_given_cell_that_is_gone_and_an_error_are_named(folder):
     assert any("ended with an error (NameError: no lk)" in text for text in problems)
 
 
+def test_a_cell_that_python_cannot_read_is_to_be_mended(folder):
+    """What was right when it ran earns nothing once a colon is lost, so the check's word is old."""
+    ran = [output("circle", Outcome.RIGHT, 4.0, complete=False)]
+    found = answered(folder, "circle", "def circle(s, start, centre)\n    return 1", ran)
+    assert found.problems == (
+        "Python cannot read the cell that begins with `def circle(s, start, centre)` (SyntaxError: "
+        "expected ':', line 1), so what it defines earns nothing; correct it, run all cells from "
+        "the top and save the file",
+    )
+    assert "01_paths: correct what is marked with [fix] first." in str(found)
+    assert not answered(folder, "circle", "%%time\n!ls\ndef circle(*a): return 1").problems
+
+
+def test_a_cell_that_python_cannot_read_is_named_once(folder):
+    """The error that its run left is the same one."""
+
+    def change(cells):
+        error = {"output_type": "error", "ename": "SyntaxError", "evalue": "invalid syntax"}
+        return [*cells, {**cells[-1], "source": "1 +", "outputs": [error]}]
+
+    (problem,) = examine(edited(folder / "01_paths.ipynb", change)).problems
+    assert problem.startswith("Python cannot read the cell that begins with `1 +`")
+
+
 def test_an_answer_turned_into_text_is_told_how_to_turn_it_back(folder):
     """Where the cell is there and is not code, two keys bring it back."""
 
@@ -239,6 +264,48 @@ def with_texts_of(folder, words, word="word "):
         return cells
 
     return examine(edited(folder / "01_paths.ipynb", change))
+
+
+@pytest.mark.parametrize("name", ["01_paths", "08_report"])
+def test_a_text_that_is_gone_is_to_be_mended(tmp_path, name):
+    """Each text that a person marks is missed if it is deleted, and merging brings it back."""
+    folder = Path(shutil.copytree(ASSIGNMENT.parent / name, tmp_path / name))
+    path, fresh = folder / f"{name}.ipynb", ASSIGNMENT.parent / name / f"{name}.ipynb"
+    asked = examine(path).texts.keys()
+    edited(path, lambda cells: [cell for cell in cells if cell["metadata"].get("lab") != "why"])
+    found = examine(path)
+    assert [text.split(". ")[0] for text in found.problems] == [
+        f"no cell holds the text {text}" for text in asked
+    ]
+    assert all("!labkit merge" in text for text in found.problems)
+    assert all(f"  {text}: not written" in str(found) for text in asked)
+    edited(path, lambda _: merge(read_cells(path), read_cells(fresh)))
+    assert not examine(path).problems and examine(path).texts.keys() == asked
+
+
+@pytest.mark.parametrize(
+    ("metadata", "more", "words"),
+    [({}, [PLACEHOLDER], 30), ({}, ["and more"], 32), ({"x": 1}, [], 30)],
+)
+def test_a_text_is_found_where_the_grader_finds_it(folder, metadata, more, words):
+    """By its name, in all cells that have it, or by its id if it lost its name."""
+
+    def change(cells):
+        (text,) = (cell for cell in cells if cell["metadata"].get("lab") == "why")
+        text["source"], text["metadata"] = "word " * 30, metadata or text["metadata"]
+        return [*cells, *({**text, "source": source} for source in more)]
+
+    found = examine(edited(folder / "01_paths.ipynb", change))
+    assert not found.problems and found.texts == {"why_twice_the_time": words}
+    twice = "there are 2 cells of why_twice_the_time; all of them will be read"
+    assert (twice in found.notes) == bool(more)
+
+
+def test_the_texts_of_an_older_release_are_counted(folder):
+    """A file of questions without the names of the texts leaves those in the notebook."""
+    file = folder / "checks.json"
+    file.write_text(json.dumps({**json.loads(file.read_text()), "texts": {}}))
+    assert examine(folder / "01_paths.ipynb").texts == {"why_twice_the_time": 0}
 
 
 def test_numbers_of_the_public_arm_are_named_where_ones_own_was_due(tmp_path):
@@ -392,7 +459,7 @@ def test_the_last_word_says_whether_to_hand_in(folder):
     ]
     assert says[0] == "f was saved 5 s ago and is complete: hand it in now."
     assert "[note]" in says[1] and "if you have changed nothing" in says[2]
-    assert "but does not hold the circle that you ran last" in says[3]
+    assert "but does not hold the circle that you ran last: run all cells, save it" in says[3]
     word = "f was saved 5 s ago, before any check had run: save it and run this cell again."
     assert _advice("f", blank, timedelta(seconds=5), []) == word
 

@@ -10,7 +10,7 @@ import pytest
 from labkit import LabkitError
 from labkit.__main__ import main
 from labkit.course.merge import KEPT_TEXT, merge
-from labkit.course.notebook import is_edited, read_cells, released
+from labkit.course.notebook import is_edited, kind, read_cells, released
 
 ASSIGNMENT = Path(__file__).resolve().parents[2] / "assignments" / "01_paths"
 
@@ -36,6 +36,18 @@ def test_merging_keeps_answers_and_own_cells(folder):
     assert "duration / 2" in merged[where]["source"]
     assert merged[where + 1]["source"] == "print('mine')"
     assert len(merged) == len(new) + 1
+
+
+@pytest.mark.parametrize("lost", [False, True])
+def test_merging_keeps_a_text_that_lost_its_name_or_was_doubled(folder, lost):
+    """A why is taken over as it is marked: by its id without metadata, and from all its cells."""
+    new, mine = (read_cells(folder / "01_paths.ipynb") for _ in range(2))
+    (why,) = (cell for cell in mine if kind(cell) == "why")
+    mine.append({**why, "id": "0badcafe"})
+    why["source"], why["metadata"] = "Gravity pulls.", {} if lost else why["metadata"]
+    mine = mine[:-1] if lost else mine
+    (merged,) = (cell for cell in merge(mine, new) if kind(cell) == "why")
+    assert merged["source"] == "Gravity pulls."
 
 
 def test_merging_after_a_question_was_added(folder):

@@ -85,9 +85,26 @@ def test_an_answer_that_leans_on_a_wrong_one_is_told(capsys):
     check("double", answers["double"])
     assert "it uses your" not in capsys.readouterr().out
     check("again", answers["again"])
-    assert "It uses your double, which is not right yet; correct" in capsys.readouterr().out
+    says = "It uses your double, which was not right when you last checked it;"
+    assert says in " ".join(capsys.readouterr().out.split())
     assert notebook.desk().wrong_dependencies("again", answers["again"]) == ("double",)
     assert notebook.desk().wrong_dependencies("again", answers["method"]) == ()
+
+
+def test_an_answer_that_calls_an_unwritten_one_is_told(capsys):
+    """Who skipped an extension and calls it did attempt the answer, and reads what stopped it."""
+    answers = {}
+    exec("def double(x):\n    raise NotImplementedError", answers)
+    exec("def again(x):\n    return double(x)", answers)
+    check("double", answers["double"])
+    assert "double: not attempted yet. 0 of 4 points." in capsys.readouterr().out
+    assert check("again", answers["again"]) == 0.0
+    says = " ".join(capsys.readouterr().out.split())
+    assert says.startswith(
+        "again: it stopped with an error. 0 of 4 points. It calls double, which is not written "
+        "yet; write it or do without it."
+    )
+    assert "not right" not in says and "not attempted" not in says
 
 
 def test_an_answer_that_uses_a_withheld_tool_is_not_counted(desk, capsys):

@@ -51,6 +51,14 @@ def test_a_task_cannot_be_predicted(place):
         predict("f", 1.0)
 
 
+def test_a_decimal_comma_is_told(place):
+    """Python takes what follows the comma for a second value, and the error says to use a point."""
+    place.questions["x"] = Prediction("x", "?", Number("mm", 0.0, 9.0), 3).question()
+    with pytest.raises(LabkitError, match=r"2 are given; write a number .*with a point .* 0\.25"):
+        predict("x", 0, 25)
+    assert not place.committed
+
+
 def test_the_truth_waits_for_a_prediction(place, capsys):
     """Before anything is committed a reveal tells nothing of the truth."""
     predict("x", truth="a")
@@ -157,6 +165,8 @@ def test_a_curve_waits_for_each_of_its_sliders(monkeypatch):
 def test_a_decimal_comma_is_told_how_to_be_written():
     """A student who types 8,3 has written one number, and reads how to write it."""
     form = Number("mm", 0.0, 9.0)
+    assert form.problem("8.3") == "it is '8.3'; write one number without quotes"
+    assert form.problem("far") == "it is 'far'; write one number (mm)"
     assert form.problem("8,3") == "it is '8,3'; write one number with a point, such as 8.5"
     assert form.problem("many").endswith("write one number (mm)")
 

@@ -30,6 +30,13 @@ def misspells(angles=None):
         (lambda: SAMPLE - np.zeros(7), "did you mean target.position?"),
         (lambda: SAMPL.position, "did you mean SAMPLE?"),  # noqa: F821
         (misspells, "did you mean angles?"),
+        (lambda: math.sqrt(2.0), "to use it, begin the cell with `import math`"),  # noqa: F821
+        (lambda: ct.tf([1], [1, 1]), "begin the cell with `import control as ct`"),  # noqa: F821
+        (lambda: stats.t, "begin the cell with `from scipy import stats`"),  # noqa: F821
+        (lambda: sqrt(2.0), "did you mean np.sqrt?"),  # noqa: F821
+        (lambda: pi, "did you mean np.pi?"),  # noqa: F821
+        (lambda: lenn([]), "did you mean len?"),  # noqa: F821
+        (lambda angles=None: angle, "did you mean angles or np.angle?"),  # noqa: F821
         (writes, "make a new array"),
         (lambda: np.zeross(3), "did you mean zeros?"),
         (lambda: FIXED.shap, "did you mean shape?"),
@@ -62,6 +69,12 @@ def test_a_usual_slip_has_a_way_out(does, remedy):
         does()
     line = line_of(caught.value)  # it quotes this test's own table
     assert remedy in full_description(caught.value).replace(line, "")
+
+
+@pytest.mark.parametrize("does", [lambda: opt, lambda: stat])  # noqa: F821
+def test_a_builtin_is_suggested_only_if_it_is_very_close(does):
+    """What the course does not define is more often a forgotten import than a misspelt `oct`."""
+    assert "did you mean" not in reply(does, (), {})["says"]
 
 
 def test_a_library_that_gives_its_own_advice_is_not_interrupted():

@@ -117,7 +117,8 @@ def _at_home(source: Notebook) -> Notebook:
 
 def _checks(made: Prepared) -> str:
     questions = [question_data(q.public()) for q in made.questions.values()]
-    data = {**stamp(), "assignment": made.name, "questions": questions}
+    texts = {m["grade_id"]: m["id"] for m in manifest(made.source) if "points" in m}
+    data = {**stamp(), "assignment": made.name, "texts": texts, "questions": questions}
     text = json.dumps(data, ensure_ascii=False, separators=(",", ":")) + "\n"
     with suppress(OSError, ValueError):  # without a release, or with a damaged one
         before = (made.course.release / made.name / FILE).read_text(encoding="utf-8")
