@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import re
 import shlex
+import shutil
 from collections import Counter
 from dataclasses import replace
 
@@ -23,7 +24,14 @@ from labkit.grader.grading.grade import rejection
 from labkit.grader.grading.results import Answer, Results
 from labkit.grader.marks.table import marks_of
 from labkit.grader.nbgrader.gradebook import open_gradebook, record
-from labkit.grader.peers.readers import handed_out, names_of_class, readers, sheet_of, without_names
+from labkit.grader.peers.readers import (
+    handed_out,
+    names_of_class,
+    readers,
+    reviews,
+    sheet_of,
+    without_names,
+)
 from labkit.grader.students.class_list import Student
 from labkit.grader.submission import students
 from labkit.grader.terms.release import release
@@ -206,6 +214,24 @@ def test_reports_go_out_and_reviews_come_back_without_names(course, monkeypatch,
         assert "reader 1 says &lt;i&gt;why" in heard or not read_by[author]
         assert not re.findall("Ada|Bob|Eve", heard)
     assert read_by.total() == 5
+
+
+def test_a_sheet_of_nobody_and_a_notebook_that_is_not_the_sheet_are_named(course):
+    """Without these words, a student whose sheet is there would seem to have handed in none."""
+    name = sheet_of(NAME)
+    (other,) = (course.submitted / "ada" / NAME).glob("*.ipynb")
+    for student, source in ("zoe", other), ("zoe-7", handed_out(course, NAME, "zoe")):
+        sheet = course.submitted / student / name / f"{name}.ipynb"
+        sheet.parent.mkdir(parents=True)
+        sheet.write_bytes(source.read_bytes())
+    said = reviews(course, NAME)[1]
+    for student in ("zoe", "zoe-7"):
+        shutil.rmtree(course.submitted / student / name)
+    assert "zoe: the notebook that counts is not the sheet that they were given" in said
+    assert said[-1].startswith(
+        f"submitted/zoe-7/{name}: this sheet belongs to nobody in the roster"
+    )
+    assert said[-1].endswith(f"labkit students import WORKSHEET.csv --assignment {name}")
 
 
 def test_who_is_forgotten_takes_no_extension_from_their_team(course, capsys):

@@ -61,7 +61,7 @@ def test_two_folders_of_one_student_are_named_and_collecting_again_keeps_both(
     ("listed", "name"),
     [
         (
-            "Identifier,Full name,Email address,Username\nParticipant 50,Ada Lovelace,a@x,ada\n",
+            "Identifier,Full name,Email address,Username\nParticipant 42,Ada Lovelace,a@x,ada\n",
             NAME,
         ),
         ("name,login\nAda Lovelace,ada\n", ""),

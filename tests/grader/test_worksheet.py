@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 from datetime import UTC, datetime
 
 import pytest
@@ -89,6 +90,33 @@ def test_no_late_rule_is_applied_to_the_same_file_handed_in_again(bare, tmp_path
             f"Ada Lovelace (Ada-Lovelace) handed in the same file again, at {LATER}; nobody knows"
         )
         assert (again in out) is says
+
+
+def test_a_time_that_was_wrong_is_named_and_can_be_taken_back(bare, tmp_path, capsys):
+    """If the present worksheet's time is late and the same notebook has an earlier exact time."""
+    take(bare, tmp_path, day=5)
+    worksheet(bare, tmp_path, capsys, IN_TIME)
+    (bare.root / "course.toml").write_text(f"[assignments.{NAME}]\ndue = 2026-03-02T12:00:00Z\n")
+    late = "Wednesday, 4 March 2026, 11:30 AM"
+    code, out, err = worksheet(bare, tmp_path, capsys, late)
+    (record,) = (bare.root / "attempts" / "Ada-Lovelace" / NAME).glob("*/attempt.json")
+    assert (code, handed_in(bare)) == (1, "01 11:30")
+    assert "the hand-in time stays 2026-03-01 11:30 UTC, and the worksheet now says" in err
+    assert f"delete the entry with this time from {record.relative_to(bare.root)}, and" in err
+    told = json.loads(record.read_text())
+    told["seen"] = [one for one in told["seen"] if not one["exact"]]
+    record.write_text(json.dumps(told))
+    assert worksheet(bare, tmp_path, capsys, late)[0] == 0 and handed_in(bare) == "04 11:30"
+
+
+def test_a_worksheet_is_refused_whole_where_the_rules_are_damaged(bare, tmp_path, capsys):
+    """No number is recorded before the rules are read."""
+    take(bare, tmp_path)
+    record = bare.root / "course_private/lms.json"
+    before = record.read_text()
+    (bare.root / "course.toml").write_text("[assignments.08_reprot]\ndue = 2026-03-02\n")
+    assert worksheet(bare, tmp_path, capsys, IN_TIME)[0] == 2
+    assert record.read_text() == before
 
 
 def test_who_is_perhaps_late_is_named_until_the_time_is_known(bare, tmp_path, capsys):
@@ -224,7 +252,7 @@ def test_the_worksheet_of_another_assignment_is_refused(bare, tmp_path, capsys, 
     capsys.readouterr()
     assert main([*words, "--assignment", NAME]) == 2
     said = capsys.readouterr().err
-    assert "nothing was imported: 2 of 2 students have another number in 01_paths, so" in said
+    assert "nothing was imported: 2 of 2 students would get another number in 01_paths, so" in said
     assert "delete the entry '01_paths' from course_private/lms.json, and" in said
     assert record.read_text() == before and (bare.root / ROSTER).exists() is listed
     record.write_text("{}")

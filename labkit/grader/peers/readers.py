@@ -179,6 +179,8 @@ def reviews(course: Course, assignment: str) -> tuple[dict[str, list[Review]], l
                 asked.setdefault(who, []).append(row)
                 report[who] = _report_of(cell)
         said, wrong = _sheet_texts(course, name, student)
+        if said and not any(f"{who}_{row}" in said for who, rows in asked.items() for row in rows):
+            wrong = "the notebook that counts is not the sheet that they were given"
         me = [roster.get(student) or Student(student)]
         whole = 0
         for who, rows in asked.items():
@@ -188,6 +190,13 @@ def reviews(course: Course, assignment: str) -> tuple[dict[str, list[Review]], l
                 found.setdefault(authors.get(report[who], ""), []).append(review)
         if whole < len(asked):
             waiting.append(f"{student}: {wrong or f'{whole} of {len(asked)} reviews'}")
+    waiting += [
+        f"submitted/{folder}/{name}: this sheet belongs to nobody in the roster; whose it is, the "
+        "worksheet of its assignment says: labkit students import WORKSHEET.csv --assignment "
+        f"{name}"
+        for folder in students(course, name)
+        if roster.students and folder not in roster
+    ]
     return found, waiting
 
 

@@ -42,7 +42,7 @@ from .exchange import SECRET
 
 FOLDER = "attempts"
 BY_HAND = "by hand"
-_RECORD = "attempt.json"
+RECORD = "attempt.json"
 _REPEATED = re.compile(r" ?[(-](\d{1,9})\)?\.ipynb$")
 
 
@@ -113,7 +113,7 @@ def attempts(course: Course, student: str, assignment: str) -> tuple[Attempt, ..
         LabkitError: The record of an attempt is damaged.
     """
     place = course.root / FOLDER / student / assignment
-    return tuple(_read(path) for path in sorted(place.glob(f"*/{_RECORD}")))
+    return tuple(_read(path) for path in sorted(place.glob(f"*/{RECORD}")))
 
 
 def choose(all: Sequence[Attempt], assignment: str) -> Counted | None:
@@ -220,7 +220,7 @@ def store(
         record = replace(before, hand_ins=(*before.hand_ins, hand_in))
         data = msgspec.json.encode(record, enc_hook=lambda file: file.name)
         text = msgspec.json.format(data, indent=1).decode()
-        write(before.file.parent / _RECORD, text + "\n")
+        write(before.file.parent / RECORD, text + "\n")
         there[sha256] = record
     return new
 

@@ -17,6 +17,7 @@ from pathlib import Path
 from ...course.authoring.layout import Course
 from ...errors import LabkitError
 from ..clean import few, how_many, safe_name
+from ..rules import read_rules
 from ..seeds import seed_of
 from .arms import give_arms
 from .class_list import Entry, Student, read_list
@@ -112,7 +113,7 @@ def import_list(
 
     Raises:
         LabkitError: The list contradicts the roster or itself, the file is not a list, or it is the
-            worksheet of another assignment.
+            worksheet of another assignment; or, with a worksheet, the rules file is damaged.
     """
     rows = read_list(file)
     entries = [entry for entry in rows if not entry.is_canvas_test_student]
@@ -131,6 +132,7 @@ def import_list(
         done = enrol(before, entries, all_lms_users(course))
         if assignment:
             refuse_another(course, assignment, done.roster, done.rows)
+            rules = read_rules(course)
         save_roster(course, done.roster)
         tell_gradebook(course, done.roster)
         give_arms(course, done.roster, seed_of(course))
@@ -138,7 +140,7 @@ def import_list(
         taken, late, look = 0, list[str](), list[str]()
         if assignment:
             left += keep_numbers(course, assignment, done.rows)
-            taken, late, look = keep_times(course, assignment, done.rows)
+            taken, late, look = keep_times(course, assignment, done.rows, rules)
     listed = {student.id for _, student in done.rows}
     absent = [one for one in before.students if one.id not in listed]
     everybody = how_many(len(done.roster.students), "student")

@@ -11,9 +11,18 @@ from ...course.authoring.layout import Course
 from ...errors import LabkitError
 from ..clean import few, how_many, span
 from ..each import Failure
-from ..rules import Rules, read_rules
+from ..rules import Rules
 from ..timestamp import read_time
-from .attempts import Attempt, Counted, attempts, choose, counted_attempt, perhaps_late, store
+from .attempts import (
+    RECORD,
+    Attempt,
+    Counted,
+    attempts,
+    choose,
+    counted_attempt,
+    perhaps_late,
+    store,
+)
 from .class_list import Entry, Student
 from .identity import FILE, all_lms_users, assign_folders, lms_users, record_users
 from .installed import install, instead
@@ -38,9 +47,9 @@ def refuse_another(
     numbered = {place.folder for place in found.values()}
     here = [("moodle", e.participant) for e, s in rows if e.participant and s.id in numbered]
     differ = sum(key not in users for key in here)
-    if differ > max(1, len(here) - differ):
+    if differ > len(here) - differ:
         raise LabkitError(
-            f"nothing was imported: {differ} of {how_many(len(here), 'student')} have another "
+            f"nothing was imported: {differ} of {how_many(len(here), 'student')} would get another "
             f"number in {assignment}, so this is probably another assignment's worksheet; give "
             f"that one's name with --assignment. If {assignment} was made again in Moodle, or its "
             f"recorded numbers are wrong, delete the entry {assignment!r} from {FILE}, and import "
@@ -65,7 +74,7 @@ def keep_numbers(
 
 
 def keep_times(
-    course: Course, assignment: str, rows: Sequence[tuple[Entry, Student]]
+    course: Course, assignment: str, rows: Sequence[tuple[Entry, Student]], rules: Rules
 ) -> tuple[int, list[str], list[str]]:
     """Record when each counted attempt was handed in, as Moodle's worksheet says.
 
@@ -74,8 +83,7 @@ def keep_times(
         sentences on what a person should look at: times that were not recorded, or that change
         which attempt counts or what feedback says.
     """
-    rules, taken = read_rules(course), 0
-    zone = ZoneInfo(rules.zone)
+    zone, taken = ZoneInfo(rules.zone), 0
     late, left, waiting, returned = (list[str]() for _ in range(4))
     for entry, student in rows:
         all = attempts(course, student.id, assignment)
@@ -87,10 +95,20 @@ def keep_times(
         first = chosen.first
         if first.origin != "moodle" or (first.exact and not said):
             continue
-        when = _time(said, zone, chosen, all)
+        at = read_time(said, zone)
+        when = _time(said, at, zone, chosen, all)
         if when is None:
             if doubt := perhaps_late(course, student.id, assignment):
                 late.append(f"{student} handed in the same file again, at {said}; {doubt}")
+            elif first.exact and at and _late(rules, assignment, student, at):
+                record = (chosen.attempt.file.parent / RECORD).relative_to(course.root)
+                left.append(
+                    f"{student}: the hand-in time stays {_local(first.when, zone)}, and the "
+                    f"worksheet now says {said!r}; if they did not hand in the same file twice, "
+                    "the recorded time is wrong, as after the worksheet of another assignment or "
+                    f"with another zone: delete the entry with this time from {record}, and import "
+                    "the worksheet again"
+                )
         elif isinstance(when, str):
             left.append(f"{student}: no hand-in time is set; the worksheet says {when}")
         elif when != first.when or not first.exact:
@@ -138,13 +156,13 @@ def _late(rules: Rules, assignment: str, student: Student, when: datetime) -> st
 
 
 def _time(
-    said: str, zone: ZoneInfo, chosen: Counted, all: Sequence[Attempt]
+    said: str, when: datetime | None, zone: ZoneInfo, chosen: Counted, all: Sequence[Attempt]
 ) -> datetime | str | None:
     """The time of the attempt that counts; or why the worksheet gives none, and what to do.
 
-    None if the same file was handed in again: the worksheet knows only when that was.
+    None if the same file was probably handed in again: the worksheet knows only when that was.
     """
-    when, first = read_time(said, zone), chosen.first.when
+    first = chosen.first.when
     others = [x.when for one in all if one is not chosen.attempt for x in one.hand_ins]
     earlier = max((x for x in others if x < first), default=None)
     if when is None:
