@@ -23,6 +23,7 @@ from .gaps import (
     changed_since,
     first_error,
     how_to_restore,
+    misnamed,
     review_texts,
     undefined_names,
     unreadable,
@@ -218,9 +219,10 @@ def _review(cells: list[dict[str, Any]], question: str, name: str) -> tuple[list
             if magic
             else f"the cell of {question} is not code any more; click on it, press Esc and then Y"
             if any(cell["cell_type"] != "code" for cell in homes)
-            else f"no cell defines {question}. {how_to_restore(name)}"
+            else misnamed(homes, question)
+            or f"no cell defines {question}. {how_to_restore(name)}"
         )
-    for each in (question, check_id(question)):
+    for each in (question, check_id(question))[bool(problems) :]:
         if not ids[each]:
             notes.append(f"the cell of {each} is gone or damaged; it is marked all the same")
         elif ids[each] > 1:

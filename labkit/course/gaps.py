@@ -101,6 +101,16 @@ def _shown(text: str, most: int) -> str:
     return textwrap.shorten(text, most, placeholder=" ...")
 
 
+def misnamed(homes: Iterable[dict[str, Any]], question: str) -> str:
+    """A sentence if a question's own cells hold code that does not define it, else ""."""
+    sources = [cell["source"] for cell in homes]
+    found = [name for x in sources for name in analyse(x)["functions"] or sorted(defined_in(x))]
+    if not found and not any(analyse(x)["broken"] for x in sources):
+        return ""
+    but = f", but {', '.join(found)}" if found else ""
+    return f"the cell of {question} does not define {question}{but}; write the name as in the task"
+
+
 def how_to_restore(name: str) -> str:
     """How to restore a cell of a notebook."""
     return (

@@ -204,6 +204,29 @@ def test_missing_and_doubled_cells_are_named(folder):
     assert any("there are 2 cells of circle" in text for text in problems)
 
 
+@pytest.mark.parametrize("name", ["circle", "twice_the_time"])
+def test_an_answer_that_is_gone_is_not_said_to_be_marked(folder, name):
+    """An answer that no cell defines earns nothing, so no note says that it counts."""
+
+    def change(cells):
+        return [c for c in cells if c["metadata"].get("nbgrader", {}).get("grade_id") != name]
+
+    found = examine(edited(folder / "01_paths.ipynb", change))
+    assert found.problems[0].startswith(f"no cell defines {name}. To restore its cell")
+    assert not any("marked all the same" in note for note in found.notes)
+
+
+@pytest.mark.parametrize(
+    ("source", "but"),
+    [("def cirkle(*a): return 1", ", but cirkle"), ("cirkle = 1", ", but cirkle"), ("de f", "")],
+)
+def test_an_answer_under_another_name_is_told_the_name(folder, source, but):
+    """A fresh copy does not help where the cell is there and only its name is wrong."""
+    says = f"the cell of circle does not define circle{but}; write the name as in the task"
+    assert answered(folder, "circle", source).problems[0] == says
+    assert answered(folder, "circle", "").problems[0].startswith("no cell defines circle")
+
+
 def test_a_given_cell_that_is_gone_and_an_error_are_named(folder):
     """Names that later cells need and no cell defines, and the first error, are to be corrected."""
 
