@@ -70,7 +70,7 @@ class HandIn:
         lines += [f"[note] {text}" for text in self.notes]
         lines += [f"  {line}" for line in self.lines]
         for name, n in self.texts.items():
-            said = f"{words_in_all(n)}; your instructor will read it" if n else "not written"
+            said = f"{words_in_all(n)}; your instructor may read it" if n else "not written"
             lines.append(f"  {name}: {said}")
         right = {name for name, v in self.verdicts.items() if v is not None and v.right}
         tasks = self.verdicts.keys() - set(self.predictions)

@@ -145,7 +145,7 @@ def review_texts(
             if most and words > int(most[1]):
                 notes.append(f"{has}; it may have at most {most[1]}")
         if len(found) > 1:
-            notes.append(f"there are {len(found)} cells of {text}; all of them will be read")
+            notes.append(f"there are {len(found)} cells of {text}; all of them count")
     return texts, problems, notes
 
 

@@ -320,7 +320,7 @@ def test_a_text_is_found_where_the_grader_finds_it(folder, metadata, more, words
 
     found = examine(edited(folder / "01_paths.ipynb", change))
     assert not found.problems and found.texts == {"why_twice_the_time": words}
-    twice = "there are 2 cells of why_twice_the_time; all of them will be read"
+    twice = "there are 2 cells of why_twice_the_time; all of them count"
     assert (twice in found.notes) == bool(more)
 
 
@@ -400,7 +400,7 @@ def test_words_of_a_text_are_counted_without_the_placeholder(folder):
     found = with_texts_of(folder, 30)
     assert "will earn nothing" not in str(found)
     assert all(
-        f"  {name}: 30 words; your instructor will read it" in str(found) for name in found.texts
+        f"  {name}: 30 words; your instructor may read it" in str(found) for name in found.texts
     )
     assert "at most" not in str(found)
 
