@@ -19,6 +19,11 @@ _OWN_ARM = {"my_arm", "my_bug"}
 """Functions that the grader does not run."""
 
 
+def _code(cells: Iterable[dict[str, Any]]) -> list[dict[str, Any]]:
+    """The cells of code, but no text that became code, which `review_texts` reports."""
+    return [cell for cell in cells if cell["cell_type"] == "code" and kind(cell) != "why"]
+
+
 def undefined_names(cells: list[dict[str, Any]], asked: Collection[str]) -> Iterator[str]:
     """A sentence for each cell that uses names which no cell defines.
 
@@ -26,7 +31,7 @@ def undefined_names(cells: list[dict[str, Any]], asked: Collection[str]) -> Iter
         cells: The cells of the notebook.
         asked: Names of the questions, which are reported elsewhere.
     """
-    code = [cell["source"] for cell in cells if cell["cell_type"] == "code"]
+    code = [cell["source"] for cell in _code(cells)]
     defined = _KNOWN.union(asked, *map(defined_in, code))
     if "*" in defined:  # an import of everything may define any name
         return
@@ -43,8 +48,8 @@ def undefined_names(cells: list[dict[str, Any]], asked: Collection[str]) -> Iter
 
 def unreadable(cells: list[dict[str, Any]]) -> Iterator[str]:
     """A sentence for each code cell that Python cannot read."""
-    for cell in cells:
-        if cell["cell_type"] == "code" and (broken := analyse(cell["source"])["broken"]):
+    for cell in _code(cells):
+        if broken := analyse(cell["source"])["broken"]:
             yield (
                 f"Python cannot read the cell that begins with `{_first_line(cell['source'])}` "
                 f"({_shown(broken, 120)}), so what it defines earns nothing; correct it, run all "
@@ -77,7 +82,7 @@ def calculated_from_runs(sources: Iterable[str], question: str) -> str:
 
 def first_error(cells: list[dict[str, Any]]) -> str:
     """A sentence about the first cell that ended with an error, or ""."""
-    for cell in cells:
+    for cell in _code(cells):
         outputs = cell.get("outputs")
         for output in outputs if isinstance(outputs, list) else ():
             failed = isinstance(output, dict) and output.get("output_type") == "error"
@@ -144,6 +149,11 @@ def review_texts(
             most = re.search(r"(\d+) words", cells[cells.index(found[0]) - 1]["source"])
             if most and words > int(most[1]):
                 notes.append(f"{has}; it may have at most {most[1]}")
+        if any(cell["cell_type"] == "code" for cell in found):
+            problems.append(
+                f"the cell of {text} is code now, so Run All Cells stops there; click on it, press "
+                "Esc and then M (its text counts all the same)"
+            )
         if len(found) > 1:
             notes.append(f"there are {len(found)} cells of {text}; all of them count")
     return texts, problems, notes

@@ -277,6 +277,21 @@ def test_an_answer_turned_into_text_is_told_how_to_turn_it_back(folder):
     assert any("press Esc and then Y" in text for text in problems)
 
 
+@pytest.mark.parametrize("text", ["Gravity pulls.", "gravity", "word " * 30])
+def test_a_text_turned_into_code_is_told_how_to_turn_it_back(folder, text):
+    """Nobody is asked to correct the syntax of prose, or to define its words."""
+
+    def change(cells):
+        (why,) = (cell for cell in cells if cell["metadata"].get("lab") == "why")
+        error = {"output_type": "error", "ename": "NameError", "evalue": "no gravity"}
+        why |= {"cell_type": "code", "source": text, "outputs": [error]}
+        return cells
+
+    (problem,) = examine(edited(folder / "01_paths.ipynb", change)).problems
+    assert "the cell of why_twice_the_time is code now" in problem
+    assert "press Esc and then M (its text counts" in problem
+
+
 def with_texts_of(folder, words, word="word "):
     """The look at a notebook in which each text has so many words."""
 
