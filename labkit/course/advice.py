@@ -77,8 +77,8 @@ def remedy(error: BaseException) -> str:
 def _unknown(error: NameError) -> str:
     """The import that an unknown name needs, else a name in NumPy or a similar one, or ""."""
     name = str(error.name or "")
-    if name in _IMPORTS:
-        return f"to use it, begin the cell with `{_IMPORTS[name]}`"
+    if name in IMPORTS:
+        return f"to use it, begin the cell with `{IMPORTS[name]}`"
     in_numpy = [f"np.{name}"] if hasattr(np, name) else []
     frames = [frame for frame, _ in walk_tb(error.__traceback__)][-1:]
     own = [x for frame in frames for x in (*frame.f_locals, *frame.f_globals)]
@@ -106,7 +106,7 @@ def _unequal(text: str, line: str) -> str:
     return f"{says}; use @ to multiply matrices" if fits and "@" not in line else says
 
 
-_IMPORTS = {
+IMPORTS = {
     line.split()[-1]: line
     for line in (
         "import math", "import numpy as np", "import numpy", "import scipy", "import control",

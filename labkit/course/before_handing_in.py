@@ -219,8 +219,7 @@ def _review(cells: list[dict[str, Any]], question: str, name: str) -> tuple[list
             if magic
             else f"the cell of {question} is not code any more; click on it, press Esc and then Y"
             if any(cell["cell_type"] != "code" for cell in homes)
-            else misnamed(homes, question)
-            or f"no cell defines {question}. {how_to_restore(name)}"
+            else misnamed(homes, question) or f"no cell defines {question}. {how_to_restore(name)}"
         )
     for each in (question, check_id(question))[bool(problems) :]:
         if not ids[each]:

@@ -8,6 +8,9 @@ import textwrap
 from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from typing import Any
 
+import numpy as np
+
+from .advice import IMPORTS
 from .brief import WORDS, words_in_all, words_of
 from .notebook import cells_made_for, checks, defines, grade_id, kind
 from .source import analyse
@@ -41,9 +44,20 @@ def undefined_names(cells: list[dict[str, Any]], asked: Collection[str]) -> Iter
         if names:
             yield (
                 f"no cell defines {' or '.join(names)}, which the cell that begins with "
-                f"`{_first_line(source)}` uses; if you deleted a cell, copy it from a fresh "
-                "copy of the notebook, which is in the zip that you were given"
+                f"`{_first_line(source)}` uses; {'; '.join(dict.fromkeys(map(_todo, names)))}"
             )
+
+
+def _todo(name: str) -> str:
+    """What to do about a name that no cell defines."""
+    if name in IMPORTS:
+        return f"to use {name}, begin the cell with `{IMPORTS[name]}`"
+    if hasattr(np, name):
+        return f"if you mean NumPy's {name}, write np.{name}"
+    return (
+        "if you deleted a cell, copy it from a fresh copy of the notebook, which is in the zip "
+        "that you were given"
+    )
 
 
 def unreadable(cells: list[dict[str, Any]]) -> Iterator[str]:

@@ -240,6 +240,22 @@ def test_a_given_cell_that_is_gone_and_an_error_are_named(folder):
     assert any("ended with an error (NameError: no lk)" in text for text in problems)
 
 
+@pytest.mark.parametrize(
+    ("uses", "todo"),
+    [
+        ("math.pi", "uses; to use math, begin the cell with `import math`"),
+        ("sqrt(2)", "uses; if you mean NumPy's sqrt, write np.sqrt"),
+        ("gone(2)", "uses; if you deleted a cell, copy it from a fresh copy of the notebook, "
+         "which is in the zip that you were given"),
+    ],
+)  # fmt: skip
+def test_a_forgotten_import_is_no_deleted_cell(folder, uses, todo):
+    """A name that a module or NumPy has is told with its import, any other with a fresh copy."""
+    found = answered(folder, "circle", f"def circle(*a): return {uses}")
+    (problem,) = found.problems
+    assert problem.endswith(todo)
+
+
 def test_a_cell_that_python_cannot_read_is_to_be_mended(folder):
     """What was right when it ran earns nothing once a colon is lost, so the check's word is old."""
     ran = [output("circle", Outcome.RIGHT, 4.0, complete=False)]
