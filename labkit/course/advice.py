@@ -17,7 +17,9 @@ from ..control import State
 from ..trajectory import PoseSample, Sample
 
 _MINE = str(Path(__file__).parents[1])
-_LIBRARIES = tuple({_MINE, *(sysconfig.get_path(p) for p in ("stdlib", "purelib", "platlib"))})
+_PACKAGES = {str(Path(np.__file__).parents[1]), *map(sysconfig.get_path, ("purelib", "platlib"))}
+"""Folders of packages; an environment may take NumPy from another one than its own."""
+_LIBRARIES = (_MINE, sysconfig.get_path("stdlib"), *_PACKAGES)
 
 
 def in_labkit(file: str) -> bool:
@@ -57,7 +59,7 @@ def remedy(error: BaseException) -> str:
     if isinstance(error, AttributeError) and isinstance(error.obj, State | Sample | PoseSample):
         return f"it has {', '.join(error.obj._fields)}"
     if isinstance(error, AttributeError) and text.endswith("'"):  # numpy may give its own advice
-        return _did_you_mean(_near(str(error.name or ""), dir(error.obj)))
+        return _did_you_mean(_near(str(error.name or ""), dir(error.obj), 0.76))
     if isinstance(error, TypeError) and (kinds := re.search("'(State|Sample|PoseSample)'", text)):
         return f"did you mean {_ARRAYS[kinds[1]]}?"
     if "read-only" in text:
@@ -75,8 +77,8 @@ def remedy(error: BaseException) -> str:
 def _unknown(error: NameError) -> str:
     """The import that an unknown name needs, else a name in NumPy or a similar one, or ""."""
     name = str(error.name or "")
-    if name in _IMPORTS:
-        return f"to use it, begin the cell with `{_IMPORTS[name]}`"
+    if name in IMPORTS:
+        return f"to use it, begin the cell with `{IMPORTS[name]}`"
     in_numpy = [f"np.{name}"] if hasattr(np, name) else []
     frames = [frame for frame, _ in walk_tb(error.__traceback__)][-1:]
     own = [x for frame in frames for x in (*frame.f_locals, *frame.f_globals)]
@@ -104,7 +106,7 @@ def _unequal(text: str, line: str) -> str:
     return f"{says}; use @ to multiply matrices" if fits and "@" not in line else says
 
 
-_IMPORTS = {
+IMPORTS = {
     line.split()[-1]: line
     for line in (
         "import math", "import numpy as np", "import numpy", "import scipy", "import control",

@@ -23,6 +23,7 @@ from .gaps import (
     changed_since,
     first_error,
     how_to_restore,
+    misnamed,
     review_texts,
     undefined_names,
     unreadable,
@@ -69,7 +70,7 @@ class HandIn:
         lines += [f"[note] {text}" for text in self.notes]
         lines += [f"  {line}" for line in self.lines]
         for name, n in self.texts.items():
-            said = f"{words_in_all(n)}; your instructor will read it" if n else "not written"
+            said = f"{words_in_all(n)}; your instructor may read it" if n else "not written"
             lines.append(f"  {name}: {said}")
         right = {name for name, v in self.verdicts.items() if v is not None and v.right}
         tasks = self.verdicts.keys() - set(self.predictions)
@@ -218,9 +219,9 @@ def _review(cells: list[dict[str, Any]], question: str, name: str) -> tuple[list
             if magic
             else f"the cell of {question} is not code any more; click on it, press Esc and then Y"
             if any(cell["cell_type"] != "code" for cell in homes)
-            else f"no cell defines {question}. {how_to_restore(name)}"
+            else misnamed(homes, question) or f"no cell defines {question}. {how_to_restore(name)}"
         )
-    for each in (question, check_id(question)):
+    for each in (question, check_id(question))[bool(problems) :]:
         if not ids[each]:
             notes.append(f"the cell of {each} is gone or damaged; it is marked all the same")
         elif ids[each] > 1:

@@ -8,6 +8,9 @@ import textwrap
 from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from typing import Any
 
+import numpy as np
+
+from .advice import IMPORTS
 from .brief import WORDS, words_in_all, words_of
 from .notebook import cells_made_for, checks, defines, grade_id, kind
 from .source import analyse
@@ -19,6 +22,11 @@ _OWN_ARM = {"my_arm", "my_bug"}
 """Functions that the grader does not run."""
 
 
+def _code(cells: Iterable[dict[str, Any]]) -> list[dict[str, Any]]:
+    """The cells of code, but no text that became code, which `review_texts` reports."""
+    return [cell for cell in cells if cell["cell_type"] == "code" and kind(cell) != "why"]
+
+
 def undefined_names(cells: list[dict[str, Any]], asked: Collection[str]) -> Iterator[str]:
     """A sentence for each cell that uses names which no cell defines.
 
@@ -26,7 +34,7 @@ def undefined_names(cells: list[dict[str, Any]], asked: Collection[str]) -> Iter
         cells: The cells of the notebook.
         asked: Names of the questions, which are reported elsewhere.
     """
-    code = [cell["source"] for cell in cells if cell["cell_type"] == "code"]
+    code = [cell["source"] for cell in _code(cells)]
     defined = _KNOWN.union(asked, *map(defined_in, code))
     if "*" in defined:  # an import of everything may define any name
         return
@@ -36,15 +44,26 @@ def undefined_names(cells: list[dict[str, Any]], asked: Collection[str]) -> Iter
         if names:
             yield (
                 f"no cell defines {' or '.join(names)}, which the cell that begins with "
-                f"`{_first_line(source)}` uses; if you deleted a cell, copy it from a fresh "
-                "copy of the notebook, which is in the zip that you were given"
+                f"`{_first_line(source)}` uses; {'; '.join(dict.fromkeys(map(_todo, names)))}"
             )
+
+
+def _todo(name: str) -> str:
+    """What to do about a name that no cell defines."""
+    if name in IMPORTS:
+        return f"to use {name}, begin the cell with `{IMPORTS[name]}`"
+    if hasattr(np, name):
+        return f"if you mean NumPy's {name}, write np.{name}"
+    return (
+        "if you deleted a cell, copy it from a fresh copy of the notebook, which is in the zip "
+        "that you were given"
+    )
 
 
 def unreadable(cells: list[dict[str, Any]]) -> Iterator[str]:
     """A sentence for each code cell that Python cannot read."""
-    for cell in cells:
-        if cell["cell_type"] == "code" and (broken := analyse(cell["source"])["broken"]):
+    for cell in _code(cells):
+        if broken := analyse(cell["source"])["broken"]:
             yield (
                 f"Python cannot read the cell that begins with `{_first_line(cell['source'])}` "
                 f"({_shown(broken, 120)}), so what it defines earns nothing; correct it, run all "
@@ -77,7 +96,7 @@ def calculated_from_runs(sources: Iterable[str], question: str) -> str:
 
 def first_error(cells: list[dict[str, Any]]) -> str:
     """A sentence about the first cell that ended with an error, or ""."""
-    for cell in cells:
+    for cell in _code(cells):
         outputs = cell.get("outputs")
         for output in outputs if isinstance(outputs, list) else ():
             failed = isinstance(output, dict) and output.get("output_type") == "error"
@@ -99,6 +118,16 @@ def _shown(text: str, most: int) -> str:
     """The text as one line of at most `most` printable characters."""
     text = "".join(x if x.isprintable() else " " for x in text)
     return textwrap.shorten(text, most, placeholder=" ...")
+
+
+def misnamed(homes: Iterable[dict[str, Any]], question: str) -> str:
+    """A sentence if a question's own cells hold code that does not define it, else ""."""
+    sources = [cell["source"] for cell in homes]
+    found = [name for x in sources for name in analyse(x)["functions"] or sorted(defined_in(x))]
+    if not found and not any(analyse(x)["broken"] for x in sources):
+        return ""
+    but = f", but {', '.join(found)}" if found else ""
+    return f"the cell of {question} does not define {question}{but}; write the name as in the task"
 
 
 def how_to_restore(name: str) -> str:
@@ -134,8 +163,13 @@ def review_texts(
             most = re.search(r"(\d+) words", cells[cells.index(found[0]) - 1]["source"])
             if most and words > int(most[1]):
                 notes.append(f"{has}; it may have at most {most[1]}")
+        if any(cell["cell_type"] == "code" for cell in found):
+            problems.append(
+                f"the cell of {text} is code now, so Run All Cells stops there; click on it, press "
+                "Esc and then M (its text counts all the same)"
+            )
         if len(found) > 1:
-            notes.append(f"there are {len(found)} cells of {text}; all of them will be read")
+            notes.append(f"there are {len(found)} cells of {text}; all of them count")
     return texts, problems, notes
 
 

@@ -31,7 +31,7 @@ def merge(mine: Cells, new: Cells) -> Cells:
         defines, else by the question for which its cell was made.  A cell that the student added
         follows the same cell as before.  Any other cell that the student changed keeps their text
         if the new release did not change it; else their text follows the new one as a comment,
-        below `KEPT_TEXT`.
+        below `KEPT_TEXT`, as does an answer that another cell replaced.
 
     Raises:
         LabkitError: The new notebook is not a release, or none of the student's cells answers any
@@ -58,7 +58,9 @@ def merge(mine: Cells, new: Cells) -> Cells:
         place = home(cell)
         anchor = anchor if place is None else place
         own = _is_own(cell, new)
-        if cell["source"].strip() in given or not (own or is_edited(cell)):
+        replaced = kind(cell) == "answer" and cell["source"] not in answers
+        lost = replaced and not _is_unwritten(cell["source"])
+        if cell["source"].strip() in given or not (own or lost or is_edited(cell)):
             continue
         if place is not None and _may_replace(merged[place], cell):
             merged[place]["source"] = cell["source"]

@@ -204,6 +204,29 @@ def test_missing_and_doubled_cells_are_named(folder):
     assert any("there are 2 cells of circle" in text for text in problems)
 
 
+@pytest.mark.parametrize("name", ["circle", "twice_the_time"])
+def test_an_answer_that_is_gone_is_not_said_to_be_marked(folder, name):
+    """An answer that no cell defines earns nothing, so no note says that it counts."""
+
+    def change(cells):
+        return [c for c in cells if c["metadata"].get("nbgrader", {}).get("grade_id") != name]
+
+    found = examine(edited(folder / "01_paths.ipynb", change))
+    assert found.problems[0].startswith(f"no cell defines {name}. To restore its cell")
+    assert not any("marked all the same" in note for note in found.notes)
+
+
+@pytest.mark.parametrize(
+    ("source", "but"),
+    [("def cirkle(*a): return 1", ", but cirkle"), ("cirkle = 1", ", but cirkle"), ("de f", "")],
+)
+def test_an_answer_under_another_name_is_told_the_name(folder, source, but):
+    """A fresh copy does not help where the cell is there and only its name is wrong."""
+    says = f"the cell of circle does not define circle{but}; write the name as in the task"
+    assert answered(folder, "circle", source).problems[0] == says
+    assert answered(folder, "circle", "").problems[0].startswith("no cell defines circle")
+
+
 def test_a_given_cell_that_is_gone_and_an_error_are_named(folder):
     """Names that later cells need and no cell defines, and the first error, are to be corrected."""
 
@@ -215,6 +238,22 @@ def test_a_given_cell_that_is_gone_and_an_error_are_named(folder):
     problems = examine(edited(folder / "01_paths.ipynb", change)).problems
     assert any(text.startswith("no cell defines") and "lk" in text for text in problems)
     assert any("ended with an error (NameError: no lk)" in text for text in problems)
+
+
+@pytest.mark.parametrize(
+    ("uses", "todo"),
+    [
+        ("math.pi", "uses; to use math, begin the cell with `import math`"),
+        ("sqrt(2)", "uses; if you mean NumPy's sqrt, write np.sqrt"),
+        ("gone(2)", "uses; if you deleted a cell, copy it from a fresh copy of the notebook, "
+         "which is in the zip that you were given"),
+    ],
+)  # fmt: skip
+def test_a_forgotten_import_is_no_deleted_cell(folder, uses, todo):
+    """A name that a module or NumPy has is told with its import, any other with a fresh copy."""
+    found = answered(folder, "circle", f"def circle(*a): return {uses}")
+    (problem,) = found.problems
+    assert problem.endswith(todo)
 
 
 def test_a_cell_that_python_cannot_read_is_to_be_mended(folder):
@@ -252,6 +291,21 @@ def test_an_answer_turned_into_text_is_told_how_to_turn_it_back(folder):
 
     problems = examine(edited(folder / "01_paths.ipynb", change)).problems
     assert any("press Esc and then Y" in text for text in problems)
+
+
+@pytest.mark.parametrize("text", ["Gravity pulls.", "gravity", "word " * 30])
+def test_a_text_turned_into_code_is_told_how_to_turn_it_back(folder, text):
+    """Nobody is asked to correct the syntax of prose, or to define its words."""
+
+    def change(cells):
+        (why,) = (cell for cell in cells if cell["metadata"].get("lab") == "why")
+        error = {"output_type": "error", "ename": "NameError", "evalue": "no gravity"}
+        why |= {"cell_type": "code", "source": text, "outputs": [error]}
+        return cells
+
+    (problem,) = examine(edited(folder / "01_paths.ipynb", change)).problems
+    assert "the cell of why_twice_the_time is code now" in problem
+    assert "press Esc and then M (its text counts" in problem
 
 
 def with_texts_of(folder, words, word="word "):
@@ -297,7 +351,7 @@ def test_a_text_is_found_where_the_grader_finds_it(folder, metadata, more, words
 
     found = examine(edited(folder / "01_paths.ipynb", change))
     assert not found.problems and found.texts == {"why_twice_the_time": words}
-    twice = "there are 2 cells of why_twice_the_time; all of them will be read"
+    twice = "there are 2 cells of why_twice_the_time; all of them count"
     assert (twice in found.notes) == bool(more)
 
 
@@ -377,7 +431,7 @@ def test_words_of_a_text_are_counted_without_the_placeholder(folder):
     found = with_texts_of(folder, 30)
     assert "will earn nothing" not in str(found)
     assert all(
-        f"  {name}: 30 words; your instructor will read it" in str(found) for name in found.texts
+        f"  {name}: 30 words; your instructor may read it" in str(found) for name in found.texts
     )
     assert "at most" not in str(found)
 

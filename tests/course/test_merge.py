@@ -84,6 +84,20 @@ def test_merging_keeps_an_answer_whatever_stands_around_it(folder):
     assert cell["source"] in [c["source"] for c in merge(mine, new)], "though Python cannot read it"
 
 
+def test_an_answer_that_another_cell_replaced_stays_as_a_comment(folder):
+    """Only the last of two answers counts, and the one before it is not lost."""
+    new = read_cells(folder / "01_paths.ipynb")
+    mine = copy.deepcopy(new)
+    at = next(k for k, c in enumerate(mine) if c["source"].startswith("def witness"))
+    stub = mine[at]
+    good, last = (f"def witness(theta, duration):\n    return {x}" for x in ("duration", None))
+    mine[at : at + 1] = [dict(stub, source=good), dict(stub, source=last), stub]
+    merged = merge(mine, new)
+    assert merged[at]["source"] == last
+    assert merged[at + 1]["source"].startswith(f"# {KEPT_TEXT}\n# def witness(theta, duration)")
+    assert merged[: at + 1] + merged[at + 2 :] == [*new[:at], merged[at], *new[at + 1 :]]
+
+
 def test_a_stub_below_a_magic_is_still_a_stub(folder):
     """A magic above an empty stub does not make an answer; above an answer it goes with it."""
     new = read_cells(folder / "01_paths.ipynb")

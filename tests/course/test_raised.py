@@ -1,5 +1,9 @@
 """Exceptions in words: the line they came from and what to do about them."""
 
+import subprocess
+import sys
+from pathlib import Path
+
 import numpy as np
 import pytest
 from scipy.optimize import brentq
@@ -39,6 +43,7 @@ def misspells(angles=None):
         (lambda angles=None: angle, "did you mean angles or np.angle?"),  # noqa: F821
         (writes, "make a new array"),
         (lambda: np.zeross(3), "did you mean zeros?"),
+        (lambda: np.sqr(2.0), "did you mean sqrt?"),
         (lambda: FIXED.shap, "did you mean shape?"),
         (lambda: 2.0 ^ 2, "a power is written with **"),
         (lambda: FIXED ^ 2, "a power is written with **"),
@@ -71,9 +76,12 @@ def test_a_usual_slip_has_a_way_out(does, remedy):
     assert remedy in full_description(caught.value).replace(line, "")
 
 
-@pytest.mark.parametrize("does", [lambda: opt, lambda: stat])  # noqa: F821
-def test_a_builtin_is_suggested_only_if_it_is_very_close(does):
-    """What the course does not define is more often a forgotten import than a misspelt `oct`."""
+@pytest.mark.parametrize(
+    "does",
+    [lambda: opt, lambda: stat, lambda: np.cosinus(1.0), lambda: np.linalg.cos(1.0)],  # noqa: F821
+)
+def test_a_name_is_suggested_only_if_it_is_close(does):
+    """A forgotten import is no misspelt `oct`, and a cosine no cross product."""
     assert "did you mean" not in reply(does, (), {})["says"]
 
 
@@ -123,3 +131,16 @@ def test_the_line_is_the_students():
     with pytest.raises(lk.LabkitError) as caught:
         lk.JointVelocity(np.zeros((3, 1)))
     assert "in the line `lk.JointVelocity(np.zeros((3, 1)))`" in full_description(caught.value)
+
+
+def test_no_line_of_numpy_is_quoted_wherever_numpy_is_installed(tmp_path):
+    """An environment may take its packages from a folder that is not its own."""
+    (tmp_path / "packages").symlink_to(Path(np.__file__).parents[1])
+    script = tmp_path / "script.py"
+    script.write_text(
+        f"import sys\nsys.path.insert(0, {str(tmp_path / 'packages')!r})\nimport numpy as np\n"
+        "from labkit.course.advice import line_of\n"
+        "try:\n    np.sqr(2.0)\nexcept AttributeError as error:\n    print(line_of(error))\n"
+    )
+    ran = subprocess.run([sys.executable, script], capture_output=True, text=True, check=True)
+    assert ran.stdout == "np.sqr(2.0)\n"
