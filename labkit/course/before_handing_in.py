@@ -221,7 +221,8 @@ def _review(cells: list[dict[str, Any]], question: str, name: str) -> tuple[list
             if any(cell["cell_type"] != "code" for cell in homes)
             else misnamed(homes, question) or f"no cell defines {question}. {how_to_restore(name)}"
         )
-    for each in (question, check_id(question))[bool(problems) :]:
+    others = [] if problems else [question]  # a problem says already that this cell is gone
+    for each in (*others, check_id(question)):
         if not ids[each]:
             notes.append(f"the cell of {each} is gone or damaged; it is marked all the same")
         elif ids[each] > 1:

@@ -98,7 +98,7 @@ def test_a_time_that_was_wrong_is_named_and_can_be_taken_back(bare, tmp_path, ca
     worksheet(bare, tmp_path, capsys, IN_TIME)
     (bare.root / "course.toml").write_text(f"[assignments.{NAME}]\ndue = 2026-03-02T12:00:00Z\n")
     late = "Wednesday, 4 March 2026, 11:30 AM"
-    code, out, err = worksheet(bare, tmp_path, capsys, late)
+    code, _, err = worksheet(bare, tmp_path, capsys, late)
     (record,) = (bare.root / "attempts" / "Ada-Lovelace" / NAME).glob("*/attempt.json")
     assert (code, handed_in(bare)) == (1, "01 11:30")
     assert "the hand-in time stays 2026-03-01 11:30 UTC, and the worksheet now says" in err

@@ -18,8 +18,8 @@ def about_encoding(file: Path, students: Iterable[Student]) -> Iterator[str]:
     if names and encoding_of(file.read_bytes()) == GUESS:
         yield (
             f"{file} is not in UTF-8, and was read as Windows-1252; check these names: "
-            f"{few([*names])}. If one is wrong, save the list in UTF-8, delete students who are new "
-            f"from {FILE} before any of their work is collected, and import the list again"
+            f"{few([*names])}. If one is wrong, save the list in UTF-8, delete students who are "
+            f"new from {FILE} before any of their work is collected, and import the list again"
         )
 
 
