@@ -108,8 +108,8 @@ def import_list(
             peer review, such as ``08_report_review``.
 
     Returns:
-        Two lists of sentences: on what was done, and on what a person should look at, such as one
-        student's work in two folders or hand-in times that are not set.
+        Two lists of sentences. The first says what was done; the second, what a person should look
+        at, such as one student's work in two folders or hand-in times that are not set.
 
     Raises:
         LabkitError: The list contradicts the roster or itself, the file is not a list, or it is the
