@@ -135,7 +135,8 @@ def how_to_restore(name: str) -> str:
     return (
         "To restore its cell, put a fresh copy of the notebook into a folder `fresh` beside this "
         f"file, and run in a new cell: !labkit merge {name}.ipynb fresh/{name}.ipynb --to "
-        f"again.ipynb (again.ipynb then holds all your work; call it {name}.ipynb)"
+        "again.ipynb (again.ipynb then has the cell and the rest of your work; call it "
+        f"{name}.ipynb, and write what the cell lacks, or move it there)"
     )
 
 
