@@ -82,6 +82,8 @@ class HandIn:
             committed = len(right & set(self.predictions))
             counts.append(f"{committed} of {len(self.predictions)} predictions were committed")
         ran = f"; in its last run, {', and '.join(counts)}" if counts else ""
+        if self.verdicts and not any(self.verdicts.values()):
+            ran = "; none of its checks was run"
         end = (
             "correct what is marked with [fix] first."
             if self.problems
@@ -224,7 +226,10 @@ def _review(cells: list[dict[str, Any]], question: str, name: str) -> tuple[list
     others = [] if problems else [question]  # a problem says already that this cell is gone
     for each in (*others, check_id(question)):
         if not ids[each]:
-            notes.append(f"the cell of {each} is gone or damaged; it is marked all the same")
+            notes.append(
+                f"the cell of {each} is gone or damaged; labkit merge restores it, but {question} "
+                "is marked all the same"
+            )
         elif ids[each] > 1:
             problems.append(
                 f"there are {ids[each]} cells of {each}; keep one, because only the last one counts"

@@ -111,8 +111,8 @@ def merge(mine: Path, new: Path, to: Path) -> int:
     )
     if any(KEPT_TEXT in cell["source"] for cell in notebook["cells"]):
         print(
-            "where the new release changed a cell that you may have changed too, your text is "
-            f"below this line: {KEPT_TEXT}"
+            "what you wrote and the new release has no place for is in cells of its own, below "
+            f"this line: {KEPT_TEXT}"
         )
     return 0
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import builtins
+import itertools
 import re
 import textwrap
 from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
@@ -12,7 +13,7 @@ import numpy as np
 
 from .advice import IMPORTS
 from .brief import WORDS, words_in_all, words_of
-from .notebook import cells_made_for, checks, defines, grade_id, kind
+from .notebook import cells_made_for, checks, defines, grade_id, kind, released
 from .source import analyse
 from .unfinished import defined_in
 
@@ -154,10 +155,16 @@ def review_texts(
     named = {grade_id(cell): "" for cell in cells if kind(cell) == "why" and grade_id(cell)}
     for text, home in (asked or named).items():
         found = cells_made_for(cells, text, home)
-        words = texts[text] = len(words_of("\n\n".join({cell["source"]: 0 for cell in found})))
+        words = texts[text] = len(words_of("\n\n".join(dict.fromkeys(x["source"] for x in found))))
         has = f"{text} has {words_in_all(words)}"
         if not found:
             problems.append(f"no cell holds the text {text}. {how_to_restore(name)}")
+        elif not words and (loose := _loose_text(cells, found[0])):
+            problems.append(
+                f"the cell of {text} is empty, but the text that begins with "
+                f"`{_first_line(loose)}` is beside it; only the cell of {text} is read, so cut the "
+                "text out and paste it into that cell"
+            )
         elif words < WORDS[0]:
             notes.append(f"{has}; it needs at least {WORDS[0]}")
         else:
@@ -172,6 +179,16 @@ def review_texts(
         if len(found) > 1:
             notes.append(f"there are {len(found)} cells of {text}; all of them count")
     return texts, problems, notes
+
+
+def _loose_text(cells: Sequence[dict[str, Any]], home: dict[str, Any]) -> str:
+    """A text as long as a why in a cell that belongs to no release, beside the cell made for it."""
+    at = cells.index(home)
+    for side in (reversed(cells[:at]), cells[at + 1 :]):
+        for cell in itertools.takewhile(lambda x: not (grade_id(x) or released(x)), side):
+            if cell["cell_type"] == "markdown" and len(words_of(cell["source"])) >= WORDS[0]:
+                return str(cell["source"])
+    return ""
 
 
 def changed_since(cells: list[dict[str, Any]], question: str) -> bool:

@@ -49,8 +49,8 @@ def test_an_untouched_notebook_is_whole_and_not_run(folder):
     assert set(found.verdicts.values()) == {None}
     assert "  bang_bang: not run" in str(found).splitlines()
     assert str(found).endswith(
-        "0 of 6 tasks were right, as far as can be tested here, and 0 of 2 predictions were "
-        "committed. Without a text, why_twice_the_time will earn nothing."
+        "can be handed in as it is; none of its checks was run. Without a text, "
+        "why_twice_the_time will earn nothing."
     )
 
 
@@ -335,6 +335,29 @@ def test_a_text_that_is_gone_is_to_be_mended(tmp_path, name):
     assert all(f"  {text}: not written" in str(found) for text in asked)
     edited(path, lambda _: merge(read_cells(path), read_cells(fresh)))
     assert not examine(path).problems and examine(path).texts.keys() == asked
+
+
+def test_a_text_beside_its_empty_cell_is_to_be_moved(folder):
+    """Where a text lost its name and its id, merging keeps it beside the empty cell made for it."""
+    path = folder / "01_paths.ipynb"
+
+    def pasted(cells):
+        (text,) = (cell for cell in cells if cell["metadata"].get("lab") == "why")
+        text |= {"source": "word " * 30, "metadata": {}, "id": "0badcafe"}
+        return cells
+
+    (problem,) = examine(edited(path, pasted)).problems
+    assert problem.startswith("no cell holds the text why_twice_the_time. To restore its cell")
+    fresh = read_cells(ASSIGNMENT / "01_paths.ipynb")
+    (problem,) = examine(edited(path, lambda _: merge(read_cells(path), fresh))).problems
+    assert "why_twice_the_time is empty, but the text that begins with `word word" in problem
+
+    def moved(cells):
+        at = next(k for k, cell in enumerate(cells) if cell["metadata"].get("lab") == "why")
+        return [*cells[: at - 1], {**cells[at], "source": "word " * 30}, *cells[at + 1 :]]
+
+    found = examine(edited(path, moved))
+    assert not found.problems and found.texts == {"why_twice_the_time": 30}
 
 
 @pytest.mark.parametrize(
