@@ -99,8 +99,8 @@ def planning() -> HTML:
          "Points that a person may give", "Prerequisites"),
         rows,
         "Hours are the authors' estimate for a student who has basic numpy and has read the "
-        "chapter. A person marks two short texts of each student, which answer a 'why' question; "
-        "the other short 'why' answers earn their points if they are not blank",
+        "chapter. A person marks two short texts of each student, which answer a “why” question; "
+        "the other short “why” answers earn their points if they are not blank.",
     )  # fmt: skip
 
 
@@ -129,7 +129,7 @@ def syllabi() -> HTML:
          "Hours per week, all and chapters"), rows,
         "Three syllabi, in hours that the authors estimate. The chapters are those of the "
         "notebooks, and the one on the model where 04 or 05 needs it; discussions in class are not "
-        "counted",
+        "counted.",
     )  # fmt: skip
 
 
@@ -159,7 +159,7 @@ def plan() -> HTML:
          f"Then by hand, for {CLASS} students"), rows,
         "A plan by weeks. Each notebook is due at the end of the week that is named, the practice "
         "hand-in in the first days. Hours are the authors' estimates, with the chapter and without "
-        "the practice hand-in; what is marked by hand is that of a term of 12 weeks",
+        "the practice hand-in; what is marked by hand is that of a term of 12 weeks.",
     )  # fmt: skip
 
 
@@ -212,5 +212,5 @@ def marking() -> HTML:
         ("By hand", "Minutes per student", f"Hours for {CLASS} students"),
         rows,
         f"A whole term, reports by teams of {TEAM}. All minutes are the authors' estimates; those "
-        "for reading follow from the longest texts allowed",
+        "for reading follow from the longest texts allowed.",
     )

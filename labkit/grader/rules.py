@@ -31,6 +31,14 @@ _Positive = Annotated[float, msgspec.Meta(ge=0.0, le=10_000.0)]
 _DAY = 86400.0
 
 
+_FORM = (
+    "The keys are name, id, zone and counts; in [late]: percent_per_day, at_most and "
+    "grace_minutes; in [assignments.NAME]: due and weight; in [[extensions]]: student, days and "
+    "assignment. A due date has no quotation marks: due = 2026-11-06T23:59:00"
+)
+"""The form of the file, for a message about a wrong key or value."""
+
+
 class _Table(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     """A table of the file, in which a misspelt name is an error."""
 
@@ -157,7 +165,8 @@ def rules_in(path: Path) -> Rules:
         says = str(error)
         if "$.counts" in says:
             says = 'counts must be "latest" or "latest in time"'
-        raise LabkitError(f"{path}: {says}; correct that line") from None
+        form = f". {_FORM}" if isinstance(error, msgspec.ValidationError) else ""
+        raise LabkitError(f"{path}: {says}; correct that line{form}") from None
     try:
         ZoneInfo(rules.zone)
     except (ValueError, OSError, ZoneInfoNotFoundError):

@@ -4,16 +4,18 @@ from __future__ import annotations
 
 import csv
 import io
+import re
 from datetime import UTC, datetime
 
 import pytest
 from downloaded import bare_course
 from made import NAME, graded, notebook_of, result_of
+from msgspec.structs import fields
 
 from labkit.__main__ import main
 from labkit.errors import LabkitError
 from labkit.grader.nbgrader.gradebook import open_gradebook
-from labkit.grader.rules import Late, read_rules
+from labkit.grader.rules import Assignment, Extension, Late, Rules, read_rules, rules_in
 from labkit.grader.students.attempts import HandIn, counted_attempt, store
 from labkit.grader.students.installed import install
 
@@ -249,6 +251,22 @@ def test_grading_names_whose_file_counts_under_a_rule_that_changed(course, monke
     code, out, err = verb(course, capsys, "grade", NAME)
     assert code == 2 and not out
     assert 'course.toml: counts must be "latest" or "latest in time"; correct that line' in err
+
+
+def test_a_wrong_key_or_date_is_answered_with_the_form_of_the_file(tmp_path):
+    """Every key of every table is named, and how a due date is written."""
+    file = tmp_path / "course.toml"
+    for text in "naem = 'x'", '[assignments.01_paths]\ndue = "tomorrow"':
+        file.write_text(text)
+        with pytest.raises(LabkitError) as found:
+            rules_in(file)
+        form = str(found.value).partition("; correct that line. ")[2]
+        for table in Rules, Late, Assignment, Extension:
+            assert {x.name for x in fields(table)} - {"late", "assignments", "extensions"} <= {
+                *re.findall(r"\w+", form)
+            }
+    file.write_text(f"[assignments.01_paths]\n{form.rpartition(': ')[2]}")
+    assert rules_in(file).due("01_paths")
 
 
 def test_a_file_that_was_put_back_and_graded_by_nbgrader_is_as_late_as_it_was(course, capsys):

@@ -305,7 +305,7 @@ def test_names_in_a_guessed_encoding_are_named(tmp_path):
     course, file = bare_course(tmp_path / "course"), tmp_path / "list.csv"
     for name, encoding in ("Ada Ay", "ascii"), ("Joséf Ay", "utf-8"), ("José Ay", "mac_roman"):
         file.write_text(f"name,email\n{name},{encoding}@x\n", encoding)
-        said = [x for x in import_list(course, file)[0] if "Windows-1252" in x]
+        said = [x for x in import_list(course, file)[1] if "Windows-1252" in x]
         assert len(said) == (encoding == "mac_roman")
     assert (
         "check these names: JosŽ Ay. If one is wrong, save the list in UTF-8, delete students"
@@ -327,9 +327,9 @@ def test_the_import_says_what_groups_become(tmp_path):
     assert teams.startswith("teams in this list: 1 ('Monday'), the largest of 2 students; a team")
     assert [s.team for s in read_roster(course).students] == ["Monday", "Monday", "", ""]
     file.write_text(head + rows.replace("Monday", '"Blue, Monday"'))
-    teams, two = import_list(course, file)[0][1:]
+    (_, teams), (two, _) = import_list(course, file)
     assert "teams in this list: 1 ('Blue, Monday'), the" in teams
-    assert two.startswith("teams with a comma: 'Blue, Monday'; the students of each are probably")
+    assert two.startswith("teams with a comma: 'Blue, Monday'; Moodle writes so if a student is")
     file.write_text("First name,Last name,Email address\nAda,Ay,a@x\n")
     assert not any("team" in sentence for sentence in import_list(course, file)[0])
 
@@ -343,9 +343,9 @@ def test_a_changed_team_is_named(tmp_path):
         said.append(import_list(course, file)[1])
     first, (changed,), again = said
     names = "Ed Ee (Ed-Ee) from 'Blue' to 'Red', Zoe Zet (Zoe-Zet) from no team to 'Red'"
-    assert changed.startswith(f"teams changed: {names}; this also concerns work")
-    assert "keep that team in the list until its marks are exported" in changed
-    assert "make the zip again, labkit student-bundle" in changed
+    assert changed.startswith(f"teams changed: {names}; their arm is now the new team's, and so")
+    assert "import the list with that team, and change it when the report's marks" in changed
+    assert "make the zip again (labkit student-bundle)" in changed
     assert (first, again) == ([], [])
 
 
@@ -356,7 +356,7 @@ def test_who_has_no_team_in_a_list_of_teams_is_named(tmp_path):
     said = []
     for ed, ada in ("Red", "Red"), ("", ""), ("", "Red"), ("", "Red"):
         file.write_text(f"name,team\nAda Ay,{ada}\nEd Ee,{ed}\n")
-        said.append(stays in "\n".join(import_list(course, file)[0]))
+        said.append(stays in "\n".join(import_list(course, file)[1]))
         if said[-1]:
             roster = course.root / FILE
             roster.write_text(roster.read_text().replace("Ed,Ee,,,,,,Red", "Ed,Ee,,,,,,"))
@@ -397,7 +397,7 @@ def test_the_command_imports_a_list_and_formgrader_shows_names(tmp_path, capsys)
     file = tmp_path / "list.csv"
     where = ["--course", str(course.root)]
     file.write_text(MOODLE + "Li,Wei,2,li@x,\nWei,Li,3,wei@x,\n")
-    assert main(["students", "import", str(file), *where]) == 0
+    assert main(["students", "import", str(file), *where]) == 1, "a team is two groups"
     said = capsys.readouterr()
     assert f"{FILE}: 4 students, 4 of them new" in said.out
     assert (
@@ -405,7 +405,7 @@ def test_the_command_imports_a_list_and_formgrader_shows_names(tmp_path, capsys)
     )
     for name, system in ((NAME, "moodle"), ("05_impedance", "canvas")):
         record_users(course, name, {n: LmsUser(system, n, n) for n in ("Li-Wei-li", "Wei-Li-wei")})
-    assert main(["students", "import", str(file), *where]) == 0
+    assert main(["students", "import", str(file), *where]) == 1, "a team is two groups"
     assert "with --assignment; this is done for 01_paths\n" in capsys.readouterr().out
     with open_gradebook(course) as book:
         ada = book.find_student("Ada-Lovelace")

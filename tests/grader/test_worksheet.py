@@ -236,7 +236,7 @@ def test_the_worksheet_of_the_reviews_tells_namesakes_apart(bare, tmp_path, caps
 
 @pytest.mark.parametrize("listed", [True, False])
 def test_the_worksheet_of_another_assignment_is_refused(bare, tmp_path, capsys, listed):
-    """Nothing is changed; deleting the assignment's entry lets the new numbers in."""
+    """Nothing is changed; deleting the assignment's entry does not let the wrong numbers in."""
     path, record = tmp_path / "worksheet.csv", bare.root / "course_private/lms.json"
     words = ["students", "import", str(path), "--course", str(bare.root)]
     if listed:
@@ -244,18 +244,53 @@ def test_the_worksheet_of_another_assignment_is_refused(bare, tmp_path, capsys, 
         assert main(words) == 0
     people = [(ADA, "x.ipynb", "1"), (("Bob Hope", 102), "x.ipynb", "2")]
     list(collect(bare, NAME, from_moodle(tmp_path / "1.zip", people)))
-    before, row = record.read_text(), "Participant {},{},{}@x,\n".format
+    row = "Participant {},{},{}@x,\n".format
     path.write_text(
         f"{TIMED}\n{row(501, 'Ada Lovelace', 'ada')}{row(502, 'Bob Hope', 'bob')}"
         f"{row(503, 'Eve Li', 'eve')}"
     )
-    capsys.readouterr()
-    assert main([*words, "--assignment", NAME]) == 2
-    said = capsys.readouterr().err
-    assert "nothing was imported: 2 of 2 students would get another number in 01_paths, so" in said
-    assert "delete the entry '01_paths' from course_private/lms.json, and" in said
-    assert record.read_text() == before and (bare.root / ROSTER).exists() is listed
+    for before in (record.read_text(), "{}")[: 1 + listed]:
+        record.write_text(before)
+        capsys.readouterr()
+        assert main([*words, "--assignment", NAME]) == 2
+        said = capsys.readouterr().err
+        assert "nothing was imported: 2 of 2 students would get another number in 01_" in said
+        assert "delete the entry '01_paths' from course_private/lms.json, collect the" in said
+        assert record.read_text() == before and (bare.root / ROSTER).exists() is listed
     record.write_text("{}")
+    people = [(("Ada Lovelace", 501), "x.ipynb", "3")]
+    list(collect(bare, NAME, from_moodle(tmp_path / "2.zip", people, (2026, 3, 9, 12, 0, 0))))
     assert main([*words, "--assignment", NAME]) == 1, "the worksheet gives no time"
     numbers = {folder: one.number for folder, one in lms_users(bare, NAME).items()}
     assert numbers == {"Ada-Lovelace": "501", "Bob-Hope": "502", "Eve-Li": "503"}
+
+
+def test_the_right_worksheet_mends_what_a_wrong_one_left(bare, tmp_path):
+    """Without a roster and a record, a wrong one is let in; each work still has its number."""
+    path, words = tmp_path / "worksheet.csv", ["--assignment", NAME, "--course", str(bare.root)]
+    take(bare, tmp_path)
+    (bare.root / "course_private/lms.json").write_text("{}")
+    for number in 501, 101:
+        path.write_text(f"{HEAD}\nParticipant {number},Ada Lovelace,ada@x\n")
+        main(["students", "import", str(path), *words])
+        held = "Ada-Lovelace-101" if number == 501 else "Ada-Lovelace"
+        assert counting(bare) == {held: "1"}
+    assert {folder: x.number for folder, x in lms_users(bare, NAME).items()} == {
+        "Ada-Lovelace": "101"
+    }
+
+
+@pytest.mark.parametrize("recorded", [True, False])
+def test_work_follows_its_number_if_the_record_of_numbers_is_lost(bare, tmp_path, recorded):
+    """Namesakes' work is theirs by the number with which it was collected."""
+    path, record = tmp_path / "worksheet.csv", bare.root / "course_private/lms.json"
+    words = ["students", "import", str(path), "--course", str(bare.root)]
+    path.write_text("name,email\nKim Lee,1@x\nKim Lee,2@x\n")
+    assert main(words) == 0
+    people = [(("Kim Lee", k), "x.ipynb", str(k)) for k in (11, 12)]
+    list(collect(bare, NAME, from_moodle(tmp_path / "1.zip", people)))
+    if not recorded:
+        record.write_text("{}")
+    path.write_text(f"{HEAD}\nParticipant 12,Kim Lee,1@x\nParticipant 11,Kim Lee,2@x\n")
+    main([*words, "--assignment", NAME])
+    assert counting(bare) == {"Kim-Lee-1": "12", "Kim-Lee-2": "11"}

@@ -27,6 +27,7 @@ from .list_remarks import (
     about_doubles,
     about_encoding,
     about_namesakes,
+    about_odd_teams,
     about_teams,
 )
 from .move import move_to_owners, unlisted
@@ -109,7 +110,7 @@ def import_list(
 
     Returns:
         Two lists of sentences. The first says what was done; the second, what a person should look
-        at, such as one student's work in two folders or hand-in times that are not set.
+        at, such as names that may be wrong or hand-in times that are not set.
 
     Raises:
         LabkitError: The list contradicts the roster or itself, the file is not a list, or it is the
@@ -139,7 +140,7 @@ def import_list(
         left = move_to_owners(course, done.roster)
         taken, late, look = 0, list[str](), list[str]()
         if assignment:
-            left += keep_numbers(course, assignment, done.rows)
+            left += keep_numbers(course, assignment, done.roster, done.rows)
             taken, late, look = keep_times(course, assignment, done.rows, rules)
     listed = {student.id for _, student in done.rows}
     absent = [one for one in before.students if one.id not in listed]
@@ -151,7 +152,12 @@ def import_list(
             f"not in this list, and still in the roster: {len(absent)} "
             f"({few([*map(str, absent)])}); keep their rows, even if they have left the class"
         )
-    look += [*about_doubles(absent, done.new), *about_changed_teams(before, done.rows)]
+    look += [
+        *about_encoding(file, (entry.student for entry in entries)),
+        *about_doubles(absent, done.new),
+        *about_odd_teams(done.rows),
+        *about_changed_teams(before, done.rows),
+    ]
     named = {one.student for one in left}
     if others := [x for x in unlisted(course, done.roster) if x not in named]:
         look.append(
@@ -163,10 +169,7 @@ def import_list(
         summary.append(
             "not taken: Test Student, whom Canvas adds for the instructor's student view"
         )
-    summary += [
-        *about_encoding(file, (entry.student for entry in entries)),
-        *about_teams(done.rows),
-    ]
+    summary += about_teams(done.rows)
     if assignment:
         set_now = f"{how_many(taken, 'hand-in time')} set"
         summary += [f"{assignment}: {how_many(numbered, 'participant')}; {set_now}", *late]

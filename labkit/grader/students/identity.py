@@ -188,7 +188,7 @@ def _doubt(one: LmsUser, assignment: str, roster: Roster) -> str:
     until = f"their work is kept apart until {_TOLD_APART[one.system].format(assignment)}"
     if students > 1:
         return f"{one} has the name of {students} students of the roster; {until}"
-    return f"{one} has the name of a student, and so has somebody else who handed in; {until}"
+    return f"{one} has the name of a student, and so has another user on record; {until}"
 
 
 def _owners(

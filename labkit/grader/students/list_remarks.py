@@ -24,8 +24,7 @@ def about_encoding(file: Path, students: Iterable[Student]) -> Iterator[str]:
 
 
 def about_teams(rows: Sequence[tuple[Entry, Student]]) -> Iterator[str]:
-    """Remarks on a list's teams, which may be groups that were made for another purpose."""
-    named = {student.id for entry, student in rows if entry.student.team}
+    """A remark on a list's teams, which may be groups that were made for another purpose."""
     teams = Counter(entry.student.team for entry, _ in rows if entry.student.team)
     if teams:
         names, most = [*map(repr, sorted(teams))], how_many(max(teams.values()), "student")
@@ -35,10 +34,16 @@ def about_teams(rows: Sequence[tuple[Entry, Student]]) -> Iterator[str]:
             "these are other groups, such as tutorials, delete their column from the list, clear "
             f"the column team of {FILE}, and import the list again"
         )
+
+
+def about_odd_teams(rows: Sequence[tuple[Entry, Student]]) -> Iterator[str]:
+    """Teams that are probably two groups, and students without a team in a list of teams."""
+    teams = {entry.student.team for entry, _ in rows if entry.student.team}
+    named = {student.id for entry, student in rows if entry.student.team}
     if two := [repr(team) for team in sorted(teams) if "," in team]:
         yield (
-            f"teams with a comma: {few(two)}; the students of each are probably in two groups, "
-            "which labkit takes for one more team; leave one group for each student in the list, "
+            f"teams with a comma: {few(two)}; Moodle writes so if a student is in two groups, and "
+            "labkit then makes them one more team; leave one group for each student in the list, "
             "and import it again"
         )
     stay = [f"{x} in {x.team!r}" for _, x in rows if x.team and x.id not in named]
@@ -46,7 +51,8 @@ def about_teams(rows: Sequence[tuple[Entry, Student]]) -> Iterator[str]:
         yield (
             f"without a team in this list, and still in the team they had: {few(stay)}; to take "
             f"somebody out of a team, clear their cell in the column team of {FILE}, and import "
-            "the list again"
+            "the list again; they then get an arm of their own, and no longer the mark of the "
+            "team's report"
         )
 
 
@@ -59,11 +65,12 @@ def about_changed_teams(before: Roster, rows: Iterable[tuple[Entry, Student]]) -
     ]
     if changed:
         yield (
-            f"teams changed: {few(changed)}; this also concerns work that is handed in already: "
-            "the next grading judges answers about their own arm by the new team's arm, and they "
-            "get the mark of the new team's report, unless they handed in one themselves. If they "
-            "wrote one with the old team, keep that team in the list until its marks are exported; "
-            "for the new arm make the zip again, labkit student-bundle, and hand it out"
+            f"teams changed: {few(changed)}; their arm is now the new team's, and so is their mark "
+            "for the report, unless they hand in one themselves. This changes marks that they have "
+            "already, at the next grading. If somebody wrote the report with the team they were in "
+            "before, import the list with that team, and change it when the report's marks are "
+            "exported. To give them the new arm, make the zip again (labkit student-bundle) and "
+            "hand it out"
         )
 
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import replace
 from datetime import datetime, timedelta
 from zoneinfo import ZoneInfo
@@ -14,6 +14,7 @@ from ..each import Failure
 from ..rules import Rules
 from ..timestamp import read_time
 from .attempts import (
+    FOLDER,
     RECORD,
     Attempt,
     Counted,
@@ -36,38 +37,54 @@ def refuse_another(
 ) -> None:
     """Refuse a worksheet that gives students other numbers than this assignment has already.
 
-    Of two students who change places, both numbers are known; of another assignment's, none is.
+    The number with which a student's work was collected is certain; only without such work, that of
+    an earlier worksheet counts.  Of two students who change places, both numbers are known; of
+    another assignment's worksheet, none is.
 
     Raises:
         LabkitError: Most of the students who have a number would get a new one.
     """
-    known = all_lms_users(course)
-    users = {x.key: x for x in known.get(assignment, {}).values() if x.system == "moodle"}
-    found = assign_folders(users.values(), assignment, known, roster)
-    numbered = {place.folder for place in found.values()}
+    known, collected = all_lms_users(course), dict(_collected(course, assignment))
+    users = [one for one in known.get(assignment, {}).values() if one.system == "moodle"]
+    found = assign_folders(users, assignment, known, roster)
+    sure = {folder for folder in collected.values() if folder in roster}
+    owners = collected | {key: x.folder for key, x in found.items() if x.folder not in sure}
+    numbered = {*owners.values()}
     here = [("moodle", e.participant) for e, s in rows if e.participant and s.id in numbered]
-    differ = sum(key not in users for key in here)
+    differ = sum(key not in owners for key in here)
     if differ > len(here) - differ:
         raise LabkitError(
             f"nothing was imported: {differ} of {how_many(len(here), 'student')} would get another "
             f"number in {assignment}, so this is probably another assignment's worksheet; give "
             f"that one's name with --assignment. If {assignment} was made again in Moodle, or its "
-            f"recorded numbers are wrong, delete the entry {assignment!r} from {FILE}, and import "
-            "this worksheet again"
+            f"recorded numbers are wrong, delete the entry {assignment!r} from {FILE}, collect the "
+            "download again, and then import this worksheet"
         )
 
 
+def _collected(course: Course, assignment: str) -> Iterator[tuple[tuple[str, str], str]]:
+    """The users of Moodle whose work was collected, by `LmsUser.key`, and the folders it is in."""
+    for place in sorted((course.root / FOLDER).glob(f"*/{assignment}")):
+        folder = place.parent.name
+        hand_ins = (x for one in attempts(course, folder, assignment) for x in one.hand_ins)
+        yield from (((x.origin, x.number), folder) for x in hand_ins if x.origin == "moodle")
+
+
 def keep_numbers(
-    course: Course, assignment: str, rows: Iterable[tuple[Entry, Student]]
+    course: Course, assignment: str, roster: Roster, rows: Iterable[tuple[Entry, Student]]
 ) -> list[Failure]:
     """Record each student's participant number, and move earlier work to its owner.
+
+    Work in the folder of nobody in the roster belongs to the student with its number.
 
     Returns:
         The folders that stayed, and why.
     """
     mine = {s.id: LmsUser("moodle", e.participant, s.name) for e, s in rows if e.participant}
-    before = {one.key: folder for folder, one in lms_users(course, assignment).items()}
-    moves = {before[x.key]: id for id, x in mine.items() if x.key in before}
+    owners = {one.key: id for id, one in mine.items()}
+    places = [(one.key, folder) for folder, one in lms_users(course, assignment).items()]
+    places += [place for place in _collected(course, assignment) if place[1] not in roster]
+    moves = {folder: owners[key] for key, folder in places if key in owners}
     left = move_work(course, assignment, moves)
     record_users(course, assignment, mine)
     return left
