@@ -254,7 +254,7 @@ def test_the_worksheet_of_another_assignment_is_refused(bare, tmp_path, capsys, 
         capsys.readouterr()
         assert main([*words, "--assignment", NAME]) == 2
         said = capsys.readouterr().err
-        assert "nothing was imported: 2 of 2 students would get another number in 01_" in said
+        assert "nothing was imported: all 2 students with a number in 01_paths would get" in said
         assert "delete the entry '01_paths' from course_private/lms.json, collect the" in said
         assert record.read_text() == before and (bare.root / ROSTER).exists() is listed
     record.write_text("{}")

@@ -38,11 +38,11 @@ def refuse_another(
     """Refuse a worksheet that gives students other numbers than this assignment has already.
 
     The number with which a student's work was collected is certain; only without such work, that of
-    an earlier worksheet counts.  Of two students who change places, both numbers are known; of
-    another assignment's worksheet, none is.
+    an earlier worksheet counts.  Moodle gives no number twice, so of two students who change places
+    both numbers are known, and of another assignment's worksheet none is.
 
     Raises:
-        LabkitError: Most of the students who have a number would get a new one.
+        LabkitError: All students who have a number would get a new one.
     """
     known, collected = all_lms_users(course), dict(_collected(course, assignment))
     users = [one for one in known.get(assignment, {}).values() if one.system == "moodle"]
@@ -51,14 +51,13 @@ def refuse_another(
     owners = collected | {key: x.folder for key, x in found.items() if x.folder not in sure}
     numbered = {*owners.values()}
     here = [("moodle", e.participant) for e, s in rows if e.participant and s.id in numbered]
-    differ = sum(key not in owners for key in here)
-    if differ > len(here) - differ:
+    if here and owners.keys().isdisjoint(here):
         raise LabkitError(
-            f"nothing was imported: {differ} of {how_many(len(here), 'student')} would get another "
-            f"number in {assignment}, so this is probably another assignment's worksheet; give "
-            f"that one's name with --assignment. If {assignment} was made again in Moodle, or its "
-            f"recorded numbers are wrong, delete the entry {assignment!r} from {FILE}, collect the "
-            "download again, and then import this worksheet"
+            f"nothing was imported: all {how_many(len(here), 'student')} with a number in "
+            f"{assignment} would get another, so this is probably another assignment's worksheet; "
+            f"give that one's name with --assignment. If {assignment} was made again in Moodle, or "
+            f"its recorded numbers are wrong, delete the entry {assignment!r} from {FILE}, collect "
+            "the download again, and then import this worksheet"
         )
 
 
