@@ -55,7 +55,7 @@ def main(arguments: list[str] | None = None) -> int:
         ("Build the book", [sys.executable, str(ROOT / "book/_tools/build_book.py")]),
     ]
     for number, (title, command) in enumerate(steps, start=1):
-        shown = " ".join(Path(word).name if "/" in word else word for word in command)
+        shown = " ".join(word.removeprefix(f"{ROOT}/") for word in command)
         print(f"\n[{number}/{len(steps)}] {title}\n$ {shown}", flush=True)
         if subprocess.run(command, cwd=ROOT).returncode:
             print(f"\nStopped: step {number} failed.", file=sys.stderr)
