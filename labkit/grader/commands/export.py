@@ -74,8 +74,9 @@ def export(
     was graded, and the total with the weights of course.toml.
     """
     from ..marks.export import LAYOUTS, as_csv, of_term, remarks, unmatched
-    from ..marks.table import idle_extensions, marks_of, unknown_extensions
+    from ..marks.table import idle_extensions, marks_of
     from ..rules import read_rules
+    from ..students.list_remarks import about_extensions
 
     if column and layout not in NAMED:
         raise LabkitError(
@@ -93,7 +94,7 @@ def export(
     if final or layout == "cup":
         raise LabkitError("for the cup's board type: labkit export --layout cup [--final]")
 
-    doubts = list(unknown_extensions(course))
+    doubts = list(about_extensions(course))
 
     def read(name: str) -> list[Mark]:
         if name not in UNRELEASED:

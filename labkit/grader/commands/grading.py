@@ -67,7 +67,7 @@ def grade(course: Course, assignment: str, student: str | None, as_json: bool, *
     from ..grading.results import Results
     from ..lock import exclusive_run
     from ..nbgrader.gradebook import record, recorded
-    from ..rules import read_rules
+    from ..students.list_remarks import about_extensions
     from ..submission import misnamed
 
     diff, watching = how.pop("diff"), how.pop("watch")
@@ -82,7 +82,8 @@ def grade(course: Course, assignment: str, student: str | None, as_json: bool, *
         given = " and ".join(name for name, value in not_watched.items() if value)
         raise LabkitError(f"--watch grades whatever comes in; for {given} leave out --watch")
     with Failures(at_once=watching) as failures:
-        read_rules(course)  # an error in them stops before anything is graded
+        doubts = list(about_extensions(course))  # an error in the rules stops before grading
+        failures.add("ATTENTION", doubts)
         others = list(_settled(course, assignment, student, change=not diff))
         tell(others, said)
         if watching:

@@ -75,7 +75,9 @@ def feedback(
         sent = for_exchange(course, assignment, made)
         if any(list(failures.sift(sent, "not for the exchange"))):
             print(f"back to the exchange: nbgrader release_feedback {assignment}")
-        if moodle:
+        if moodle and not made:
+            print("for Moodle no zip is written, as no page was")
+        elif moodle:
             count = moodle_zip(course, assignment, made, moodle)
             size = moodle.stat().st_size / 1e6
             print(f"for Moodle, {count} of {len(made)}, {size:.1f} MB: {moodle}")

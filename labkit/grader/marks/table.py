@@ -28,7 +28,7 @@ from ..students.class_list import Student
 from ..students.identity import lms_users
 from ..students.installed import date_put_back
 from ..students.roster import read_roster
-from ..submission import did_you_mean, plain_name, students
+from ..submission import plain_name, students
 from .mark import Mark, MarkLine
 
 
@@ -113,15 +113,6 @@ def _remark(row: Mark, handed_in: bool) -> str:
             return f"rejected: {row.result.rejected}; ask for the file again"
         return f"{row.result.unanswered}; ask for the right one"
     return "" if handed_in else "nothing of theirs is in submitted/; the mark stays as it was"
-
-
-def unknown_extensions(course: Course) -> Iterator[str]:
-    """A sentence for each extension whose student does not exist."""
-    known = {student.id for student in read_roster(course).students}
-    known |= {path.name for path in course.submitted.glob("*")}
-    for name in sorted({x.student for x in read_rules(course).extensions} - known):
-        said = f"an extension for {clean_line(name, 60)!r}, who is not a student"
-        yield f"{RULES} has {said}{did_you_mean(name, known)}"
 
 
 def idle_extensions(course: Course, assignment: str, marks: Sequence[Mark]) -> Iterator[str]:

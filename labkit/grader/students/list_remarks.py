@@ -1,4 +1,4 @@
-"""Remarks on a list of students that was imported, as sentences."""
+"""Remarks on students and on lists of them, as sentences."""
 
 from __future__ import annotations
 
@@ -6,10 +6,14 @@ from collections import Counter
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from pathlib import Path
 
-from ..clean import few, how_many
+from ...course.authoring.layout import Course
+from ..clean import clean_line, few, how_many
+from ..rules import FILE as RULES
+from ..rules import read_rules
+from ..submission import did_you_mean
 from .class_list import GUESS, Entry, Student, encoding_of
 from .platforms import LmsUser
-from .roster import FILE, Roster, same_name
+from .roster import FILE, Roster, read_roster, same_name
 
 
 def about_encoding(file: Path, students: Iterable[Student]) -> Iterator[str]:
@@ -101,3 +105,12 @@ def about_namesakes(roster: Roster, known: Mapping[str, Mapping[str, LmsUser]]) 
             + f"; this is done for {', '.join(sorted(told_apart))}"
             * bool(told_apart)
         )
+
+
+def about_extensions(course: Course) -> Iterator[str]:
+    """Extensions whose student does not exist, so that nobody has these days."""
+    known = {student.id for student in read_roster(course).students}
+    known |= {path.name for path in course.submitted.glob("*")}
+    for name in sorted({x.student for x in read_rules(course).extensions} - known):
+        said = f"an extension for {clean_line(name, 60)!r}, who is not a student"
+        yield f"{RULES} has {said}{did_you_mean(name, known)}"
