@@ -79,6 +79,7 @@ ORDER = [
     {"course.predictions", "course.identification"},
     {"course.reply", "course.notebook", "course.card", "course.checks_file"},
     {"course.gaps", "course.marking", "course.probes"},
+    {"course.definitions"},
     {"course.relations"},
     {"course.observed"},
     {"course.student"},

@@ -11,18 +11,20 @@ from collections import Counter
 from collections.abc import Collection, Mapping
 from dataclasses import dataclass, field
 from importlib.metadata import version
+from itertools import chain
 from pathlib import Path
 from typing import Any
 
 from ..sim import chosen
 from .brief import words_in_all
 from .checks_file import read_checks
+from .definitions import changed_since, defined_again
 from .forms import COMMITTED, OWN_ARM
 from .gaps import (
     calculated_from_runs,
-    changed_since,
     first_error,
     how_to_restore,
+    left_behind,
     misnamed,
     review_texts,
     undefined_names,
@@ -122,12 +124,13 @@ def examine(path: Path) -> HandIn:
         problems.append(
             f"the file has {size:.0f} MB, but the limit is {LARGEST:g}; clear the largest outputs"
         )
+    asked = [question["name"] for question in questions]
     for question in questions:
         more, worth_knowing = _review(cells, question["name"], name)
         problems += more
         notes += worth_knowing
-    problems += unreadable(cells)
-    problems += undefined_names(cells, [question["name"] for question in questions])
+    again = {name: [*defined_again(cells, name, asked)] for name in asked}
+    problems += [*chain(*again.values()), *unreadable(cells), *undefined_names(cells, asked)]
     code = [cell["source"] for cell in cells if cell["cell_type"] == "code"]
     for question in questions:
         if any(test["name"] == OWN_ARM for test in question["tests"]["items"]):
@@ -144,16 +147,17 @@ def examine(path: Path) -> HandIn:
         for verdict in verdicts.values()
         if verdict is not None and verdict.withheld
     ]
-    lost, told = _on_the_public_arm(path, code, verdicts)
-    problems += lost
-    notes += told
+    folder = path.resolve().parent
+    for lost, told in left_behind(folder, cells), _on_the_public_arm(folder, code, verdicts):
+        problems += lost
+        notes += told
     problems += [
         f"the cell of {name} says None, although you had committed to a prediction; the cell is "
         "what is marked, so write your prediction into it again and run it"
         for name in predictions
         if (said := verdicts[name]) and said.right and _lacks_prediction(code, name)
     ]
-    if stale := [name for name in verdicts if changed_since(cells, name)]:
+    if stale := [name for name in verdicts if not again[name] and changed_since(cells, name)]:
         notes.append(
             f"changed since the last check: {', '.join(stale)}; the verdicts below are old, so run "
             "the notebook from the top and save it"
@@ -179,7 +183,7 @@ def examine(path: Path) -> HandIn:
 
 
 def _on_the_public_arm(
-    path: Path, code: list[str], verdicts: Mapping[str, Verdict | None]
+    folder: Path, code: list[str], verdicts: Mapping[str, Verdict | None]
 ) -> tuple[list[str], list[str]]:
     """Problems and notes if students measured the public arm in place of their own."""
     measured = [
@@ -190,7 +194,7 @@ def _on_the_public_arm(
     if not (measured and opens_the_public_arm(code)):
         return [], []
     begins, names = 'HANDLE is "demo", the public arm', ", ".join(measured)
-    if arms_for(path.resolve().parent):
+    if arms_for(folder):
         return [
             f"{begins}, but {names} will be judged by an arm of your own; set HANDLE to the name "
             "that your instructor gave you, and measure again"
@@ -229,10 +233,6 @@ def _review(cells: list[dict[str, Any]], question: str, name: str) -> tuple[list
             notes.append(
                 f"the cell of {each} is gone or damaged; labkit merge restores it, but {question} "
                 "is marked all the same"
-            )
-        elif ids[each] > 1:
-            problems.append(
-                f"there are {ids[each]} cells of {each}; keep one, because only the last one counts"
             )
     return problems, notes
 

@@ -7,13 +7,16 @@ import itertools
 import re
 import textwrap
 from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
+from pathlib import Path
 from typing import Any
 
 import numpy as np
 
 from .advice import IMPORTS
 from .brief import WORDS, words_in_all, words_of
-from .notebook import cells_made_for, checks, defines, grade_id, kind, released
+from .checks_file import FILE as CHECKS
+from .notebook import cells_made_for, grade_id, kind, released
+from .own_arm import FILE as ARMS
 from .source import analyse
 from .unfinished import defined_in
 
@@ -45,7 +48,7 @@ def undefined_names(cells: list[dict[str, Any]], asked: Collection[str]) -> Iter
         if names:
             yield (
                 f"no cell defines {' or '.join(names)}, which the cell that begins with "
-                f"`{_first_line(source)}` uses; {'; '.join(dict.fromkeys(map(_todo, names)))}"
+                f"`{first_line(source)}` uses; {'; '.join(dict.fromkeys(map(_todo, names)))}"
             )
 
 
@@ -66,7 +69,7 @@ def unreadable(cells: list[dict[str, Any]]) -> Iterator[str]:
     for cell in _code(cells):
         if broken := analyse(cell["source"])["broken"]:
             yield (
-                f"Python cannot read the cell that begins with `{_first_line(cell['source'])}` "
+                f"Python cannot read the cell that begins with `{first_line(cell['source'])}` "
                 f"({_shown(broken, 120)}), so what it defines earns nothing; correct it, run all "
                 "cells from the top and save the file"
             )
@@ -104,13 +107,14 @@ def first_error(cells: list[dict[str, Any]]) -> str:
             if failed and not analyse(cell["source"])["broken"]:  # those are `unreadable`
                 says = _shown(f"{output.get('ename')}: {output.get('evalue')}", 120)
                 return (
-                    f"the cell that begins with `{_first_line(cell['source'])}` ended with an "
+                    f"the cell that begins with `{first_line(cell['source'])}` ended with an "
                     f"error ({says}), and Run All Cells stops there; correct or delete it"
                 )
     return ""
 
 
-def _first_line(source: str) -> str:
+def first_line(source: str) -> str:
+    """The first line of a cell that is not a comment, shortened."""
     lines = (line.strip() for line in source.splitlines())
     return _shown(next((line for line in lines if line and line[0] != "#"), ""), 60)
 
@@ -125,10 +129,35 @@ def misnamed(homes: Iterable[dict[str, Any]], question: str) -> str:
     """A sentence if a question's own cells hold code that does not define it, else ""."""
     sources = [cell["source"] for cell in homes]
     found = [name for x in sources for name in analyse(x)["functions"] or sorted(defined_in(x))]
+    if not found and any(re.search(r"^predict\(", x, re.MULTILINE) for x in sources):
+        return f"the cell of {question} does not define it; begin its line with `{question} = `"
     if not found and not any(analyse(x)["broken"] for x in sources):
         return ""
     but = f", but {', '.join(found)}" if found else ""
     return f"the cell of {question} does not define {question}{but}; write the name as in the task"
+
+
+def left_behind(folder: Path, cells: Iterable[dict[str, Any]]) -> tuple[list[str], list[str]]:
+    """Problems about modules, and notes about other files, that are not handed in.
+
+    Args:
+        folder: The folder of the notebook.
+        cells: The cells of the notebook.
+    """
+    sources = [cell["source"] for cell in _code(cells)]
+    parts = [part for source in sources for part in analyse(source)["definitions"]]
+    roots = {full.partition(".")[0] for part in parts for full in part["mean"].values()}
+    modules = [x for x in sorted(roots) if (folder / f"{x}.py").is_file() or (folder / x).is_dir()]
+    named = {name for x in sources for name in re.findall(r"""["']([\w ./-]+\.\w+)["']""", x)}
+    files = [x for x in sorted(named - {ARMS, CHECKS}) if (folder / x).is_file()]
+    return [
+        f"{name} is a file of yours, and only the notebook is handed in; copy what you import from "
+        "it into a cell, and delete the import"
+        for name in modules
+    ], [
+        f"{name} is not handed in, only the notebook is; an answer that reads it earns nothing"
+        for name in files
+    ]
 
 
 def how_to_restore(name: str) -> str:
@@ -159,11 +188,10 @@ def review_texts(
         has = f"{text} has {words_in_all(words)}"
         if not found:
             problems.append(f"no cell holds the text {text}. {how_to_restore(name)}")
-        elif not words and (loose := _loose_text(cells, found[0])):
+        elif words < WORDS[0] and (loose := _loose_text(cells, found[0])):
             problems.append(
-                f"the cell of {text} is empty, but the text that begins with "
-                f"`{_first_line(loose)}` is beside it; only the cell of {text} is read, so cut the "
-                "text out and paste it into that cell"
+                f"{has}, but the text that begins with `{first_line(loose)}` is in a cell beside "
+                f"it; only the cell of {text} is read, so cut the text out and paste it there"
             )
         elif words < WORDS[0]:
             notes.append(f"{has}; it needs at least {WORDS[0]}")
@@ -189,11 +217,3 @@ def _loose_text(cells: Sequence[dict[str, Any]], home: dict[str, Any]) -> str:
             if cell["cell_type"] == "markdown" and len(words_of(cell["source"])) >= WORDS[0]:
                 return str(cell["source"])
     return ""
-
-
-def changed_since(cells: list[dict[str, Any]], question: str) -> bool:
-    """Whether the cell that defines an answer was run after the check, or was not run."""
-    defined = [cell.get("execution_count") for cell in cells if defines(cell, question)]
-    checked = [cell.get("execution_count") for cell in cells if checks(cell, question)]
-    ran = [count for count in checked if isinstance(count, int)]
-    return bool(ran) and any(not isinstance(count, int) or count > max(ran) for count in defined)

@@ -10,8 +10,9 @@ from typing import Any
 
 from ..errors import LabkitError
 from .brief import words_of
+from .definitions import written_cells
 from .notebook import cells_made_for, defines, grade_id, is_edited, kind, nbgrader_info, released
-from .source import is_stub, plain
+from .source import analyse, is_stub, plain
 
 Cells = list[dict[str, Any]]
 
@@ -135,9 +136,12 @@ def _answer(mine: Cells, asked: dict[str, Any]) -> str | None:
 def _cells_for(mine: Cells, asked: dict[str, Any]) -> Cells:
     """The cells that define an answer, or if there are none, those that were made for it."""
     name = grade_id(asked)
-    defining = [cell for cell in mine if defines(cell, name)]
     likely = [cell for cell in mine if kind(cell) in ("", kind(asked))]  # another may have its id
-    return defining or cells_made_for(likely, name, asked["id"])
+    made = cells_made_for(likely, name, asked["id"])
+    code = {k: analyse(x["source"]) for k, x in enumerate(mine) if x["cell_type"] == "code"}
+    home = {k for k in code if any(mine[k] is cell for cell in made)}
+    written = [mine[k] for k in written_cells(code, home, name)]
+    return written or [cell for cell in mine if defines(cell, name)] or made
 
 
 def _is_unwritten(source: str) -> bool:

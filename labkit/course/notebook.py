@@ -135,20 +135,35 @@ def checks(cell: Cell, name: str) -> bool:
     return f'check("{name}"' in cell["source"]
 
 
-def verdict_metadata(verdict: Verdict) -> dict[str, Any]:
-    """The metadata of an output that shows a verdict, for programs that read the file."""
-    return {_OUTPUT: {**stamp(), "verdict": record_data(verdict)}}
+def verdict_metadata(verdict: Verdict, judged: str = "") -> dict[str, Any]:
+    """The metadata of an output that shows a verdict, for programs that read the file.
+
+    Args:
+        verdict: The verdict.
+        judged: The fingerprint of the function that was judged, or "".
+    """
+    return {_OUTPUT: {**stamp(), "verdict": record_data(verdict), "judged": judged}}
 
 
 def last_verdict(cells: Sequence[Cell], question: str) -> Verdict | None:
     """The last verdict on a question in a notebook's file, or None."""
+    return next((verdict for verdict, _ in _verdicts(cells, question)), None)
+
+
+def last_judged(cells: Sequence[Cell], question: str) -> object:
+    """The fingerprint of the function on which the last verdict is, as the file has it, or ""."""
+    return next((output.get("judged", "") for _, output in _verdicts(cells, question)), "")
+
+
+def _verdicts(
+    cells: Sequence[Cell], question: str
+) -> Iterator[tuple[Verdict, Mapping[str, object]]]:
+    """The verdicts on a question, last cell first, and what their outputs hold for programs."""
     for cell in reversed(cells):
         outputs = cell.get("outputs")
         for output in outputs if isinstance(outputs, list) else ():
-            verdict = verdict_in(output)
-            if verdict is not None and verdict.name == question:
-                return verdict
-    return None
+            if (verdict := verdict_in(output)) and verdict.name == question:
+                yield verdict, output["metadata"][_OUTPUT]
 
 
 def verdict_in(output: Any) -> Verdict | None:

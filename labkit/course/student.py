@@ -20,6 +20,7 @@ from .advice import line_of
 from .calling import captured
 from .card import card, picture
 from .checks_file import read_checks
+from .definitions import fingerprint
 from .gaps import calculated_from_runs
 from .identification import on_the_public_arm
 from .marking import Mismatch, mark, not_counted, try_public
@@ -192,7 +193,9 @@ def check(name: str, function: Callable[..., Any]) -> float:
     lost = calculated_from_runs(executed_cells(function), name) if awaits_marking(verdict) else ""
     says = message(question, verdict, printed, desk().wrong_dependencies(name, function), lost)
     says = replace(says, helps=[*filter(None, more), *says.helps])
-    _say(says, verdict, found if verdict.mistake else None)
+    ran = reversed(executed_cells(function)) if callable(function) else ()
+    judged = next(filter(None, (fingerprint(source, name) for source in ran)), "")
+    _say(says, verdict, found if verdict.mistake else None, judged)
     return Points(verdict.earned)
 
 
@@ -291,7 +294,7 @@ def use(
     return desk().stand_ins.give(name, STAND_IN, given, shell())
 
 
-def _say(says: Message, verdict: Verdict, found: Mismatch | None) -> None:
+def _say(says: Message, verdict: Verdict, found: Mismatch | None, judged: str) -> None:
     """Print a message; in a notebook, show a card, whose output also stores the verdict."""
     if shell() is None:
         print(says)
@@ -300,4 +303,4 @@ def _say(says: Message, verdict: Verdict, found: Mismatch | None) -> None:
 
     outcome = Outcome.NOT_TRIED if awaits_marking(verdict) else verdict.outcome
     shown = card(says, outcome, found and picture(found))
-    display(shown, metadata=verdict_metadata(verdict), raw=True)
+    display(shown, metadata=verdict_metadata(verdict, judged), raw=True)

@@ -5,10 +5,12 @@ import re
 import sys
 from pathlib import Path
 
+import nbformat
 import numpy as np
 import pytest
 
 from labkit import replay
+from labkit.course.before_handing_in import examine
 from labkit.course.predictions import Prediction
 from labkit.replay.motion import STILL
 
@@ -102,7 +104,10 @@ def test_most_parts_are_used_further_down(name):
 @pytest.mark.slow
 @pytest.mark.parametrize("name", NAMES)
 def test_solved_in_a_kernel(name, tmp_path, monkeypatch):
-    """Solved, it returns full marks in 1 GB of memory and a file of 1 MB; pictures have words."""
+    """Solved, it has full marks and can be handed in; it needs 1 GB of memory, and its file 1 MB.
+
+    Pictures have words.
+    """
     monkeypatch.setenv(
         "NBGRADER_EXECUTION", "autograde"
     )  # as nbgrader does; else no number is shown
@@ -122,6 +127,9 @@ def test_solved_in_a_kernel(name, tmp_path, monkeypatch):
             points = cell.metadata.nbgrader.points
             assert float(cell.outputs[-1].data["text/plain"]) == points, cell.source
     assert replays >= 1
+    nbformat.write(notebook, tmp_path / f"{name}.ipynb")
+    found = examine(tmp_path / f"{name}.ipynb")
+    assert found.problems == () and not any("changed since" in note for note in found.notes)
 
 
 @pytest.mark.slow

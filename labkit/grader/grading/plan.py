@@ -12,6 +12,7 @@ from dataclasses import dataclass, field
 from itertools import chain
 from typing import Any
 
+from ...course.definitions import written_cells
 from ...course.source import analyse, plain
 from ..sandbox.session import Step
 
@@ -142,14 +143,12 @@ def _answer(
     """The cell that answers a question, and the empty stubs that must not replace it."""
     name = m["grade_id"]
     home = _home_cells(own, m)
-    defines = {k for k, cell in own.items() if name in cell["functions"]}
-    binds = {k for k, cell in own.items() if name in cell["binds"]}
-    stubs = {k for k in defines if name in own[k]["stubs"]}
-    written = (defines - stubs) or (binds & home) - stubs or binds - stubs
+    stubs = {k for k, cell in own.items() if name in cell["stubs"]}
+    written = written_cells(own, home, name)
     if len(written) > 1:
         notes.append(f"{len(written)} cells define {name}; the last one counts")
     if written:
-        place = max(written)
+        place = written[-1]
         stub_only = {k for k in stubs if len(own[k]["binds"]) == 1}
         if stubs:
             notes.append(f"there is an empty {name}, too; it is ignored")

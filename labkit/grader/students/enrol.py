@@ -26,7 +26,6 @@ from .list_remarks import (
     about_changed_teams,
     about_doubles,
     about_encoding,
-    about_extensions,
     about_namesakes,
     about_odd_teams,
     about_teams,
@@ -143,7 +142,6 @@ def import_list(
         if assignment:
             left += keep_numbers(course, assignment, done.roster, done.rows)
             taken, late, look = keep_times(course, assignment, done.rows, rules)
-            look += about_extensions(course)
     listed = {student.id for _, student in done.rows}
     absent = [one for one in before.students if one.id not in listed]
     everybody = how_many(len(done.roster.students), "student")

@@ -27,6 +27,7 @@ from .attempts import (
 from .class_list import Entry, Student
 from .identity import FILE, all_lms_users, assign_folders, lms_users, record_users
 from .installed import install, instead
+from .list_remarks import about_extensions
 from .move import move_work
 from .platforms import LmsUser
 from .roster import Roster
@@ -155,7 +156,7 @@ def keep_times(
             f"{how_many(len(waiting), 'student')} handed in, and nothing of theirs was collected "
             f"yet: {few(waiting)}; collect the download, then import the worksheet again"
         )
-    return taken, late, left
+    return taken, late, [*left, *about_extensions(course)]
 
 
 def _late(rules: Rules, assignment: str, student: Student, when: datetime) -> str:

@@ -1,0 +1,165 @@
+"""Which cell answers a question: the hand-in, merging and marking agree, and a student is told."""
+
+import json
+import shutil
+from pathlib import Path
+
+import pytest
+
+from labkit.course.before_handing_in import examine
+from labkit.course.definitions import fingerprint, written_cells
+from labkit.course.merge import merge
+from labkit.course.notebook import kind, read_cells, verdict_metadata
+from labkit.course.source import analyse
+from labkit.course.verdict import Outcome, Verdict
+
+ASSIGNMENT = Path(__file__).resolve().parents[2] / "assignments" / "01_paths"
+CIRCLE = "def circle(s, start, centre):\n    return {}"
+
+
+@pytest.fixture
+def path(tmp_path):
+    return Path(shutil.copytree(ASSIGNMENT, tmp_path / "01_paths")) / "01_paths.ipynb"
+
+
+def code(source, **more):
+    return {"cell_type": "code", "metadata": {}, "source": source, "outputs": [], **more}
+
+
+def handed_in(path, answer, *below, above=(), judged=""):
+    """The look at a notebook with this answer to `circle`, and cells above it and below its check.
+
+    Args:
+        path: The notebook.
+        answer: The text of the answer's cell.
+        below: Cells to insert below the check.
+        above: Cells to insert at the top.
+        judged: The text of the answer that was right when it was checked last.
+    """
+    data, cells = json.loads((ASSIGNMENT / path.name).read_text()), []
+    verdict = Verdict("circle", Outcome.RIGHT, 4.0, 4.0)
+    for cell in data["cells"]:
+        cells.append(cell)
+        if cell["metadata"].get("nbgrader", {}).get("grade_id") == "circle":
+            cell["source"] = answer
+        if 'check("circle"' in "".join(cell["source"]):
+            if judged:
+                metadata = verdict_metadata(verdict, fingerprint(judged, "circle"))
+                shown = {"output_type": "display_data", "data": {}, "metadata": metadata}
+                cell["outputs"] = [shown]
+            cells += below
+    data["cells"] = [*cells[:2], *above, *cells[2:]]
+    path.write_text(json.dumps(data))
+    return examine(path)
+
+
+def test_an_answer_that_is_defined_again_below_its_check_is_named(path):
+    """The check judged another function than the one that is marked."""
+    again = code(CIRCLE.format("0"))
+    (problem,) = handed_in(path, CIRCLE.format("1"), again).problems
+    assert problem == (
+        "the cell that begins with `def circle(s, start, centre):` defines circle again below its "
+        "check, and counts; delete it, or check again below it"
+    )
+    stub = code(CIRCLE.format("0").replace("return 0", "raise NotImplementedError"))
+    assert not handed_in(path, CIRCLE.format("1"), stub).problems
+    check = code('check("circle", circle)')
+    assert not handed_in(path, CIRCLE.format("1"), again, check).problems
+
+
+def test_a_copy_of_a_check_takes_nothing_away(path):
+    """A cell that is there twice with its name does no harm unless another answer counts."""
+    cells = read_cells(path)
+    check = next(cell for cell in cells if 'check("circle"' in cell["source"])
+    assert not handed_in(path, CIRCLE.format("1"), check).problems
+
+
+@pytest.mark.parametrize(
+    ("above", "below"),
+    [
+        ("def half(x): return x / 2", "def half(a, t): return a * t"),
+        ("half = 4.0", "for half in range(3): print(half)"),
+    ],
+)
+def test_a_helper_that_is_defined_again_below_the_check_is_named(path, above, below):
+    """Answers are marked after all cells have run, with the last definition of what they use."""
+    answer = "def deep(s): return half\n" + CIRCLE.format("deep(s)")
+    (problem,) = handed_in(path, answer, code(below), above=[code(above)]).problems
+    assert problem.startswith("circle uses half, which the cell that begins with `")
+    assert "defines again below the check, and circle is marked with that half" in problem
+
+
+@pytest.mark.parametrize(
+    ("above", "below"),
+    [
+        ("import math", "import math"),
+        ("half = 4.0", "def other():\n    half = 3\n    return half"),
+        ("half = 4.0", "bang_bang = 3"),
+    ],
+)
+def test_what_the_answer_does_not_meet_is_not_named(path, above, below):
+    """The same import, a local name of another function, and another question do no harm here."""
+    answer = CIRCLE.format("math.pi" if above == "import math" else "half")
+    found = handed_in(path, answer, code(below), above=[code(above)])
+    assert not any("circle" in problem for problem in found.problems)
+
+
+def test_an_answer_that_was_edited_after_its_check_is_not_called_right(path):
+    """Whether its cell ran since or not; comments and blank lines change nothing."""
+    right, other = CIRCLE.format("1"), CIRCLE.format("2")
+    stale = [
+        any("changed since the last check: circle;" in note for note in found.notes)
+        for found in (
+            handed_in(path, other, judged=right),
+            handed_in(path, right + "  # so", judged=right),
+        )
+    ]
+    assert stale == [True, False]
+
+
+def test_what_is_beside_the_notebook_is_not_handed_in(path):
+    """A module or a file of the student's own is missing where the notebook is marked."""
+    (path.parent / "mypaths.py").write_text("def circle(*a): return 1")
+    (path.parent / "four.txt").write_text("4")
+    found = handed_in(path, "from mypaths import circle\nfour = open('four.txt')")
+    assert found.problems == (
+        "mypaths is a file of yours, and only the notebook is handed in; copy what you import from "
+        "it into a cell, and delete the import",
+    )
+    assert any(note.startswith("four.txt is not handed in") for note in found.notes)
+
+
+def test_a_prediction_without_its_name_is_told_how_its_line_begins(path):
+    """A fresh copy of the cell would not help."""
+    data = json.loads(path.read_text())
+    for cell in data["cells"]:
+        if "".join(cell["source"]).startswith("twice_the_time ="):
+            cell["source"] = 'predict("twice_the_time", 2.0)'
+    path.write_text(json.dumps(data))
+    (problem,) = examine(path).problems
+    assert problem.endswith("does not define it; begin its line with `twice_the_time = `")
+
+
+def test_merging_takes_the_value_that_would_be_marked():
+    """A value counts in the cell made for it, even if the student's own cell below has the name."""
+    new = read_cells(ASSIGNMENT / "01_paths.ipynb")
+    mine = read_cells(ASSIGNMENT / "01_paths.ipynb")
+    said = 'twice_the_time = predict("twice_the_time", 4.0)'
+    at = next(k for k, x in enumerate(mine) if x["source"].startswith("twice_the_time ="))
+    mine[at]["source"] = said
+    own = code("twice_the_time = 2 * 3.0", id="0badcafe")
+    merged = merge([*mine, own], new)
+    (answer,) = [x for x in merged if kind(x) == "answer" and "twice_the_time" in x["source"]]
+    assert answer["source"] == said
+    assert [x["source"] for x in merged if "2 * 3.0" in x["source"]] == [own["source"]]
+
+
+def test_which_cells_count():
+    """Functions anywhere before values, values at home before others, and never an empty stub."""
+    stub = "def f():\n    raise NotImplementedError"
+    cells = {k: analyse(x) for k, x in enumerate(["f = 1", "def f(): pass", stub, "f = 2"])}
+    assert written_cells(cells, {0}, "f") == [1]
+    values = {k: x for k, x in cells.items() if k != 1}
+    assert written_cells(values, {0}, "f") == [0]
+    assert written_cells(values, set(), "f") == [0, 3]
+    assert written_cells({2: cells[2]}, {2}, "f") == []
