@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import builtins
 import itertools
+import os
 import re
 import textwrap
 from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
@@ -149,13 +150,13 @@ def left_behind(folder: Path, cells: Iterable[dict[str, Any]]) -> tuple[list[str
     roots = {full.partition(".")[0] for part in parts for full in part["mean"].values()}
     modules = [x for x in sorted(roots) if (folder / f"{x}.py").is_file() or (folder / x).is_dir()]
     named = {name for x in sources for name in re.findall(r"""["']([\w ./-]+\.\w+)["']""", x)}
-    files = [x for x in sorted(named - {ARMS, CHECKS}) if (folder / x).is_file()]
+    files = [x for x in sorted(named - {ARMS, CHECKS}) if os.path.isfile(folder / x)]
     return [
-        f"{name} is a file of yours, and only the notebook is handed in; copy what you import from "
-        "it into a cell, and delete the import"
+        f"{name} is a module of yours, and only the notebook is handed in; copy what you import "
+        "from it into a cell, and delete the import"
         for name in modules
     ], [
-        f"{name} is not handed in, only the notebook is; an answer that reads it earns nothing"
+        f"only the notebook is handed in, without {name}; an answer that reads it earns nothing"
         for name in files
     ]
 

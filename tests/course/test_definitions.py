@@ -123,10 +123,16 @@ def test_what_is_beside_the_notebook_is_not_handed_in(path):
     (path.parent / "four.txt").write_text("4")
     found = handed_in(path, "from mypaths import circle\nfour = open('four.txt')")
     assert found.problems == (
-        "mypaths is a file of yours, and only the notebook is handed in; copy what you import from "
-        "it into a cell, and delete the import",
+        "mypaths is a module of yours, and only the notebook is handed in; copy what you import "
+        "from it into a cell, and delete the import",
     )
-    assert any(note.startswith("four.txt is not handed in") for note in found.notes)
+    assert any(note.endswith("without four.txt; an answer that reads it earns nothing") for note in found.notes)
+
+
+def test_a_long_text_of_numbers_is_not_taken_for_a_file(path):
+    """No file has a name of 800 characters, so nothing is said about it."""
+    numbers = "0.1 " * 200 + "0.1"
+    assert not handed_in(path, CIRCLE.format(f"'{numbers}'")).problems
 
 
 def test_a_prediction_without_its_name_is_told_how_its_line_begins(path):
