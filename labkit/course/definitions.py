@@ -35,19 +35,19 @@ def written_cells(cells: Mapping[int, Analysis], home: Collection[int], name: st
 
 
 def changed_since(cells: Cells, question: str) -> bool:
-    """Whether the answer above a check was changed or run after the check, or was not run."""
+    """Whether the answer that a check judged was changed or run after the check, or was not run."""
+    checked = _checks(cells, question)
     defining = [k for k, cell in enumerate(cells) if defines(cell, question)]
-    written, checked = _answering(cells, question) or defining, _checks(cells, question)
-    counts = [cells[k].get("execution_count") for k in checked]
-    ran = [count for count in counts if isinstance(count, int)]
-    judged = last_judged(cells, question)
-    for k in [k for k in written if k <= max(checked, default=len(cells))][-1:]:
-        count = cells[k].get("execution_count")
-        if ran and (not isinstance(count, int) or count > max(ran)):
-            return True
-        if judged and judged != fingerprint(cells[k]["source"], question):
-            return True
-    return False
+    written = _answering(cells, question) or defining
+    above = [k for k in written if k <= max(checked, default=len(cells))]
+    if not written:
+        return False
+    answer, judged = cells[(above or written)[-1]], last_judged(cells, question)
+    count = answer.get("execution_count")
+    ran = [x for k in checked if isinstance(x := cells[k].get("execution_count"), int)]
+    if ran and (not isinstance(count, int) or count > max(ran)):
+        return True
+    return bool(judged) and judged != fingerprint(answer["source"], question)
 
 
 def fingerprint(source: str, name: str) -> str:

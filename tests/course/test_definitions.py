@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 
 from labkit.course.before_handing_in import examine
-from labkit.course.definitions import fingerprint, written_cells
+from labkit.course.definitions import changed_since, fingerprint, written_cells
 from labkit.course.merge import merge
 from labkit.course.notebook import kind, read_cells, verdict_metadata
 from labkit.course.source import analyse
@@ -105,7 +105,7 @@ def test_what_the_answer_does_not_meet_is_not_named(path, above, below):
 
 
 def test_an_answer_that_was_edited_after_its_check_is_not_called_right(path):
-    """Whether its cell ran since or not; comments and blank lines change nothing."""
+    """The verdict belongs to the text that was judged; a comment changes nothing."""
     right, other = CIRCLE.format("1"), CIRCLE.format("2")
     stale = [
         any("changed since the last check: circle;" in note for note in found.notes)
@@ -117,6 +117,14 @@ def test_an_answer_that_was_edited_after_its_check_is_not_called_right(path):
     assert stale == [True, False]
 
 
+@pytest.mark.parametrize(("count", "stale"), [(2, False), (5, True), (None, True)])
+def test_an_answer_below_its_check_is_compared_with_it(count, stale):
+    """Where no cell above the check answers, the check judged the cell below it, if that ran."""
+    check = code('check("circle", circle)', execution_count=3)
+    answer = code(CIRCLE.format("1"), execution_count=count)
+    assert changed_since([check, answer], "circle") == stale
+
+
 def test_what_is_beside_the_notebook_is_not_handed_in(path):
     """A module or a file of the student's own is missing where the notebook is marked."""
     (path.parent / "mypaths.py").write_text("def circle(*a): return 1")
@@ -126,7 +134,10 @@ def test_what_is_beside_the_notebook_is_not_handed_in(path):
         "mypaths is a module of yours, and only the notebook is handed in; copy what you import "
         "from it into a cell, and delete the import",
     )
-    assert any(note.endswith("without four.txt; an answer that reads it earns nothing") for note in found.notes)
+    assert any(
+        note.endswith("without four.txt; an answer that reads it earns nothing")
+        for note in found.notes
+    )
 
 
 def test_a_long_text_of_numbers_is_not_taken_for_a_file(path):
