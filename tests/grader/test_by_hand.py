@@ -141,7 +141,7 @@ def test_grading_says_for_how_many_a_person_still_has_to_mark(written):
     assert list(_on_top(written, NAME)) == [f"{says}2 students still to be marked"]
     for student, name in [("ada", WHY), ("ada", REPORT), ("bob", REPORT)]:
         give(written, student, name, 1.0)
-    assert list(_on_top(written, NAME)) == [f"{says}nobody still to be marked"]
+    assert list(_on_top(written, NAME)) == [f"{says}0 students still to be marked"]
 
 
 def test_a_students_page_waits_for_their_own_marks_alone(written, capsys):

@@ -95,4 +95,4 @@ def test_nbgrader_and_labkit_agree(course, solved, capsys):
     assert main(["grade", NAME, "--course", str(course.root)]) == 0
     out = capsys.readouterr().out
     assert "ada: 22 of 22 (as before)" in out
-    assert "not included: 2 points by hand; nobody still to be marked\n" in out
+    assert "not included: 2 points by hand; 0 students still to be marked\n" in out

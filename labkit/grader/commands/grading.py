@@ -155,8 +155,8 @@ def _on_top(course: Course, assignment: str) -> Iterator[str]:
         with open_gradebook(course) as book:
             found = book.assignment_submissions(assignment)
             waiting = sum(x.needs_manual_grade for x in found)
-        left = how_many(waiting, "student") if waiting else "nobody"
-        yield f"not included: {how_many(by_hand, 'point')} by hand; {left} still to be marked"
+        left = f"{how_many(waiting, 'student')} still to be marked"
+        yield f"not included: {how_many(by_hand, 'point')} by hand; {left}"
 
 
 def _line(one: GradedSubmission, as_json: bool, number: str = "") -> str:
