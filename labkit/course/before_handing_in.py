@@ -231,8 +231,8 @@ def _review(cells: list[dict[str, Any]], question: str, name: str) -> tuple[list
     for each in (*others, check_id(question)):
         if not ids[each]:
             notes.append(
-                f"the cell of {each} is gone or damaged; labkit merge restores it, but {question} "
-                "is marked all the same"
+                f"the cell of {each} is gone or damaged; {question} is marked all the same, and "
+                "labkit merge restores the cell"
             )
     return problems, notes
 

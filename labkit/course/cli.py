@@ -111,8 +111,8 @@ def merge(mine: Path, new: Path, to: Path) -> int:
     )
     if any(KEPT_TEXT in cell["source"] for cell in notebook["cells"]):
         print(
-            "what you wrote and the new release has no place for is in cells of its own, below "
-            f"this line: {KEPT_TEXT}"
+            "what you wrote in cells that the new release changed or does not have is in added "
+            f"cells, below this line: {KEPT_TEXT}"
         )
     return 0
 

@@ -151,7 +151,7 @@ def last_verdict(cells: Sequence[Cell], question: str) -> Verdict | None:
 
 
 def last_judged(cells: Sequence[Cell], question: str) -> object:
-    """The fingerprint of the function on which the last verdict is, as the file has it, or ""."""
+    """The fingerprint, in a notebook's file, of the function that was judged last, or ""."""
     return next((output.get("judged", "") for _, output in _verdicts(cells, question)), "")
 
 

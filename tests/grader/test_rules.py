@@ -127,7 +127,7 @@ def test_who_handed_in_nothing_is_listed(late, tmp_path, capsys):
 
 
 def test_an_extension_that_reaches_nobody_is_named(late, capsys):
-    """A name that is misspelt costs its student the days; grading and tables end with exit 1."""
+    """A name that is misspelt costs its student the days; these commands end with exit 1."""
     (late.root / "course.toml").write_text(RULES.replace('"cleo"', '"Cleo"'))
     people = late.root / "people.csv"
     people.write_text("login,name,Identifier\nada,Ada L,Participant 1\n")

@@ -329,7 +329,7 @@ def test_the_import_says_what_groups_become(tmp_path):
     file.write_text(head + rows.replace("Monday", '"Blue, Monday"'))
     (_, teams), (two, _) = import_list(course, file)
     assert "teams in this list: 1 ('Blue, Monday'), the" in teams
-    assert two.startswith("teams with a comma: 'Blue, Monday'; Moodle writes so if a student is")
+    assert two.startswith("teams with a comma: 'Blue, Monday'; Moodle writes this for a student")
     file.write_text("First name,Last name,Email address\nAda,Ay,a@x\n")
     assert not any("team" in sentence for sentence in import_list(course, file)[0])
 
@@ -344,7 +344,7 @@ def test_a_changed_team_is_named(tmp_path):
     first, (changed,), again = said
     names = "Ed Ee (Ed-Ee) from 'Blue' to 'Red', Zoe Zet (Zoe-Zet) from no team to 'Red'"
     assert changed.startswith(f"teams changed: {names}; their arm is now the new team's, and so")
-    assert "import the list with that team, and change it when the report's marks" in changed
+    assert "import the list with that team, and change it after the report's marks" in changed
     assert "make the zip again (labkit student-bundle)" in changed
     assert (first, again) == ([], [])
 

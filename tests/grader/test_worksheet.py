@@ -236,7 +236,7 @@ def test_the_worksheet_of_the_reviews_tells_namesakes_apart(bare, tmp_path, caps
 
 @pytest.mark.parametrize("listed", [True, False])
 def test_the_worksheet_of_another_assignment_is_refused(bare, tmp_path, capsys, listed):
-    """Nothing is changed; deleting the assignment's entry does not let the wrong numbers in."""
+    """Nothing is changed, not even without a record, if a roster tells whose the work is."""
     path, record = tmp_path / "worksheet.csv", bare.root / "course_private/lms.json"
     words = ["students", "import", str(path), "--course", str(bare.root)]
     if listed:
@@ -254,7 +254,7 @@ def test_the_worksheet_of_another_assignment_is_refused(bare, tmp_path, capsys, 
         capsys.readouterr()
         assert main([*words, "--assignment", NAME]) == 2
         said = capsys.readouterr().err
-        assert "nothing was imported: all 2 students with a number in 01_paths would get" in said
+        assert "each student with a number in 01_paths (2) would get another" in said
         assert "delete the entry '01_paths' from course_private/lms.json, collect the" in said
         assert record.read_text() == before and (bare.root / ROSTER).exists() is listed
     record.write_text("{}")

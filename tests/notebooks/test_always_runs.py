@@ -104,7 +104,7 @@ def test_most_parts_are_used_further_down(name):
 @pytest.mark.slow
 @pytest.mark.parametrize("name", NAMES)
 def test_solved_in_a_kernel(name, tmp_path, monkeypatch):
-    """Solved, it has full marks and can be handed in; it needs 1 GB of memory, and its file 1 MB.
+    """Solved, it has full marks and can be handed in, with at most 1 GB of memory and 1 MB of file.
 
     Pictures have words.
     """

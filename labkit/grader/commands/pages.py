@@ -76,7 +76,7 @@ def feedback(
         if any(list(failures.sift(sent, "not for the exchange"))):
             print(f"back to the exchange: nbgrader release_feedback {assignment}")
         if moodle and not made:
-            print("for Moodle no zip is written, as no page was")
+            print("no zip for Moodle was written, because there are no pages for it")
         elif moodle:
             count = moodle_zip(course, assignment, made, moodle)
             size = moodle.stat().st_size / 1e6

@@ -41,13 +41,13 @@ def about_teams(rows: Sequence[tuple[Entry, Student]]) -> Iterator[str]:
 
 
 def about_odd_teams(rows: Sequence[tuple[Entry, Student]]) -> Iterator[str]:
-    """Teams that are probably two groups, and students without a team in a list of teams."""
+    """Remarks on teams that are probably two groups, and on students without a team."""
     teams = {entry.student.team for entry, _ in rows if entry.student.team}
     named = {student.id for entry, student in rows if entry.student.team}
     if two := [repr(team) for team in sorted(teams) if "," in team]:
         yield (
-            f"teams with a comma: {few(two)}; Moodle writes so if a student is in two groups, and "
-            "labkit then makes them one more team; leave one group for each student in the list, "
+            f"teams with a comma: {few(two)}; Moodle writes this for a student in two groups, "
+            "and labkit takes it for another team; leave one group for each student in the list, "
             "and import it again"
         )
     stay = [f"{x} in {x.team!r}" for _, x in rows if x.team and x.id not in named]
@@ -70,9 +70,9 @@ def about_changed_teams(before: Roster, rows: Iterable[tuple[Entry, Student]]) -
     if changed:
         yield (
             f"teams changed: {few(changed)}; their arm is now the new team's, and so is their mark "
-            "for the report, unless they hand in one themselves. This changes marks that they have "
-            "already, at the next grading. If somebody wrote the report with the team they were in "
-            "before, import the list with that team, and change it when the report's marks are "
+            "for the report, unless they hand in one themselves. At the next grading, this changes "
+            "marks that they already have. If somebody wrote the report with the earlier team, "
+            "import the list with that team, and change it after the report's marks have been "
             "exported. To give them the new arm, make the zip again (labkit student-bundle) and "
             "hand it out"
         )
@@ -108,7 +108,7 @@ def about_namesakes(roster: Roster, known: Mapping[str, Mapping[str, LmsUser]]) 
 
 
 def about_extensions(course: Course) -> Iterator[str]:
-    """Extensions whose student does not exist, so that nobody has these days."""
+    """A sentence for each extension whose student does not exist."""
     known = {student.id for student in read_roster(course).students}
     known |= {path.name for path in course.submitted.glob("*")}
     for name in sorted({x.student for x in read_rules(course).extensions} - known):

@@ -38,12 +38,12 @@ def refuse_another(
 ) -> None:
     """Refuse a worksheet that gives students other numbers than this assignment has already.
 
-    The number with which a student's work was collected is certain; only without such work, that of
-    an earlier worksheet counts.  Moodle gives no number twice, so of two students who change places
-    both numbers are known, and of another assignment's worksheet none is.
+    The number with which a student's work was collected is certain; that of an earlier worksheet
+    counts only for a student without such work.  Moodle gives no number twice: if two students
+    change places, both numbers are known; in another assignment's worksheet, none is.
 
     Raises:
-        LabkitError: All students who have a number would get a new one.
+        LabkitError: Each student who has a number would get another one.
     """
     known, collected = all_lms_users(course), dict(_collected(course, assignment))
     users = [one for one in known.get(assignment, {}).values() if one.system == "moodle"]
@@ -54,9 +54,9 @@ def refuse_another(
     here = [("moodle", e.participant) for e, s in rows if e.participant and s.id in numbered]
     if here and owners.keys().isdisjoint(here):
         raise LabkitError(
-            f"nothing was imported: all {how_many(len(here), 'student')} with a number in "
-            f"{assignment} would get another, so this is probably another assignment's worksheet; "
-            f"give that one's name with --assignment. If {assignment} was made again in Moodle, or "
+            f"nothing was imported: each student with a number in {assignment} ({len(here)}) "
+            "would get another, so this is probably another assignment's worksheet; give "
+            f"that one's name with --assignment. If {assignment} was made again in Moodle, or "
             f"its recorded numbers are wrong, delete the entry {assignment!r} from {FILE}, collect "
             "the download again, and then import this worksheet"
         )
@@ -75,7 +75,7 @@ def keep_numbers(
 ) -> list[Failure]:
     """Record each student's participant number, and move earlier work to its owner.
 
-    Work in the folder of nobody in the roster belongs to the student with its number.
+    Collected work in a folder that is not in the roster goes to the student with its number.
 
     Returns:
         The folders that stayed, and why.
@@ -98,7 +98,7 @@ def keep_times(
     Returns:
         How many times were recorded; a sentence for each student who is late or perhaps late; and
         sentences on what a person should look at: times that were not recorded, or that change
-        which attempt counts or what feedback says.
+        which attempt counts or what feedback says, and extensions that reach nobody.
     """
     zone, taken = ZoneInfo(rules.zone), 0
     late, left, waiting, returned = (list[str]() for _ in range(4))
