@@ -12,7 +12,7 @@ from typing import Any
 
 from .gaps import first_line
 from .notebook import checks, defines, grade_id, last_judged
-from .source import Analysis, analyse, imported, parsed
+from .source import Analysis, analyse, parsed
 
 Cells = Sequence[dict[str, Any]]
 
@@ -52,13 +52,14 @@ def changed_since(cells: Cells, question: str) -> bool:
 
 def fingerprint(source: str, name: str) -> str:
     """A short hash of the last statement that defines a name in a cell, comments aside, or ""."""
-    try:
-        found = [ast.dump(x) for x in parsed(source)[1].body if name in _bound(x)]
-    except (SyntaxError, ValueError, RecursionError, MemoryError):
+    if name not in analyse(source)["binds"]:
         return ""
-    return (
-        hashlib.sha256(found[-1].encode(errors="surrogatepass")).hexdigest()[:12] if found else ""
-    )
+    try:
+        texts = [ast.unparse(x) for x in parsed(source)[1].body]
+    except RecursionError:
+        return ""
+    last = next((x for x in reversed(texts) if name in analyse(x)["binds"]), "")
+    return hashlib.sha256(last.encode(errors="surrogatepass")).hexdigest()[:12]
 
 
 def defined_again(cells: Cells, question: str, asked: Collection[str]) -> Iterator[str]:
@@ -104,14 +105,6 @@ def defined_again(cells: Cells, question: str, asked: Collection[str]) -> Iterat
 def _differs(cells: Cells, name: str, first: int, last: int) -> bool:
     """Whether two cells define a name in different words."""
     return fingerprint(cells[first]["source"], name) != fingerprint(cells[last]["source"], name)
-
-
-def _bound(statement: ast.stmt) -> set[str]:
-    """The names that a statement defines."""
-    if isinstance(statement, ast.FunctionDef | ast.ClassDef):
-        return {statement.name}
-    stored = (x for x in ast.walk(statement) if isinstance(x, ast.Name))
-    return {x.id for x in stored if isinstance(x.ctx, ast.Store)} | {*imported(statement)}
 
 
 def _code(cells: Cells) -> dict[int, Analysis]:

@@ -79,6 +79,7 @@ def test_a_copy_of_a_check_takes_nothing_away(path):
     [
         ("def half(x): return x / 2", "def half(a, t): return a * t"),
         ("half = 4.0", "for half in range(3): print(half)"),
+        ("if True:\n    def half(): pass", "if True:\n    def half(): return 1"),
     ],
 )
 def test_a_helper_that_is_defined_again_below_the_check_is_named(path, above, below):
@@ -95,10 +96,11 @@ def test_a_helper_that_is_defined_again_below_the_check_is_named(path, above, be
         ("import math", "import math"),
         ("half = 4.0", "def other():\n    half = 3\n    return half"),
         ("half = 4.0", "bang_bang = 3"),
+        ("half = 4.0\nall = [half for half in 'ab']", "half = 4.0"),
     ],
 )
 def test_what_the_answer_does_not_meet_is_not_named(path, above, below):
-    """The same import, a local name of another function, and another question do no harm here."""
+    """The same import or value, a local name elsewhere, and another question do no harm here."""
     answer = CIRCLE.format("math.pi" if above == "import math" else "half")
     found = handed_in(path, answer, code(below), above=[code(above)])
     assert not any("circle" in problem for problem in found.problems)
