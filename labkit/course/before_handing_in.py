@@ -8,7 +8,7 @@ from __future__ import annotations
 import platform
 import re
 from collections import Counter
-from collections.abc import Collection, Mapping
+from collections.abc import Collection, Iterable, Mapping
 from dataclasses import dataclass, field
 from importlib.metadata import version
 from itertools import chain
@@ -18,7 +18,7 @@ from typing import Any
 from ..sim import chosen
 from .brief import words_in_all
 from .checks_file import read_checks
-from .definitions import changed_since, defined_again
+from .definitions import cells_that_count, changed_since, judged_another
 from .forms import COMMITTED, OWN_ARM
 from .gaps import (
     calculated_from_runs,
@@ -34,7 +34,7 @@ from .messages import head
 from .notebook import check_id, defines, grade_id, last_verdict, read_cells
 from .own_arm import FILE, arms_for, opens_the_public_arm
 from .serialize import decode
-from .source import analyse
+from .source import Analysis, analyse
 from .verdict import Outcome, Verdict
 from .withheld import withheld_tools
 
@@ -113,8 +113,8 @@ def examine(path: Path) -> HandIn:
     Raises:
         LabkitError: The file is missing or is not a notebook, or its questions are missing.
     """
-    cells = read_cells(path)
-    data = read_checks(path.resolve().parent)
+    cells, folder = read_cells(path), path.resolve().parent
+    data = read_checks(folder)
     name, questions = data["assignment"], data["questions"]
     problems, notes = [], []
     if path.name != f"{name}.ipynb":
@@ -129,14 +129,15 @@ def examine(path: Path) -> HandIn:
         more, worth_knowing = _review(cells, question["name"], name)
         problems += more
         notes += worth_knowing
-    again = {name: [*defined_again(cells, name, asked)] for name in asked}
+    again = {name: [*judged_another(cells, name, asked)] for name in asked}
     problems += [*chain(*again.values()), *unreadable(cells), *undefined_names(cells, asked)]
     code = [cell["source"] for cell in cells if cell["cell_type"] == "code"]
     for question in questions:
         if any(test["name"] == OWN_ARM for test in question["tests"]["items"]):
             problems += filter(None, [calculated_from_runs(code, question["name"])])
     problems += filter(None, [first_error(cells)])
-    verdicts = {question["name"]: _verdict(cells, question) for question in questions}
+    count = [*cells_that_count(cells, asked).values()]
+    verdicts = {question["name"]: _verdict(cells, question, count) for question in questions}
     predictions = [
         question["name"]
         for question in questions
@@ -147,7 +148,6 @@ def examine(path: Path) -> HandIn:
         for verdict in verdicts.values()
         if verdict is not None and verdict.withheld
     ]
-    folder = path.resolve().parent
     for lost, told in left_behind(folder, cells), _on_the_public_arm(folder, code, verdicts):
         problems += lost
         notes += told
@@ -237,11 +237,18 @@ def _review(cells: list[dict[str, Any]], question: str, name: str) -> tuple[list
     return problems, notes
 
 
-def _verdict(cells: list[dict[str, Any]], question: Mapping[str, Any]) -> Verdict | None:
-    """The last verdict of the question's check, unless the answer now uses a withheld tool."""
+def _verdict(
+    cells: list[dict[str, Any]], question: Mapping[str, Any], count: Iterable[Analysis]
+) -> Verdict | None:
+    """The last verdict of the question's check, unless the answer now uses a withheld tool.
+
+    Args:
+        cells: The cells of the notebook.
+        question: The question.
+        count: The cells of code that matter in marking.
+    """
     name = question["name"]
-    found = [analyse(cell["source"]) for cell in cells if cell["cell_type"] == "code"]
-    tools = withheld_tools(found, name, decode(question["withheld"]))
+    tools = withheld_tools(count, name, decode(question["withheld"]))
     if tools:
         points = float(question["points"])
         return Verdict(name, Outcome.NOT_COUNTED, 0.0, points, withheld=tools)

@@ -1,20 +1,23 @@
-"""Which cell answers a question, and whether its check judged what will be marked.
+"""Which cells answer the questions, and whether a check judged what will be marked.
 
 Answers are marked after all cells have run, with the last definition of every name.
 """
 
 from __future__ import annotations
 
-import ast
+import builtins
 import hashlib
-from collections.abc import Collection, Iterator, Mapping, Sequence
+import re
+from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from typing import Any
 
 from .gaps import first_line
-from .notebook import checks, defines, grade_id, last_judged
-from .source import Analysis, analyse, parsed
+from .notebook import defines, grade_id, is_edited, kind, last_judged
+from .source import Analysis, analyse
 
 Cells = Sequence[dict[str, Any]]
+_Part = Mapping[str, Any]
+"""A statement, as the ``definitions`` of `analyse` describe it."""
 
 
 def written_cells(cells: Mapping[int, Analysis], home: Collection[int], name: str) -> list[int]:
@@ -34,81 +37,146 @@ def written_cells(cells: Mapping[int, Analysis], home: Collection[int], name: st
     return sorted((functions - stubs) or (binds & {*home}) - stubs or binds - stubs)
 
 
+def needed_cells(cells: Mapping[int, Analysis], places: Iterable[int]) -> set[int]:
+    """The positions of the cells on which others depend, directly or through other cells.
+
+    Args:
+        cells: What `analyse` found in each cell of code, by position.
+        places: The positions of the others, which are returned as well.
+    """
+    binders: dict[str, list[int]] = {}
+    for k, cell in cells.items():
+        for name in cell["binds"]:
+            binders.setdefault(name, []).append(k)
+    needed, waiting = {*places}, [*places]
+    while waiting:
+        for name in cells[waiting.pop()]["uses"]:
+            found = {*binders.pop(name, ())} - needed
+            needed |= found
+            waiting += found
+    return needed
+
+
+def cells_that_count(cells: Cells, asked: Iterable[str]) -> dict[int, Analysis]:
+    """The cells of code that matter in marking: no given cell on which no answer depends.
+
+    Args:
+        cells: The cells of the notebook.
+        asked: The names of its questions.
+    """
+    code = _code(cells)
+    needed = needed_cells(code, (k for name in asked for k in _answering(cells, name)[-1:]))
+    given = {k for k in code if kind(cells[k]) == "walk" and not is_edited(cells[k])}
+    return {k: found for k, found in code.items() if k in needed or k not in given}
+
+
 def changed_since(cells: Cells, question: str) -> bool:
-    """Whether the answer that a check judged was changed or run after the check, or was not run."""
-    checked = _checks(cells, question)
+    """Whether an answer, or what it uses, was changed after its check, or was not run."""
+    checked, judged = _checks(cells, question), last_judged(cells, question)
     defining = [k for k, cell in enumerate(cells) if defines(cell, question)]
-    written = _answering(cells, question) or defining
-    above = [k for k in written if k <= max(checked, default=len(cells))]
+    written, check = _answering(cells, question) or defining, max(checked, default=len(cells))
     if not written:
         return False
-    answer, judged = cells[(above or written)[-1]], last_judged(cells, question)
-    count = answer.get("execution_count")
+    answer = ([k for k in written if k <= check] or written)[-1]
+    if judged:
+        above = [cells[k]["source"] for k in _code(cells) if k <= max(answer, check)]
+        return judged != answer_hash(above, question)
+    count = cells[answer].get("execution_count")
     ran = [x for k in checked if isinstance(x := cells[k].get("execution_count"), int)]
-    if ran and (not isinstance(count, int) or count > max(ran)):
-        return True
-    return bool(judged) and judged != fingerprint(answer["source"], question)
+    return bool(ran) and (not isinstance(count, int) or count > max(ran))
 
 
-def fingerprint(source: str, name: str) -> str:
-    """A short hash of the last statement that defines a name in a cell, comments aside, or ""."""
-    if name not in analyse(source)["binds"]:
-        return ""
-    try:
-        texts = [ast.unparse(x) for x in parsed(source)[1].body]
-    except RecursionError:
-        return ""
-    last = next((x for x in reversed(texts) if name in analyse(x)["binds"]), "")
-    return hashlib.sha256(last.encode(errors="surrogatepass")).hexdigest()[:12]
+def answer_hash(sources: Iterable[str], question: str) -> str:
+    """A short hash of the last definitions of an answer and of what it uses; "" without one.
+
+    Args:
+        sources: The texts of the cells, in the order in which they ran.
+        question: The question's name.
+    """
+    parts = (part for source in sources for part in analyse(source)["definitions"])
+    last = {name: part for part in parts for name in part["binds"]}
+    found: dict[str, str] = {}
+    waiting = [question]
+    while waiting:
+        if (name := waiting.pop()) in last and name not in found:
+            part = last[name]
+            found[name] = part["mean"].get(name, part["text"])
+            waiting += () if name in part["mean"] else part["outside"]
+    text = "\n".join(f"{name} {found[name]}" for name in sorted(found))
+    return hashlib.sha256(text.encode()).hexdigest()[:12] if question in found else ""
 
 
-def defined_again(cells: Cells, question: str, asked: Collection[str]) -> Iterator[str]:
-    """A sentence for each name that is defined again below a check, so that another answer counts.
+def judged_another(cells: Cells, question: str, asked: Collection[str]) -> Iterator[str]:
+    """Why a check judged another answer than the one that will be marked, as sentences.
 
     Args:
         cells: The cells of the notebook.
         question: The question's name.
         asked: The names of all questions.
     """
-    written = _answering(cells, question)
-    check = max(_checks(cells, question), default=len(cells))
-    checked = [k for k in written if k <= check][-1:]
-    if not checked:
-        return
-    if _differs(cells, question, checked[0], written[-1]):
+    count, checked = cells_that_count(cells, asked), _checks(cells, question)
+    written, check = _answering(cells, question), max(checked, default=len(cells))
+    tried = re.findall(rf"\bcheck\(\s*.{question}.\s*,\s*(\w+)\s*\)", _source(cells, check))
+    if tried and tried[-1] != question:
         yield (
-            f"the cell that begins with `{first_line(cells[written[-1]]['source'])}` defines "
+            f"the check of {question} tried {tried[-1]}, but {question} is marked; call your "
+            f"function {question}, and check it again"
+        )
+    parts = [(k, part) for k, found in count.items() for part in found["definitions"]]
+    own = [(k, part) for k, part in parts if question in part["binds"] and k in written]
+    above = [pair for pair in own if pair[0] <= check]
+    if not above:
+        return
+    if not _same(question, above[-1][1], own[-1][1]):
+        yield (
+            f"the cell that begins with `{first_line(_source(cells, own[-1][0]))}` defines "
             f"{question} again below its check, and counts; delete it, or check again below it"
         )
         return
-    parts = [(k, part) for k, found in _code(cells).items() for part in found["definitions"]]
-    waiting = [part for k, part in parts if k == checked[0] and question in part["binds"]]
-    seen = {*asked}
+    for k, found in count.items():
+        if written[-1] < k <= check and question in found["binds"]:
+            yield (
+                f"the check of {question} tried what the cell that begins with "
+                f"`{first_line(_source(cells, k))}` assigns, but the function of that name is "
+                f"marked; write your answer into `def {question}`"
+            )
+    for name, place in _used_anew(parts, above[-1][1], check, asked):
+        yield (
+            f"{question} uses {name}, which the cell that begins with "
+            f"`{first_line(_source(cells, place))}` defines again below the check, and "
+            f"{question} is marked with that {name}; change one of the two names"
+        )
+
+
+def _used_anew(
+    parts: Sequence[tuple[int, _Part]], answer: _Part, check: int, asked: Collection[str]
+) -> Iterator[tuple[str, int]]:
+    """Names that an answer uses and that are defined again below its check, and in which cell."""
+    seen, waiting = {*asked}, [answer]
     while waiting:
         for name in sorted({*waiting.pop()["outside"]} - seen):
             seen.add(name)
             bound = [(k, part) for k, part in parts if name in part["binds"] and not part["stub"]]
-            for first, known in [pair for pair in bound if pair[0] <= check][-1:]:
-                waiting.append(known)
-                last, again = bound[-1]
-                imported_again = name in known["mean"].keys() & again["mean"].keys()
-                if imported_again and known["mean"][name] == again["mean"][name]:
-                    continue
-                if _differs(cells, name, first, last):
-                    yield (
-                        f"{question} uses {name}, which the cell that begins with "
-                        f"`{first_line(cells[last]['source'])}` defines again below the check, and "
-                        f"{question} is marked with that {name}; change one of the two names"
-                    )
+            known = [part for k, part in bound if k <= check][-1:]
+            waiting += known
+            again = [(k, part) for k, part in bound if k > check][-1:]
+            for k, part in again if known or hasattr(builtins, name) else ():
+                if not (known and _same(name, known[0], part)):
+                    yield name, k
 
 
-def _differs(cells: Cells, name: str, first: int, last: int) -> bool:
-    """Whether two cells define a name in different words."""
-    return fingerprint(cells[first]["source"], name) != fingerprint(cells[last]["source"], name)
+def _same(name: str, one: _Part, other: _Part) -> bool:
+    """Whether two statements define a name in the same words."""
+    same_import = name in one["mean"] and one["mean"][name] == other["mean"].get(name)
+    return bool(one["text"] == other["text"] or same_import)
 
 
 def _code(cells: Cells) -> dict[int, Analysis]:
     return {k: analyse(x["source"]) for k, x in enumerate(cells) if x["cell_type"] == "code"}
+
+
+def _source(cells: Cells, place: int) -> str:
+    return str(cells[place]["source"]) if place < len(cells) else ""
 
 
 def _answering(cells: Cells, question: str) -> list[int]:
@@ -117,4 +185,5 @@ def _answering(cells: Cells, question: str) -> list[int]:
 
 
 def _checks(cells: Cells, question: str) -> list[int]:
-    return [k for k, x in enumerate(cells) if x["cell_type"] == "code" and checks(x, question)]
+    call = re.compile(rf"""^[^#\n]*\bcheck\(\s*["']{question}["']""", re.MULTILINE)
+    return [k for k in _code(cells) if call.search(_source(cells, k))]

@@ -18,13 +18,15 @@ from .brief import WORDS, words_in_all, words_of
 from .checks_file import FILE as CHECKS
 from .notebook import cells_made_for, grade_id, kind, released
 from .own_arm import FILE as ARMS
-from .source import analyse
+from .source import analyse, plain
 from .unfinished import defined_in
 
 _KNOWN = {*vars(builtins), "get_ipython", "display", "In", "Out", "_", "__", "___", "__file__"}
 """Names that every notebook defines."""
 _OWN_ARM = {"my_arm", "my_bug"}
 """Functions that the grader does not run."""
+_FILE = re.compile(r"""["']([\w ./-]+\.\w+)["']""")
+"""A text that may name a file."""
 
 
 def _code(cells: Iterable[dict[str, Any]]) -> list[dict[str, Any]]:
@@ -145,11 +147,11 @@ def left_behind(folder: Path, cells: Iterable[dict[str, Any]]) -> tuple[list[str
         folder: The folder of the notebook.
         cells: The cells of the notebook.
     """
-    sources = [cell["source"] for cell in _code(cells)]
+    sources = [x["source"] for x in _code(cells) if not analyse(x["source"])["broken"]]
     parts = [part for source in sources for part in analyse(source)["definitions"]]
     roots = {full.partition(".")[0] for part in parts for full in part["mean"].values()}
     modules = [x for x in sorted(roots) if (folder / f"{x}.py").is_file() or (folder / x).is_dir()]
-    named = {name for x in sources for name in re.findall(r"""["']([\w ./-]+\.\w+)["']""", x)}
+    named = {name for x in sources for name in _FILE.findall(plain(x))}
     files = [x for x in sorted(named - {ARMS, CHECKS}) if os.path.isfile(folder / x)]
     return [
         f"{name} is a module of yours, and only the notebook is handed in; copy what you import "

@@ -130,17 +130,12 @@ def defines(cell: Cell, name: str) -> bool:
     return cell["cell_type"] == "code" and name in defined_in(cell["source"])
 
 
-def checks(cell: Cell, name: str) -> bool:
-    """Whether a cell calls the check of a question."""
-    return f'check("{name}"' in cell["source"]
-
-
 def verdict_metadata(verdict: Verdict, judged: str = "") -> dict[str, Any]:
     """The metadata of an output that shows a verdict, for programs that read the file.
 
     Args:
         verdict: The verdict.
-        judged: The fingerprint of the function that was judged, or "".
+        judged: The hash of the answer that was judged, or ""; see `answer_hash`.
     """
     return {_OUTPUT: {**stamp(), "verdict": record_data(verdict), "judged": judged}}
 
@@ -151,7 +146,7 @@ def last_verdict(cells: Sequence[Cell], question: str) -> Verdict | None:
 
 
 def last_judged(cells: Sequence[Cell], question: str) -> object:
-    """The fingerprint, in a notebook's file, of the function that was judged last, or ""."""
+    """The hash, in a notebook's file, of the answer that was judged last, or ""."""
     return next((output.get("judged", "") for _, output in _verdicts(cells, question)), "")
 
 

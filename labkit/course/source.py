@@ -7,6 +7,7 @@ the same answers, and the same tools in them.
 from __future__ import annotations
 
 import ast
+import hashlib
 import re
 import symtable
 import warnings
@@ -185,9 +186,10 @@ def _definition(part: list[ast.stmt], lines: list[str]) -> dict[str, Any]:
         Names that it ``binds``; names that it takes from ``outside``; the dotted names that it
         ``uses``; names whose contents it ``fills`` without defining them; questions that it
         ``asks`` `use` about; what the names that it imports ``mean``, with "*" for all of a module;
-        and whether it is a ``stub``.
+        whether it is a ``stub``; and a hash of its ``text`` without white space.
     """
-    scope = symtable.symtable(_text(part, lines), "", "exec")
+    text = _text(part, lines)
+    scope, squeezed = symtable.symtable(text, "", "exec"), "".join(text.split())
     binds, outside = _own_names(scope), set(_outside_names(scope))
     mean: dict[str, str] = {}
     chains, fills, sets, asks = set[str](), set[str](), set[str](), set[str]()
@@ -216,6 +218,7 @@ def _definition(part: list[ast.stmt], lines: list[str]) -> dict[str, Any]:
         "asks": sorted(asks),
         "mean": mean,
         "stub": is_stub(part[0]),
+        "text": hashlib.sha256(squeezed.encode(errors="surrogatepass")).hexdigest()[:12],
     }
 
 

@@ -20,7 +20,7 @@ from .advice import line_of
 from .calling import captured
 from .card import card, picture
 from .checks_file import read_checks
-from .definitions import fingerprint
+from .definitions import answer_hash
 from .gaps import calculated_from_runs
 from .identification import on_the_public_arm
 from .marking import Mismatch, mark, not_counted, try_public
@@ -193,8 +193,7 @@ def check(name: str, function: Callable[..., Any]) -> float:
     lost = calculated_from_runs(executed_cells(function), name) if awaits_marking(verdict) else ""
     says = message(question, verdict, printed, desk().wrong_dependencies(name, function), lost)
     says = replace(says, helps=[*filter(None, more), *says.helps])
-    ran = reversed(executed_cells(function)) if callable(function) else ()
-    judged = next(filter(None, (fingerprint(source, name) for source in ran)), "")
+    judged = answer_hash(executed_cells(function), name) if callable(function) else ""
     _say(says, verdict, found if verdict.mistake else None, judged)
     return Points(verdict.earned)
 

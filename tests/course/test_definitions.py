@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 
 from labkit.course.before_handing_in import examine
-from labkit.course.definitions import changed_since, fingerprint, written_cells
+from labkit.course.definitions import answer_hash, changed_since, written_cells
 from labkit.course.merge import merge
 from labkit.course.notebook import kind, read_cells, verdict_metadata
 from labkit.course.source import analyse
@@ -26,7 +26,7 @@ def code(source, **more):
     return {"cell_type": "code", "metadata": {}, "source": source, "outputs": [], **more}
 
 
-def handed_in(path, answer, *below, above=(), judged=""):
+def handed_in(path, answer, *below, above=(), judged=()):
     """The look at a notebook with this answer to `circle`, and cells above it and below its check.
 
     Args:
@@ -34,7 +34,7 @@ def handed_in(path, answer, *below, above=(), judged=""):
         answer: The text of the answer's cell.
         below: Cells to insert below the check.
         above: Cells to insert at the top.
-        judged: The text of the answer that was right when it was checked last.
+        judged: The cells that had run when the answer was checked last, and was right.
     """
     data, cells = json.loads((ASSIGNMENT / path.name).read_text()), []
     verdict = Verdict("circle", Outcome.RIGHT, 4.0, 4.0)
@@ -44,7 +44,7 @@ def handed_in(path, answer, *below, above=(), judged=""):
             cell["source"] = answer
         if 'check("circle"' in "".join(cell["source"]):
             if judged:
-                metadata = verdict_metadata(verdict, fingerprint(judged, "circle"))
+                metadata = verdict_metadata(verdict, answer_hash(judged, "circle"))
                 shown = {"output_type": "display_data", "data": {}, "metadata": metadata}
                 cell["outputs"] = [shown]
             cells += below
@@ -90,6 +90,33 @@ def test_a_helper_that_is_defined_again_below_the_check_is_named(path, above, be
     assert "defines again below the check, and circle is marked with that half" in problem
 
 
+def test_a_builtin_that_is_hidden_below_the_check_is_named(path):
+    """A sum of one's own takes Python's from an answer that ran before."""
+    (problem,) = handed_in(path, CIRCLE.format("sum([1])"), code("sum = 0")).problems
+    assert problem.startswith("circle uses sum, which the cell that begins with `sum = 0` defines")
+
+
+def test_the_check_of_another_function_is_named(path):
+    """What is marked has the question's name, and where there is a function, it is the function."""
+    cells = code("def ring(*a): return 2"), code("check('circle', ring)")
+    (problem,) = handed_in(path, CIRCLE.format("1"), *cells).problems
+    assert problem == (
+        "the check of circle tried ring, but circle is marked; call your function circle, and "
+        "check it again"
+    )
+    cells = code("circle = abs"), code("check('circle', circle)")
+    (problem,) = handed_in(path, CIRCLE.format("1"), *cells).problems
+    assert problem.startswith("the check of circle tried what the cell that begins with `circle =")
+
+
+def test_a_given_cell_that_no_answer_needs_does_not_count(path):
+    """A name of the answer's cell has its value from there, whatever a given cell does with it."""
+    given = next(x for x in read_cells(path) if "lk.Circle(" in x["source"] and kind(x) == "walk")
+    name = min(analyse(given["source"])["binds"])
+    found = handed_in(path, f"{name} = 1\n" + CIRCLE.format(name))
+    assert not any("circle" in problem for problem in found.problems)
+
+
 @pytest.mark.parametrize(
     ("above", "below"),
     [
@@ -108,15 +135,17 @@ def test_what_the_answer_does_not_meet_is_not_named(path, above, below):
 
 def test_an_answer_that_was_edited_after_its_check_is_not_called_right(path):
     """The verdict belongs to the text that was judged; a comment changes nothing."""
-    right, other = CIRCLE.format("1"), CIRCLE.format("2")
+    right, other, leans = map(CIRCLE.format, ("1", "2", "half"))
     stale = [
         any("changed since the last check: circle;" in note for note in found.notes)
         for found in (
-            handed_in(path, other, judged=right),
-            handed_in(path, right + "  # so", judged=right),
+            handed_in(path, other, judged=[right]),
+            handed_in(path, right + "\n\n", judged=[right]),
+            handed_in(path, leans, above=[code("half = 2")], judged=["half = 2", leans]),
+            handed_in(path, leans, above=[code("half = 3")], judged=["half = 2", leans]),
         )
     ]
-    assert stale == [True, False]
+    assert stale == [True, False, False, True]
 
 
 @pytest.mark.parametrize(("count", "stale"), [(2, False), (5, True), (None, True)])
@@ -131,15 +160,15 @@ def test_what_is_beside_the_notebook_is_not_handed_in(path):
     """A module or a file of the student's own is missing where the notebook is marked."""
     (path.parent / "mypaths.py").write_text("def circle(*a): return 1")
     (path.parent / "four.txt").write_text("4")
-    found = handed_in(path, "from mypaths import circle\nfour = open('four.txt')")
+    (path.parent / "more.py").touch()
+    found = handed_in(path, "%run more.py\nfrom mypaths import circle\nfour = open('four.txt')")
     assert found.problems == (
         "mypaths is a module of yours, and only the notebook is handed in; copy what you import "
         "from it into a cell, and delete the import",
     )
-    assert any(
-        note.endswith("without four.txt; an answer that reads it earns nothing")
-        for note in found.notes
-    )
+    assert {f"only the notebook is handed in, without {x}" for x in ("four.txt", "more.py")} <= {
+        note.partition(";")[0] for note in found.notes
+    }
 
 
 def test_a_long_text_of_numbers_is_not_taken_for_a_file(path):

@@ -16,7 +16,7 @@ import labkit
 from labkit.course import check, hint, question_data, use
 from labkit.course import student as notebook
 from labkit.course.checks_file import FILE
-from labkit.course.definitions import fingerprint
+from labkit.course.definitions import answer_hash
 from labkit.course.marking import mark, not_counted
 from labkit.course.notebook import verdict_in
 from labkit.course.serialize import record_data
@@ -169,7 +169,8 @@ def test_in_a_notebook_the_cells_tell_and_the_output_keeps_the_verdict(desk):
     verdict = verdict_in({"metadata": {"labkit": kept}})
     assert verdict == not_counted(circle, ("labkit.Circle",))
     assert second == "double: right on all cases here; 4 points if the instructor's cases agree."
-    judged = fingerprint("def double(x): return twice(x)  # as it ran", "double")
+    ran = ["def twice(x): return 2 * x", "def double(x):  return twice(x)"]
+    judged = answer_hash(ran, "double")
     then_is = {"verdict": record_data(mark(circle, lambda x: 2 * x)), "judged": judged}
     assert judged and then == stamp() | then_is
 

@@ -7,12 +7,12 @@ their text.  What a student's metadata says about points and roles is never read
 from __future__ import annotations
 
 import ast
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from itertools import chain
 from typing import Any
 
-from ...course.definitions import written_cells
+from ...course.definitions import needed_cells, written_cells
 from ...course.source import analyse, plain
 from ..sandbox.session import Step
 
@@ -78,7 +78,7 @@ def plan(cells: Sequence[Cell], manifest: Sequence[Cell]) -> Plan:
     in_order = [places[m["grade_id"]] for m in manifest if m.get("grade_id") in places]
     if in_order != sorted(in_order):
         notes.setdefault("", []).append("the cells are in another order than in the release")
-    needed = _needed(code, places.values())
+    needed = needed_cells(code, places.values())
     by_hand = {m["grade_id"]: _find_cells(cells, m) for m in manifest if "points" in m}
     known = (*by_hand.values(), *unread.values())
     steps = [Step(k - len(setup), source) for k, source in enumerate(setup)]
@@ -174,21 +174,6 @@ def _home_cells(own: Mapping[int, Cell], m: Mapping[str, Any]) -> set[int]:
     """The positions of the cells meant for a question, found by name or by id."""
     named = {k for k, cell in own.items() if cell["grade_id"] == m["grade_id"]}
     return named | {k for k, cell in own.items() if not cell["grade_id"] and cell["id"] == m["id"]}
-
-
-def _needed(code: Mapping[int, Cell], places: Iterable[int]) -> set[int]:
-    """Cells that the answers depend on, directly or through other cells."""
-    binders: dict[str, list[int]] = {}
-    for k, cell in code.items():
-        for name in cell["binds"]:
-            binders.setdefault(name, []).append(k)
-    needed, waiting = set(places), list(places)
-    while waiting:
-        for name in code[waiting.pop()]["uses"]:
-            found = set(binders.pop(name, ())) - needed
-            needed |= found
-            waiting += found
-    return needed
 
 
 def _released(manifest: Sequence[Cell]) -> set[str]:
