@@ -79,8 +79,9 @@ def changed_since(cells: Cells, question: str) -> bool:
         return False
     answer = ([k for k in written if k <= check] or written)[-1]
     if judged:
-        above = [cells[k]["source"] for k in _code(cells) if k <= max(answer, check)]
-        return judged != answer_hash(above, question)
+        # What is defined above the check replaces what a cell below it defines.
+        order = sorted(_code(cells), key=lambda k: (k <= max(answer, check), k))
+        return judged != answer_hash((cells[k]["source"] for k in order), question)
     count = cells[answer].get("execution_count")
     ran = [x for k in checked if isinstance(x := cells[k].get("execution_count"), int)]
     return bool(ran) and (not isinstance(count, int) or count > max(ran))

@@ -143,9 +143,10 @@ def test_an_answer_that_was_edited_after_its_check_is_not_called_right(path):
             handed_in(path, right + "\n\n", judged=[right]),
             handed_in(path, leans, above=[code("half = 2")], judged=["half = 2", leans]),
             handed_in(path, leans, above=[code("half = 3")], judged=["half = 2", leans]),
+            handed_in(path, leans, code("half = 2"), judged=["half = 2", leans]),
         )
     ]
-    assert stale == [True, False, False, True]
+    assert stale == [True, False, False, True, False]
 
 
 @pytest.mark.parametrize(("count", "stale"), [(2, False), (5, True), (None, True)])
