@@ -152,10 +152,10 @@ def judged_another(cells: Cells, question: str, asked: Collection[str]) -> Itera
 def _used_anew(
     parts: Sequence[tuple[int, _Part]], answer: _Part, check: int, asked: Collection[str]
 ) -> Iterator[tuple[str, int]]:
-    """Names that an answer uses and that are defined again below its check, and in which cell."""
+    """Names that an answer uses when it is called and that a cell below its check defines again."""
     seen, waiting = {*asked}, [answer]
     while waiting:
-        for name in sorted({*waiting.pop()["outside"]} - seen):
+        for name in sorted({*waiting.pop()["later"]} - seen):
             seen.add(name)
             bound = [(k, part) for k, part in parts if name in part["binds"] and not part["stub"]]
             known = [part for k, part in bound if k <= check][-1:]

@@ -183,10 +183,11 @@ def _definition(part: list[ast.stmt], lines: list[str]) -> dict[str, Any]:
     """What a statement at a cell's top level defines, and on what it depends.
 
     Returns:
-        Names that it ``binds``; names that it takes from ``outside``; the dotted names that it
-        ``uses``; names whose contents it ``fills`` without defining them; questions that it
-        ``asks`` `use` about; what the names that it imports ``mean``, with "*" for all of a module;
-        whether it is a ``stub``; and a hash of its ``text`` without white space.
+        Names that it ``binds``; names that it takes from ``outside``, and those that its functions
+        take only ``later``, when they are called; the dotted names that it ``uses``; names whose
+        contents it ``fills`` without defining them; questions that it ``asks`` `use` about; what
+        the names that it imports ``mean``, with "*" for all of a module; whether it is a ``stub``;
+        and a hash of its ``text`` without white space.
     """
     text = _text(part, lines)
     scope, squeezed = symtable.symtable(text, "", "exec"), "".join(text.split())
@@ -213,6 +214,7 @@ def _definition(part: list[ast.stmt], lines: list[str]) -> dict[str, Any]:
     return {
         "binds": sorted(binds | (mean.keys() & {"*"})),
         "outside": sorted(outside),
+        "later": sorted({name for inner in _functions(scope) for name in _outside_names(inner)}),
         "uses": sorted(uses),
         "fills": sorted((fills - sets) & (binds | outside)),
         "asks": sorted(asks),
@@ -242,6 +244,15 @@ def _is_text(node: ast.stmt) -> bool:
 def _own_names(scope: symtable.SymbolTable) -> set[str]:
     """Names that a scope binds itself."""
     return {x.get_name() for x in scope.get_symbols() if x.is_assigned() or x.is_imported()}
+
+
+def _functions(scope: symtable.SymbolTable) -> Iterator[symtable.SymbolTable]:
+    """The functions in a scope, those in classes included; comprehensions run at once."""
+    for inner in scope.get_children():
+        if inner.get_type() == "function" and ".0" not in inner.get_identifiers():
+            yield inner
+        else:
+            yield from _functions(inner)
 
 
 def _outside_names(scope: symtable.SymbolTable) -> Iterator[str]:

@@ -124,10 +124,11 @@ def test_a_given_cell_that_no_answer_needs_does_not_count(path):
         ("half = 4.0", "def other():\n    half = 3\n    return half"),
         ("half = 4.0", "bang_bang = 3"),
         ("half = 4.0\nall = [half for half in 'ab']", "half = 4.0"),
+        ("two = 2\nhalf = [two for _ in 'ab']", "two = 3"),
     ],
 )
 def test_what_the_answer_does_not_meet_is_not_named(path, above, below):
-    """The same import or value, a local name elsewhere, and another question do no harm here."""
+    """The same import or value, a local name, another question and a value used up do no harm."""
     answer = CIRCLE.format("math.pi" if above == "import math" else "half")
     found = handed_in(path, answer, code(below), above=[code(above)])
     assert not any("circle" in problem for problem in found.problems)
