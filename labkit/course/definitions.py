@@ -117,11 +117,11 @@ def judged_another(cells: Cells, question: str, asked: Collection[str]) -> Itera
     """
     count, checked = cells_that_count(cells, asked), _checks(cells, question)
     written, check = _answering(cells, question), max(checked, default=len(cells))
-    tried = re.findall(rf"\bcheck\(\s*.{question}.\s*,\s*(\w+)\s*\)", _source(cells, check))
-    if tried and tried[-1] != question:
+    tried = checked and _call(question).findall(_source(cells, check))[-1]
+    if tried and tried != question:
         yield (
-            f"the check of {question} tried {tried[-1]}, but {question} is marked; call your "
-            f"function {question}, and check it again"
+            f"the check of {question} tried {tried}, but {question} is marked; check {question} "
+            f"itself, or rename {tried} to {question} and check it again"
         )
     parts = [(k, part) for k, found in count.items() for part in found["definitions"]]
     own = [(k, part) for k, part in parts if question in part["binds"] and k in written]
@@ -135,11 +135,11 @@ def judged_another(cells: Cells, question: str, asked: Collection[str]) -> Itera
         )
         return
     for k, found in count.items():
-        if written[-1] < k <= check and question in found["binds"]:
+        if written[-1] < k <= check and question in {*found["binds"]} - {*found["stubs"]}:
             yield (
                 f"the check of {question} tried what the cell that begins with "
-                f"`{first_line(_source(cells, k))}` assigns, but the function of that name is "
-                f"marked; write your answer into `def {question}`"
+                f"`{first_line(_source(cells, k))}` defines, but the cell that begins with "
+                f"`{first_line(_source(cells, written[-1]))}` is marked; write your answer there"
             )
     for name, place in _used_anew(parts, above[-1][1], check, asked):
         yield (
@@ -186,5 +186,10 @@ def _answering(cells: Cells, question: str) -> list[int]:
 
 
 def _checks(cells: Cells, question: str) -> list[int]:
-    call = re.compile(rf"""^[^#\n]*\bcheck\(\s*["']{question}["']""", re.MULTILINE)
-    return [k for k in _code(cells) if call.search(_source(cells, k))]
+    return [k for k in _code(cells) if _call(question).search(_source(cells, k))]
+
+
+def _call(question: str) -> re.Pattern[str]:
+    """Calls of a question's check that are not comments, and the name that each tries, if any."""
+    call = rf"""^[^#\n]*\bcheck\(\s*["']{question}["'](?:\s*,\s*(\w+)\s*\))?"""
+    return re.compile(call, re.MULTILINE)

@@ -101,12 +101,23 @@ def test_the_check_of_another_function_is_named(path):
     cells = code("def ring(*a): return 2"), code("check('circle', ring)")
     (problem,) = handed_in(path, CIRCLE.format("1"), *cells).problems
     assert problem == (
-        "the check of circle tried ring, but circle is marked; call your function circle, and "
-        "check it again"
+        "the check of circle tried ring, but circle is marked; check circle itself, or rename "
+        "ring to circle and check it again"
     )
     cells = code("circle = abs"), code("check('circle', circle)")
     (problem,) = handed_in(path, CIRCLE.format("1"), *cells).problems
-    assert problem.startswith("the check of circle tried what the cell that begins with `circle =")
+    assert problem == (
+        "the check of circle tried what the cell that begins with `circle = abs` defines, but the "
+        "cell that begins with `def circle(s, start, centre):` is marked; write your answer there"
+    )
+
+
+def test_a_comment_tries_nothing_and_an_empty_stub_replaces_nothing(path):
+    """A check that is a comment is not run, and marking ignores a stub below the answer."""
+    said = code('check("circle", circle)\n# check("circle", ring)')
+    assert not handed_in(path, CIRCLE.format("1"), said).problems
+    stub = CIRCLE.format("").replace("return ", "raise NotImplementedError")
+    assert not handed_in(path, stub, above=[code(CIRCLE.format("1"))]).problems
 
 
 def test_a_given_cell_that_no_answer_needs_does_not_count(path):
