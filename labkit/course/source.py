@@ -187,10 +187,11 @@ def _definition(part: list[ast.stmt], lines: list[str]) -> dict[str, Any]:
         take only ``later``, when they are called; the dotted names that it ``uses``; names whose
         contents it ``fills`` without defining them; questions that it ``asks`` `use` about; what
         the names that it imports ``mean``, with "*" for all of a module; whether it is a ``stub``;
-        and a hash of its ``text`` without white space.
+        and a hash of its ``text``, without empty lines and spaces at the end of lines.
     """
     text = _text(part, lines)
-    scope, squeezed = symtable.symtable(text, "", "exec"), "".join(text.split())
+    scope = symtable.symtable(text, "", "exec")
+    written = "\n".join(line.rstrip() for line in text.split("\n") if line.strip())
     binds, outside = _own_names(scope), set(_outside_names(scope))
     mean: dict[str, str] = {}
     chains, fills, sets, asks = set[str](), set[str](), set[str](), set[str]()
@@ -220,7 +221,7 @@ def _definition(part: list[ast.stmt], lines: list[str]) -> dict[str, Any]:
         "asks": sorted(asks),
         "mean": mean,
         "stub": is_stub(part[0]),
-        "text": hashlib.sha256(squeezed.encode(errors="surrogatepass")).hexdigest()[:12],
+        "text": hashlib.sha256(written.encode(errors="surrogatepass")).hexdigest()[:12],
     }
 
 

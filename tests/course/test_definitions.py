@@ -146,19 +146,21 @@ def test_what_the_answer_does_not_meet_is_not_named(path, above, below):
 
 
 def test_an_answer_that_was_edited_after_its_check_is_not_called_right(path):
-    """The verdict belongs to the text that was judged; a comment changes nothing."""
+    """The verdict belongs to the text that was judged; an empty line changes nothing."""
     right, other, leans = map(CIRCLE.format, ("1", "2", "half"))
+    loop = CIRCLE.format("0").replace("return", "for k in s:\n        k\n    return")
     stale = [
         any("changed since the last check: circle;" in note for note in found.notes)
         for found in (
             handed_in(path, other, judged=[right]),
-            handed_in(path, right + "\n\n", judged=[right]),
+            handed_in(path, right.replace("\n", " \n\n") + "\n\n", judged=[right]),
+            handed_in(path, loop.replace("    return", "        return"), judged=[loop]),
             handed_in(path, leans, above=[code("half = 2")], judged=["half = 2", leans]),
             handed_in(path, leans, above=[code("half = 3")], judged=["half = 2", leans]),
             handed_in(path, leans, code("half = 2"), judged=["half = 2", leans]),
         )
     ]
-    assert stale == [True, False, False, True, False]
+    assert stale == [True, False, True, False, True, False]
 
 
 @pytest.mark.parametrize(("count", "stale"), [(2, False), (5, True), (None, True)])

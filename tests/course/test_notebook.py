@@ -169,7 +169,7 @@ def test_in_a_notebook_the_cells_tell_and_the_output_keeps_the_verdict(desk):
     verdict = verdict_in({"metadata": {"labkit": kept}})
     assert verdict == not_counted(circle, ("labkit.Circle",))
     assert second == "double: right on all cases here; 4 points if the instructor's cases agree."
-    ran = ["def twice(x): return 2 * x", "def double(x):  return twice(x)"]
+    ran = ["def twice(x): return 2 * x", "def double(x): return twice(x)"]
     judged = answer_hash(ran, "double")
     then_is = {"verdict": record_data(mark(circle, lambda x: 2 * x)), "judged": judged}
     assert judged and then == stamp() | then_is
