@@ -141,19 +141,20 @@ def judged_another(cells: Cells, question: str, asked: Collection[str]) -> Itera
                 f"`{first_line(_source(cells, k))}` defines, but the cell that begins with "
                 f"`{first_line(_source(cells, written[-1]))}` is marked; write your answer there"
             )
-    for name, place in _used_anew(parts, above[-1][1], check, asked):
+    for name, place in _used_anew(parts, above[-1][1], check):
         yield (
             f"{question} uses {name}, which the cell that begins with "
             f"`{first_line(_source(cells, place))}` defines again below the check, and "
-            f"{question} is marked with that {name}; change one of the two names"
+            f"{question} is marked with that {name}; change one of the two names, or check "
+            f"{question} again below it"
         )
 
 
 def _used_anew(
-    parts: Sequence[tuple[int, _Part]], answer: _Part, check: int, asked: Collection[str]
+    parts: Sequence[tuple[int, _Part]], answer: _Part, check: int
 ) -> Iterator[tuple[str, int]]:
     """Names that an answer uses when it is called and that a cell below its check defines again."""
-    seen, waiting = {*asked}, [answer]
+    seen, waiting = set[str](), [answer]
     while waiting:
         for name in sorted({*waiting.pop()["later"]} - seen):
             seen.add(name)

@@ -90,10 +90,17 @@ def test_a_helper_that_is_defined_again_below_the_check_is_named(path, above, be
     assert "defines again below the check, and circle is marked with that half" in problem
 
 
-def test_a_builtin_that_is_hidden_below_the_check_is_named(path):
-    """A sum of one's own takes Python's from an answer that ran before."""
-    (problem,) = handed_in(path, CIRCLE.format("sum([1])"), code("sum = 0")).problems
-    assert problem.startswith("circle uses sum, which the cell that begins with `sum = 0` defines")
+def test_what_is_hidden_below_the_check_is_named(path):
+    """A value takes Python's function, or another answer, from an answer that ran before."""
+    above = [code("def bang_bang(*a): return 1")]
+    for name in "sum", "bang_bang":
+        answer = CIRCLE.format(f"{name}([1])")
+        (problem,) = handed_in(path, answer, code(f"{name} = 0"), above=above).problems
+        assert problem == (
+            f"circle uses {name}, which the cell that begins with `{name} = 0` defines again below "
+            f"the check, and circle is marked with that {name}; change one of the two names, or "
+            "check circle again below it"
+        )
 
 
 def test_the_check_of_another_function_is_named(path):
