@@ -193,7 +193,7 @@ def check(name: str, function: Callable[..., Any]) -> float:
     lost = calculated_from_runs(executed_cells(function), name) if awaits_marking(verdict) else ""
     says = message(question, verdict, printed, desk().wrong_dependencies(name, function), lost)
     says = replace(says, helps=[*filter(None, more), *says.helps])
-    judged = answer_hash(executed_cells(function), name) if callable(function) else ""
+    judged = answer_hash(executed_cells(function), name)
     _say(says, verdict, found if verdict.mistake else None, judged)
     return Points(verdict.earned)
 

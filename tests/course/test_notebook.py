@@ -160,11 +160,15 @@ def test_in_a_notebook_the_cells_tell_and_the_output_keeps_the_verdict(desk):
         "print(run('check(\"double\", double);'))\n"
         "run('def twice(x): return 2 * x\\nring = lk.Circle([1, 0, 0], [0, 0, 0])(0.5)')\n"
         "print(run('check(\"double\", double);'))\n"
+        "run('double = 4.0')\n"
+        "print(run('check(\"double\", double);'))\n"
     )
     done = subprocess.run(
         [sys.executable, "-c", program], capture_output=True, text=True, check=True, cwd=desk
     )
-    (((first, kept),), ((second, then),)) = map(ast.literal_eval, done.stdout.splitlines())
+    ((first, kept),), ((second, then),), ((_, value),) = map(
+        ast.literal_eval, done.stdout.splitlines()
+    )
     assert first.startswith("double: not counted: uses lk.Circle")
     verdict = verdict_in({"metadata": {"labkit": kept}})
     assert verdict == not_counted(circle, ("labkit.Circle",))
@@ -173,6 +177,7 @@ def test_in_a_notebook_the_cells_tell_and_the_output_keeps_the_verdict(desk):
     judged = answer_hash(ran, "double")
     then_is = {"verdict": record_data(mark(circle, lambda x: 2 * x)), "judged": judged}
     assert judged and then == stamp() | then_is
+    assert value["judged"] == answer_hash(["double = 4.0"], "double"), "a value is compared, too"
 
 
 def test_an_older_answer_is_not_tried_when_its_cell_has_an_error(desk):
