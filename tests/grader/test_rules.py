@@ -135,7 +135,8 @@ def test_an_extension_that_reaches_nobody_is_named(late, capsys):
     for words in (["export", NAME], ["export"], ["grade", NAME], numbers):
         code, _, err = verb(late, capsys, *words)
         assert code == 1
-        assert "extension for 'Cleo', who is not a student; did you mean cleo?" in err
+        assert "extension for 'Cleo', who is neither in course_private/roster.csv nor in sub" in err
+        assert "submitted/; did you mean cleo?" in err
 
 
 def test_no_zero_is_written_where_work_is_kept_apart(late, tmp_path, capsys):

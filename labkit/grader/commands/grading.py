@@ -82,8 +82,7 @@ def grade(course: Course, assignment: str, student: str | None, as_json: bool, *
         given = " and ".join(name for name, value in not_watched.items() if value)
         raise LabkitError(f"--watch grades whatever comes in; for {given} leave out --watch")
     with Failures(at_once=watching) as failures:
-        doubts = list(about_extensions(course))  # an error in the rules stops before grading
-        failures.add("ATTENTION", doubts)
+        failures.add("ATTENTION", about_extensions(course))  # an error in the rules stops here
         others = list(_settled(course, assignment, student, change=not diff))
         tell(others, said)
         if watching:

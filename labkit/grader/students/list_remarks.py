@@ -108,9 +108,9 @@ def about_namesakes(roster: Roster, known: Mapping[str, Mapping[str, LmsUser]]) 
 
 
 def about_extensions(course: Course) -> Iterator[str]:
-    """A sentence for each extension whose student does not exist."""
+    """A sentence for each extension whose student is unknown."""
     known = {student.id for student in read_roster(course).students}
     known |= {path.name for path in course.submitted.glob("*")}
     for name in sorted({x.student for x in read_rules(course).extensions} - known):
-        said = f"an extension for {clean_line(name, 60)!r}, who is not a student"
-        yield f"{RULES} has {said}{did_you_mean(name, known)}"
+        whom = f"{clean_line(name, 60)!r}, who is neither in {FILE} nor in submitted/"
+        yield f"{RULES} has an extension for {whom}{did_you_mean(name, known)}"
