@@ -12,8 +12,9 @@ from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from typing import Any
 
 from .gaps import first_line
-from .notebook import defines, grade_id, is_edited, kind, last_judged
+from .notebook import grade_id, is_edited, kind, last_judged
 from .source import Analysis, analyse
+from .withheld import last_definitions
 
 Cells = Sequence[dict[str, Any]]
 _Part = Mapping[str, Any]
@@ -71,20 +72,11 @@ def cells_that_count(cells: Cells, asked: Iterable[str]) -> dict[int, Analysis]:
 
 
 def changed_since(cells: Cells, question: str) -> bool:
-    """Whether an answer, or what it uses, was changed after its check, or was not run."""
-    checked, judged = _checks(cells, question), last_judged(cells, question)
-    defining = [k for k, cell in enumerate(cells) if defines(cell, question)]
-    written, check = _answering(cells, question) or defining, max(checked, default=len(cells))
-    if not written:
-        return False
-    answer = ([k for k in written if k <= check] or written)[-1]
-    if judged:
-        # What is defined above the check replaces what a cell below it defines.
-        order = sorted(_code(cells), key=lambda k: (k <= max(answer, check), k))
-        return judged != answer_hash((cells[k]["source"] for k in order), question)
-    count = cells[answer].get("execution_count")
-    ran = [x for k in checked if isinstance(x := cells[k].get("execution_count"), int)]
-    return bool(ran) and (not isinstance(count, int) or count > max(ran))
+    """Whether an answer, or what it uses, was changed after its check."""
+    judged, check = last_judged(cells, question), max(_checks(cells, question), default=len(cells))
+    # What is defined above the check replaces what a cell below it defines.
+    order = sorted(_code(cells), key=lambda k: (k <= check, k))
+    return bool(judged) and judged != answer_hash((cells[k]["source"] for k in order), question)
 
 
 def answer_hash(sources: Iterable[str], question: str) -> str:
@@ -94,15 +86,13 @@ def answer_hash(sources: Iterable[str], question: str) -> str:
         sources: The texts of the cells, in the order in which they ran.
         question: The question's name.
     """
-    parts = (part for source in sources for part in analyse(source)["definitions"])
-    last = {name: part for part in parts for name in part["binds"]}
-    found: dict[str, str] = {}
+    last, found = last_definitions(map(analyse, sources)), dict[str, str]()
     waiting = [question]
     while waiting:
         if (name := waiting.pop()) in last and name not in found:
             part = last[name]
             found[name] = part["mean"].get(name, part["text"])
-            waiting += () if name in part["mean"] else part["outside"]
+            waiting += part["outside"]
     text = "\n".join(f"{name} {found[name]}" for name in sorted(found))
     return hashlib.sha256(text.encode()).hexdigest()[:12] if question in found else ""
 

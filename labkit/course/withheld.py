@@ -206,13 +206,13 @@ def withheld_tools(cells: Iterable[Analysis], name: str, tools: Sequence[str]) -
     if not tools:
         return ()
     found: set[str] = set()
-    for used in set(_uses(_last_definitions(cells), name)):
+    for used in set(_uses(last_definitions(cells), name)):
         parts = [tool for tool in tools if _is_part(tool, used)]
         found.update(sorted(parts, key=lambda tool: not _within(used, tool))[:1])
     return tuple(tool for tool in tools if tool in found)
 
 
-def _last_definitions(cells: Iterable[Analysis]) -> dict[str, Mapping[str, Any]]:
+def last_definitions(cells: Iterable[Analysis]) -> dict[str, Mapping[str, Any]]:
     """The last definition of each name; a stub does not replace an answer."""
     means: dict[str, Mapping[str, Any]] = {}
     for cell in cells:

@@ -81,25 +81,6 @@ def test_what_is_not_yet_right_is_named(folder, outcome):
     assert f"  witness: {HEADS[outcome]}. 0 of 2 points." in str(found).splitlines()
 
 
-def test_a_verdict_older_than_its_function_is_told(folder):
-    """A function that was run after its check has a verdict that says nothing of it."""
-
-    def ran(stub, check):
-        def change(cells):
-            for cell in cells:
-                text = "".join(cell["source"])
-                if "def witness" in text:
-                    cell["execution_count"] = stub
-                if 'check("witness"' in text:
-                    cell["execution_count"] = check
-            return cells
-
-        return examine(edited(folder / "01_paths.ipynb", change)).notes
-
-    assert any(note.startswith("changed since the last check: witness;") for note in ran(9, 8))
-    assert not any(note.startswith("changed") for note in ran(8, 9))
-
-
 def answered(folder, name, source, outputs=()):
     """The notebook with one answer, and what its check has left."""
 

@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 
 from labkit.course.before_handing_in import examine
-from labkit.course.definitions import answer_hash, changed_since, written_cells
+from labkit.course.definitions import answer_hash, written_cells
 from labkit.course.merge import merge
 from labkit.course.notebook import kind, read_cells, verdict_metadata
 from labkit.course.source import analyse
@@ -15,6 +15,7 @@ from labkit.course.verdict import Outcome, Verdict
 
 ASSIGNMENT = Path(__file__).resolve().parents[2] / "assignments" / "01_paths"
 CIRCLE = "def circle(s, start, centre):\n    return {}"
+STUB = CIRCLE.replace("return {}", "raise NotImplementedError")
 
 
 @pytest.fixture
@@ -61,8 +62,7 @@ def test_an_answer_that_is_defined_again_below_its_check_is_named(path):
         "the cell that begins with `def circle(s, start, centre):` defines circle again below its "
         "check, and counts; delete it, or check again below it"
     )
-    stub = code(CIRCLE.format("0").replace("return 0", "raise NotImplementedError"))
-    assert not handed_in(path, CIRCLE.format("1"), stub).problems
+    assert not handed_in(path, CIRCLE.format("1"), code(STUB)).problems
     check = code('check("circle", circle)')
     assert not handed_in(path, CIRCLE.format("1"), again, check).problems
 
@@ -123,8 +123,9 @@ def test_a_comment_tries_nothing_and_an_empty_stub_replaces_nothing(path):
     """A check that is a comment is not run, and marking ignores a stub below the answer."""
     said = code('check("circle", circle)\n# check("circle", ring)')
     assert not handed_in(path, CIRCLE.format("1"), said).problems
-    stub = CIRCLE.format("").replace("return ", "raise NotImplementedError")
-    assert not handed_in(path, stub, above=[code(CIRCLE.format("1"))]).problems
+    assert not handed_in(path, STUB, above=[code(CIRCLE.format("1"))]).problems
+    above = [code("def compose(*a): return 1")]
+    assert not handed_in(path, CIRCLE.format("compose(s)"), above=above).problems
 
 
 def test_a_given_cell_that_no_answer_needs_does_not_count(path):
@@ -138,7 +139,8 @@ def test_a_given_cell_that_no_answer_needs_does_not_count(path):
 @pytest.mark.parametrize(
     ("above", "below"),
     [
-        ("import math", "import math"),
+        ("import math, os", "import math"),
+        ("", "half = 4.0"),
         ("half = 4.0", "def other():\n    half = 3\n    return half"),
         ("half = 4.0", "bang_bang = 3"),
         ("half = 4.0\nall = [half for half in 'ab']", "half = 4.0"),
@@ -147,35 +149,47 @@ def test_a_given_cell_that_no_answer_needs_does_not_count(path):
 )
 def test_what_the_answer_does_not_meet_is_not_named(path, above, below):
     """The same import or value, a local name, another question and a value used up do no harm."""
-    answer = CIRCLE.format("math.pi" if above == "import math" else "half")
+    answer = CIRCLE.format("math.pi" if "math" in above else "half")
     found = handed_in(path, answer, code(below), above=[code(above)])
     assert not any("circle" in problem for problem in found.problems)
 
 
-def test_an_answer_that_was_edited_after_its_check_is_not_called_right(path):
-    """The verdict belongs to the text that was judged; an empty line changes nothing."""
-    right, other, leans = map(CIRCLE.format, ("1", "2", "half"))
-    loop = CIRCLE.format("0").replace("return", "for k in s:\n        k\n    return")
-    stale = [
-        any("changed since the last check: circle;" in note for note in found.notes)
-        for found in (
-            handed_in(path, other, judged=[right]),
-            handed_in(path, right.replace("\n", " \n\n") + "\n\n", judged=[right]),
-            handed_in(path, loop.replace("    return", "        return"), judged=[loop]),
-            handed_in(path, leans, above=[code("half = 2")], judged=["half = 2", leans]),
-            handed_in(path, leans, above=[code("half = 3")], judged=["half = 2", leans]),
-            handed_in(path, leans, code("half = 2"), judged=["half = 2", leans]),
-        )
-    ]
-    assert stale == [True, False, True, False, True, False]
+LOOP = "def circle(s, start, centre):\n    for k in s:\n        k\n    return 0"
+RIGHT, OTHER, HALF, PI = map(CIRCLE.format, ("1", "2", "half", "math.pi"))
 
 
-@pytest.mark.parametrize(("count", "stale"), [(2, False), (5, True), (None, True)])
-def test_an_answer_below_its_check_is_compared_with_it(count, stale):
-    """Where no cell above the check answers, the check judged the cell below it, if that ran."""
-    check = code('check("circle", circle)', execution_count=3)
-    answer = code(CIRCLE.format("1"), execution_count=count)
-    assert changed_since([check, answer], "circle") == stale
+@pytest.mark.parametrize(
+    ("judged", "above", "answer", "below"),
+    [
+        ([RIGHT], [], OTHER, []),
+        ([LOOP], [], LOOP.replace("    return", "        return"), []),
+        (["half = 2", HALF], ["half = 3"], HALF, []),
+        ([STUB, RIGHT], [], STUB, [OTHER]),
+    ],
+)
+def test_an_answer_that_was_edited_after_its_check_is_not_called_right(
+    path, judged, above, answer, below
+):
+    """The verdict belongs to what was judged, wherever the answer and what it uses are."""
+    notes = handed_in(path, answer, *map(code, below), above=map(code, above), judged=judged).notes
+    assert any("changed since the last check: circle;" in note for note in notes)
+
+
+@pytest.mark.parametrize(
+    ("judged", "above", "answer", "below"),
+    [
+        ([RIGHT], [], RIGHT.replace("\n", " \n\n") + "\n\n", []),
+        (["half = 2", HALF], ["half = 2"], HALF, []),
+        (["half = 2", HALF], [], HALF, ["half = 2"]),
+        (["import math", PI], ["import math, os"], PI, []),
+        (["two = 2", "half = two", HALF], ["two = 2", "half = two"], HALF, ["two = 3"]),
+        ([STUB, RIGHT], [], STUB, [RIGHT]),
+    ],
+)
+def test_an_answer_that_means_the_same_is_not_called_changed(path, judged, above, answer, below):
+    """Empty lines, other imports and what the answer does not meet change nothing."""
+    notes = handed_in(path, answer, *map(code, below), above=map(code, above), judged=judged).notes
+    assert not any("changed since the last check" in note for note in notes)
 
 
 def test_what_is_beside_the_notebook_is_not_handed_in(path):
