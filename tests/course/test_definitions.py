@@ -94,7 +94,9 @@ def test_what_is_hidden_below_the_check_is_named(path):
     """A value takes Python's function, or another answer, from an answer that ran before."""
     above = [code("def bang_bang(*a): return 1")]
     for name in "sum", "bang_bang":
-        answer = CIRCLE.format(f"{name}([1])")
+        answer = f"class Turn:\n    def by(self): return {name}([1])\n" + CIRCLE.format(
+            "Turn().by()"
+        )
         (problem,) = handed_in(path, answer, code(f"{name} = 0"), above=above).problems
         assert problem == (
             f"circle uses {name}, which the cell that begins with `{name} = 0` defines again below "
@@ -129,11 +131,13 @@ def test_a_comment_tries_nothing_and_an_empty_stub_replaces_nothing(path):
 
 
 def test_a_given_cell_that_no_answer_needs_does_not_count(path):
-    """A name of the answer's cell has its value from there, whatever a given cell does with it."""
+    """A name of the answer's cell has its value from there, unless the given cell was edited."""
     given = next(x for x in read_cells(path) if "lk.Circle(" in x["source"] and kind(x) == "walk")
     name = min(analyse(given["source"])["binds"])
-    found = handed_in(path, f"{name} = 1\n" + CIRCLE.format(name))
-    assert not any("circle" in problem for problem in found.problems)
+    answer, edited = f"{name} = 1\n" + CIRCLE.format(name), {"lab": "walk", "released": "0"}
+    assert not handed_in(path, answer).problems
+    (problem,) = handed_in(path, answer, code(f"{name} = 2", metadata=edited)).problems
+    assert problem.startswith(f"circle uses {name}, which")
 
 
 @pytest.mark.parametrize(
