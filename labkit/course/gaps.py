@@ -35,18 +35,30 @@ def _code(cells: Iterable[dict[str, Any]]) -> list[dict[str, Any]]:
 
 
 def undefined_names(cells: list[dict[str, Any]], asked: Collection[str]) -> Iterator[str]:
-    """A sentence for each cell that uses names which no cell defines.
+    """A sentence for each cell that uses names which no cell defines, or none above it.
 
     Args:
         cells: The cells of the notebook.
         asked: Names of the questions, which are reported elsewhere.
     """
     code = [cell["source"] for cell in _code(cells)]
-    defined = _KNOWN.union(asked, *map(defined_in, code))
-    if "*" in defined:  # an import of everything may define any name
+    above, written = {*_KNOWN}, set[str]().union(*map(defined_in, code))
+    if "*" in written:  # an import of everything may define any name
         return
+    defined = _KNOWN.union(asked, written)
     for source in code:
-        names = [name for name in analyse(source)["uses"] if name not in defined]
+        found = analyse(source)
+        parts, uses = found["definitions"], {*found["uses"]}
+        at_once = {name for part in parts for name in {*part["outside"]} - {*part["later"]}}
+        early = at_once & uses & written - above
+        above |= early | defined_in(source)
+        if early:
+            yield (
+                f"the cell that begins with `{first_line(source)}` uses "
+                f"{' and '.join(sorted(early))}, which only a cell below it defines; move it below "
+                "that cell, because cells run from the top when the notebook is marked"
+            )
+        names = [name for name in found["uses"] if name not in defined]
         defined.update(names)
         if names:
             yield (

@@ -196,6 +196,19 @@ def test_an_answer_that_means_the_same_is_not_called_changed(path, judged, above
     assert not any("changed since the last check" in note for note in notes)
 
 
+@pytest.mark.parametrize("early", ["half = 2 * four", "half = [four for _ in 'ab']"])
+def test_a_value_above_the_cell_that_it_needs_is_named(path, early):
+    """Cells that ran in another order fail from the top; a function may be above what it uses."""
+    (problem,) = handed_in(path, HALF, code("four = 4"), above=[code(early)]).problems
+    assert problem == (
+        f"the cell that begins with `{early}` uses four, which only a cell below it defines; move "
+        "it below that cell, because cells run from the top when the notebook is marked"
+    )
+    assert not handed_in(path, HALF, code("half = 2")).problems
+    every = "from math import *\n" + early
+    assert not handed_in(path, HALF, code("four = 4"), above=[code(every)]).problems
+
+
 def test_what_is_beside_the_notebook_is_not_handed_in(path):
     """A module or a file of the student's own is missing where the notebook is marked."""
     (path.parent / "mypaths.py").write_text("def circle(*a): return 1")
