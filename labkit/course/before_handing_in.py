@@ -85,7 +85,7 @@ class HandIn:
             counts.append(f"{committed} of {len(self.predictions)} predictions were committed")
         ran = f"; in its last run, {', and '.join(counts)}" if counts else ""
         if self.verdicts and not any(self.verdicts.values()):
-            ran = "; none of its checks was run"
+            ran = "; none of its checks has left a result"
         end = (
             "correct what is marked with [fix] first."
             if self.problems

@@ -49,7 +49,7 @@ def test_an_untouched_notebook_is_whole_and_not_run(folder):
     assert set(found.verdicts.values()) == {None}
     assert "  bang_bang: not run" in str(found).splitlines()
     assert str(found).endswith(
-        "can be handed in as it is; none of its checks was run. Without a text, "
+        "can be handed in as it is; none of its checks has left a result. Without a text, "
         "why_twice_the_time will earn nothing."
     )
 
