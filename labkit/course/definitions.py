@@ -11,7 +11,7 @@ import re
 from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from typing import Any
 
-from .gaps import first_line
+from .gaps import the_cell
 from .notebook import grade_id, is_edited, kind, last_judged
 from .source import Analysis, analyse
 from .withheld import last_definitions
@@ -73,7 +73,7 @@ def cells_that_count(cells: Cells, asked: Iterable[str]) -> dict[int, Analysis]:
 
 def changed_since(cells: Cells, question: str) -> bool:
     """Whether an answer, or what it uses, was changed after its check."""
-    judged, check = last_judged(cells, question), max(_checks(cells, question), default=len(cells))
+    judged, (check, _) = last_judged(cells, question), _last_check(cells, question)
     # What is defined above the check replaces what a cell below it defines.
     order = sorted(_code(cells), key=lambda k: (k <= check, k))
     return bool(judged) and judged != answer_hash((cells[k]["source"] for k in order), question)
@@ -105,10 +105,9 @@ def judged_another(cells: Cells, question: str, asked: Collection[str]) -> Itera
         question: The question's name.
         asked: The names of all questions.
     """
-    count, checked = cells_that_count(cells, asked), _checks(cells, question)
-    written, check = _answering(cells, question), max(checked, default=len(cells))
-    tried = checked and _call(question).findall(_source(cells, check))[-1]
-    if tried and tried != question:
+    count, written = cells_that_count(cells, asked), _answering(cells, question)
+    check, tried = _last_check(cells, question)
+    if tried not in ("", question):
         yield (
             f"the check of {question} tried {tried}, but {question} is marked; check {question} "
             f"itself, or rename {tried} to {question} and check it again"
@@ -120,23 +119,21 @@ def judged_another(cells: Cells, question: str, asked: Collection[str]) -> Itera
         return
     if not _same(question, above[-1][1], own[-1][1]):
         yield (
-            f"the cell that begins with `{first_line(_source(cells, own[-1][0]))}` defines "
-            f"{question} again below its check, and counts; delete it, or check again below it"
+            f"{the_cell(cells[own[-1][0]]['source'])} defines {question} again below its check, "
+            "and counts; delete it, or check again below it"
         )
         return
     for k, found in count.items():
         if written[-1] < k <= check and question in {*found["binds"]} - {*found["stubs"]}:
             yield (
-                f"the check of {question} tried what the cell that begins with "
-                f"`{first_line(_source(cells, k))}` defines, but the cell that begins with "
-                f"`{first_line(_source(cells, written[-1]))}` is marked; write your answer there"
+                f"the check of {question} tried what {the_cell(cells[k]['source'])} defines, but "
+                f"{the_cell(cells[written[-1]]['source'])} is marked; write your answer there"
             )
     for name, place in _used_anew(parts, above[-1][1], check):
         yield (
-            f"{question} uses {name}, which the cell that begins with "
-            f"`{first_line(_source(cells, place))}` defines again below the check, and "
-            f"{question} is marked with that {name}; change one of the two names, or check "
-            f"{question} again below it"
+            f"{question} uses {name}, which {the_cell(cells[place]['source'])} defines again "
+            f"below the check, and {question} is marked with that {name}; change one of the two "
+            f"names, or check {question} again below it"
         )
 
 
@@ -167,20 +164,15 @@ def _code(cells: Cells) -> dict[int, Analysis]:
     return {k: analyse(x["source"]) for k, x in enumerate(cells) if x["cell_type"] == "code"}
 
 
-def _source(cells: Cells, place: int) -> str:
-    return str(cells[place]["source"]) if place < len(cells) else ""
-
-
 def _answering(cells: Cells, question: str) -> list[int]:
     home = {k for k, cell in enumerate(cells) if grade_id(cell) == question}
     return written_cells(_code(cells), home, question)
 
 
-def _checks(cells: Cells, question: str) -> list[int]:
-    return [k for k in _code(cells) if _call(question).search(_source(cells, k))]
-
-
-def _call(question: str) -> re.Pattern[str]:
-    """Calls of a question's check that are not comments, and the name that each tries, if any."""
+def _last_check(cells: Cells, question: str) -> tuple[int, str]:
+    """Where a question's last check is, else the end; and the name that it tries, or ""."""
     call = rf"""^[^#\n]*\bcheck\(\s*["']{question}["'](?:\s*,\s*(\w+)\s*\))?"""
-    return re.compile(call, re.MULTILINE)
+    for k in reversed(_code(cells)):
+        if tried := re.findall(call, cells[k]["source"], re.MULTILINE):
+            return k, tried[-1]
+    return len(cells), ""

@@ -54,16 +54,16 @@ def undefined_names(cells: list[dict[str, Any]], asked: Collection[str]) -> Iter
         above |= early | defined_in(source)
         if early:
             yield (
-                f"the cell that begins with `{first_line(source)}` uses "
-                f"{' and '.join(sorted(early))}, which only a cell below it defines; move it below "
-                "that cell, because cells run from the top when the notebook is marked"
+                f"{the_cell(source)} uses {' and '.join(sorted(early))}, which only a cell below "
+                "it defines; move it below that cell, because cells run from the top when the "
+                "notebook is marked"
             )
         names = [name for name in found["uses"] if name not in defined]
         defined.update(names)
         if names:
             yield (
-                f"no cell defines {' or '.join(names)}, which the cell that begins with "
-                f"`{first_line(source)}` uses; {'; '.join(dict.fromkeys(map(_todo, names)))}"
+                f"no cell defines {' or '.join(names)}, which {the_cell(source)} uses; "
+                f"{'; '.join(dict.fromkeys(map(_todo, names)))}"
             )
 
 
@@ -84,9 +84,8 @@ def unreadable(cells: list[dict[str, Any]]) -> Iterator[str]:
     for cell in _code(cells):
         if broken := analyse(cell["source"])["broken"]:
             yield (
-                f"Python cannot read the cell that begins with `{first_line(cell['source'])}` "
-                f"({_shown(broken, 120)}), so what it defines earns nothing; correct it, run all "
-                "cells from the top and save the file"
+                f"Python cannot read {the_cell(cell['source'])} ({_shown(broken, 120)}), so what "
+                "it defines earns nothing; correct it, run all cells from the top and save the file"
             )
 
 
@@ -122,13 +121,18 @@ def first_error(cells: list[dict[str, Any]]) -> str:
             if failed and not analyse(cell["source"])["broken"]:  # those are `unreadable`
                 says = _shown(f"{output.get('ename')}: {output.get('evalue')}", 120)
                 return (
-                    f"the cell that begins with `{first_line(cell['source'])}` ended with an "
-                    f"error ({says}), and Run All Cells stops there; correct or delete it"
+                    f"{the_cell(cell['source'])} ended with an error ({says}), and Run All Cells "
+                    "stops there; correct or delete it"
                 )
     return ""
 
 
-def first_line(source: str) -> str:
+def the_cell(source: str) -> str:
+    """What a sentence calls a cell."""
+    return f"the cell that begins with `{_first_line(source)}`"
+
+
+def _first_line(source: str) -> str:
     """The first line of a cell that is not a comment, shortened."""
     lines = (line.strip() for line in source.splitlines())
     return _shown(next((line for line in lines if line and line[0] != "#"), ""), 60)
@@ -205,7 +209,7 @@ def review_texts(
             problems.append(f"no cell holds the text {text}. {how_to_restore(name)}")
         elif words < WORDS[0] and (loose := _loose_text(cells, found[0])):
             problems.append(
-                f"{has}, but the text that begins with `{first_line(loose)}` is in a cell beside "
+                f"{has}, but the text that begins with `{_first_line(loose)}` is in a cell beside "
                 f"it; only the cell of {text} is read, so cut the text out and paste it there"
             )
         elif words < WORDS[0]:
