@@ -59,7 +59,7 @@ def needed_cells(cells: Mapping[int, Analysis], places: Iterable[int]) -> set[in
 
 
 def cells_that_count(cells: Cells, asked: Iterable[str]) -> dict[int, Analysis]:
-    """The cells of code that matter in marking: no given cell on which no answer depends.
+    """The cells of code that matter in marking: all but given ones on which no answer depends.
 
     Args:
         cells: The cells of the notebook.
