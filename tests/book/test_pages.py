@@ -84,9 +84,15 @@ def html_files(book):
     return [p for p in book.rglob("*.html") if "_static" not in p.parts]
 
 
-def test_internal_links_and_downloads_lead_somewhere(book):
+@pytest.fixture(scope="module")
+def pages(book):
+    """Each page of the book, read once for all tests."""
+    return {p: BeautifulSoup(p.read_text(), "html.parser") for p in html_files(book)}
+
+
+@pytest.mark.xdist_group("read pages")
+def test_internal_links_and_downloads_lead_somewhere(pages):
     """Each address within the book is a file, and the part after # is an id or a name in it."""
-    pages = {p: BeautifulSoup(p.read_text(), "html.parser") for p in html_files(book)}
     places = {
         path: {tag.get(key) for key in ("id", "name") for tag in page.find_all(attrs={key: True})}
         for path, page in pages.items()
@@ -112,10 +118,10 @@ def test_nothing_points_at_a_network(book):
     assert {k: v for k, v in found.items() if v} == {}
 
 
-def test_every_picture_has_words(book):
+@pytest.mark.xdist_group("read pages")
+def test_every_picture_has_words(pages):
     """Figures have a caption and a description, drawings a label, and images an alt."""
-    for path in html_files(book):
-        page = BeautifulSoup(path.read_text(), "html.parser")
+    for path, page in pages.items():
         for figure in page.select(".lab-figure, .lk-embed"):
             assert figure.select_one("figcaption").get_text(strip=True), path.name
             assert figure.select_one("details :is(p, ol)").get_text(strip=True), path.name
@@ -125,8 +131,9 @@ def test_every_picture_has_words(book):
             assert image.get("alt") is not None, f"{path.name}: {image}"
 
 
-def test_ids_are_unique(book):
+@pytest.mark.xdist_group("read pages")
+def test_ids_are_unique(pages):
     """On no page of the book do two elements have one id."""
-    for path in html_files(book):
-        ids = [e["id"] for e in BeautifulSoup(path.read_text(), "html.parser").select("[id]")]
+    for path, page in pages.items():
+        ids = [e["id"] for e in page.select("[id]")]
         assert len(ids) == len(set(ids)), (path.name, [i for i in ids if ids.count(i) > 1][:5])

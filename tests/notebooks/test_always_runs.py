@@ -34,13 +34,15 @@ def subsets(name):
         yield f"others {k}", tuple(q for q, right in zip(every, some, strict=True) if not right)
 
 
+def when(label):
+    """The quick tests have all and none, the gate two pairs more, and `make soak` the rest."""
+    if label in {"none", "all"}:
+        return ()
+    return pytest.mark.slow if label[-1] < "2" else pytest.mark.soak
+
+
 CASES = [
-    pytest.param(
-        name,
-        which,
-        id=f"{name}: {label}",
-        marks=() if label in {"none", "all"} else pytest.mark.slow,  # minutes together
-    )
+    pytest.param(name, which, id=f"{name}: {label}", marks=when(label))
     for name in NAMES
     for label, which in subsets(name)
 ]
