@@ -2,8 +2,8 @@
 
 Each attempt is kept unchanged in ``attempts/STUDENT/ASSIGNMENT/TIME-HASH/``.  The file
 ``attempt.json`` beside it records the name of the notebook and when it was handed in, or when a
-platform showed it.  Nothing there is ever overwritten or deleted.  Identical content is the same
-attempt, however often it is handed in.
+platform showed it.  No new hand-in overwrites a notebook or deletes one.  Identical content is the
+same attempt, however often it is handed in; each time is added to the record.
 
 **The latest hand-in counts.**  The exchange records its time.  A download from Moodle or Canvas has
 no hand-in times, only the time of the download itself.  Such a hand-in is therefore dated by the
