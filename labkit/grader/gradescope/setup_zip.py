@@ -34,7 +34,7 @@ def autograder(course: Course, assignment: str, to: Path) -> list[Student]:
     bundle = Bundle.of(course, assignment)
     files = {f"build/course/bundle/{assignment}.json": json.dumps(bundle.data)}
     handles, roster = bundle.arms.handles, read_roster(course).students
-    own = any(bundle.of_student(student) is not bundle for student in [*handles][:1])
+    own = bundle.of_student(next(iter(handles), "")) is not bundle  # one student stands for all
     if own:
         by_mail = {x.email.casefold(): handles[x.id] for x in roster if x.email and x.id in handles}
         files[HANDLES] = Arms(bundle.arms.secret, by_mail).text()
