@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import re
+import shutil
 import subprocess
 import sys
 import zipfile
@@ -11,6 +12,7 @@ import zipfile
 import pytest
 from handmade import ROOT
 
+from labkit.course.authoring.layout import Course
 from labkit.grader.terms.student_bundle import NOT_FOR_STUDENTS, student_bundle
 
 pytestmark = pytest.mark.xdist_group("student bundle")
@@ -31,7 +33,7 @@ main(["--help"])
 def unpacked(released, tmp_path_factory):
     """The students' zip, unpacked, with its wheel unpacked beside it."""
     folder = tmp_path_factory.mktemp("handout")
-    course = released
+    course = Course(shutil.copytree(released.root, folder / "course", symlinks=True))
     for name in (
         "labkit",
         "book",
