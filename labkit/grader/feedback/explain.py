@@ -40,7 +40,7 @@ def explain(course: Course, student: str, question: str, assignment: str | None 
     """Explain to the instructor why an answer has its mark.
 
     An answer that tests check is tried again with all hidden cases shown, and a page is written
-    with its numbers and runs.  An answer that a person marks is not run.
+    with any numbers and runs of it.  An answer that a person marks is not run.
 
     Args:
         course: The course.
@@ -141,7 +141,7 @@ def _by_the_grader(
     file = course.build / "explain" / student / f"{question}.html"
     head = replace(mark, lines=lines, penalty=0.0, late="", raw=line.score, points=line.points)
     write(file, page(replace(again, notes=(*again.notes, _PRIVATE)), head))
-    yield f"\nA page with numbers and runs, for you only: {file}"
+    yield f"\nThe same as a page, with any numbers and runs, for you only: {file}"
 
 
 def _with_syntax_error(source: str) -> str:
