@@ -112,17 +112,13 @@ def _by_the_grader(
     changed = "the release" * (now_hash != result.hashes["bundle"])
     changed = changed or "labkit" * (again.hashes["engine"] != result.hashes["engine"])
     as_before = (shown.right, shown.earned) == (now.right, now.earned)
-    if shown.outcome is Outcome.NOT_ATTEMPTED:
-        pass  # no case decided the mark
-    elif hidden:
+    if hidden and shown.outcome is not Outcome.NOT_ATTEMPTED:
         if not changed or (as_before and changed == "labkit"):
             yield "\nThe hidden case that decided; do not show it before the term ends:"
             yield from (
                 wrapped(f"  {test_line(test, now)}") for test in now.tests if test.name in hidden
             )
-    elif shown.outcome is Outcome.NOT_COUNTED:
-        pass  # a withheld tool decided the mark
-    elif not shown.right:
+    elif shown.outcome in (Outcome.WRONG, Outcome.ERROR):
         yield "\nThe tests that the student has seen decided this mark; no hidden case did."
     if not as_before:
         says = "ATTENTION: this time the outcome was a different one:"
