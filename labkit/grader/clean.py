@@ -1,4 +1,4 @@
-"""Data and names that a stranger wrote, made safe to store and to show."""
+"""Data and names that a stranger wrote, made safe; numbers, times and names for a sentence."""
 
 from __future__ import annotations
 

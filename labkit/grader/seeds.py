@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from pathlib import Path
 
 from ..course.authoring.layout import Course
 from ..course.seed import PUBLIC_SEED
@@ -15,16 +16,9 @@ def seed_of(course: Course) -> int:
     Raises:
         LabkitError: The term's record cannot be read.
     """
-    file = course.term
-    if not file.exists():
+    if not course.term.exists():
         return PUBLIC_SEED
-    try:
-        return int(json.loads(file.read_text(encoding="utf-8"))["seed"])
-    except (ValueError, KeyError, TypeError):
-        raise LabkitError(
-            f"{file} is damaged and holds no seed; restore it, or write the term's as "
-            '{"seed": 123}'
-        ) from None
+    return _seed_in(course.term, 'write it again: {"seed": 123}')
 
 
 def seed_for(course: Course, assignment: str) -> int:
@@ -39,14 +33,17 @@ def seed_for(course: Course, assignment: str) -> int:
     seed = seed_of(course)
     bundle = course.bundle / f"{assignment}.json"
     if seed == PUBLIC_SEED and bundle.exists():
-        try:
-            seed = int(json.loads(bundle.read_text(encoding="utf-8"))["seed"])
-        except (TypeError, ValueError, KeyError) as error:
-            raise LabkitError(
-                f"{bundle} is damaged, and the seed of its hidden cases is lost ({error}); restore "
-                f"it, or name a seed: labkit release {assignment} --seed {seed}"
-            ) from None
+        return _seed_in(bundle, f"name a seed: labkit release {assignment} --seed {seed}")
     return seed
+
+
+def _seed_in(file: Path, instead: str) -> int:
+    """The seed in a file; if it is damaged, the error says what can be done ``instead``."""
+    try:
+        return int(json.loads(file.read_text(encoding="utf-8"))["seed"])
+    except (ValueError, KeyError, TypeError):
+        says = f"{file} is damaged and holds no seed; restore it, or {instead}"
+        raise LabkitError(says) from None
 
 
 def public_warning(seed: int) -> str:

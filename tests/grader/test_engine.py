@@ -42,6 +42,23 @@ def test_full_marks_and_none(marks, solved, blank):
     assert {q.verdict.outcome for q in result.questions} == {"not attempted"}
 
 
+@pytest.mark.parametrize(
+    "source, outcome",
+    [
+        ("", Outcome.NOT_ATTEMPTED),
+        ("# my circle\n\n  # comes later", Outcome.NOT_ATTEMPTED),
+        ("def cricle(s, start, centre):\n    return s", Outcome.ERROR),
+    ],
+)
+def test_a_cell_that_was_emptied_is_not_attempted(marks, solved, source, outcome):
+    """Nor is one with comments alone; a function under another name is an attempt that failed."""
+    result = marks(put(solved, "circle", source))
+    circle = next(q for q in result.questions if q.verdict.name == "circle")
+    assert circle.verdict.outcome is outcome
+    assert circle.notes == ("circle: no cell defines it",) and circle.source == source
+    assert result.score == FULL - 4
+
+
 def test_same_verdicts_as_in_the_notebook(marks, blank, released, bundle):
     """Each known mistake is told by the same words here as by `mark` in one process."""
     from tests.synthetic.inline import inline

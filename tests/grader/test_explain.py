@@ -155,5 +155,6 @@ def test_nothing_is_promised_where_nothing_was_attempted(course, capsys):
     capsys.readouterr()
     assert main(["explain", "ada", "my_lag", *words]) == 0
     said = capsys.readouterr().out
+    assert "with any numbers and runs, for you only" in said, "there are none"
     assert "my_lag: not attempted yet" in said and "The answer:\nmy_lag = None" in said
     assert "decided" not in said

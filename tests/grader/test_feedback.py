@@ -170,6 +170,15 @@ def test_numbers_beside_those_expected(result):
     assert answered(replace(call_question(), judge=Close(rtol=10.0)), double).numbers is None
 
 
+def test_rounding_errors_stand_as_zero_beside_the_numbers_that_differ():
+    """Numbers far below the tolerance are 0, never -0; a wrong number as small as 2e-9 stays."""
+    call = Call((1.0,), expected=np.array([1.2e-16, -0.0, 0.0, 1.0]))
+    question = Question("f", 1.0, "F.", Close(atol=1e-9), (Test("t", (call,)),))
+    found = answered(question, lambda x: [-7.7e-17, 1e-17, 2e-9, 1.0]).numbers
+    assert str(found["expected"]) == "[0.0, 0.0, 0.0, 1.0]"
+    assert str(found["given"]) == "[0.0, 0.0, 2e-09, 1.0]"
+
+
 def test_every_measure_has_a_name():
     """The table of measures knows all that a summary has."""
     assert set(MEASURES) == set(Summary.__dataclass_fields__)

@@ -64,6 +64,19 @@ def test_a_public_seed_is_said_to_be_public(course, capsys):
     assert "anyone can compute" not in capsys.readouterr().out
 
 
+def test_another_seed_than_the_terms_is_said_to_be_another(course, capsys):
+    """In a term, whoever names a seed reads that it is not the term's, and how to use that one."""
+    arguments = ["release", "00_warmup", "--course", str(course.root)]
+    said = "made with seed 41, which is not the term's; to use the term's, type: labkit release 00"
+    for seed, more, says in ((None, ["--seed", "41"], False), (43, ["--seed", "41"], True),
+                             (43, ["--seed", "43"], False), (43, [], False)):  # fmt: skip
+        if seed:
+            course.term.parent.mkdir(exist_ok=True)
+            course.term.write_text(json.dumps({"seed": seed}))
+        assert main([*arguments, *more]) == 0
+        assert (said in capsys.readouterr().out) is says
+
+
 def test_the_next_term_archives_the_names_and_forgets_them(course, capsys):
     """What holds names moves into one folder, and one command deletes it."""
     (course.submitted / "ada" / "01_paths").mkdir(parents=True)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import re
+import shutil
 import subprocess
 import sys
 import zipfile
@@ -11,6 +12,8 @@ import zipfile
 import pytest
 from handmade import ROOT
 
+from labkit.__main__ import main
+from labkit.course.authoring.layout import Course
 from labkit.grader.terms.student_bundle import NOT_FOR_STUDENTS, student_bundle
 
 pytestmark = pytest.mark.xdist_group("student bundle")
@@ -31,7 +34,7 @@ main(["--help"])
 def unpacked(released, tmp_path_factory):
     """The students' zip, unpacked, with its wheel unpacked beside it."""
     folder = tmp_path_factory.mktemp("handout")
-    course = released
+    course = Course(shutil.copytree(released.root, folder / "course", symlinks=True))
     for name in (
         "labkit",
         "book",
@@ -51,6 +54,18 @@ def unpacked(released, tmp_path_factory):
     with zipfile.ZipFile(wheel) as archive:
         archive.extractall(folder / "wheel")
     return folder
+
+
+@pytest.mark.parametrize(
+    "words", [["student-bundle", "01_paths"], ["export", "01_paths", "--layout", "gradescope"]]
+)
+def test_a_course_without_labkits_source_is_a_sentence(course, words, tmp_path, capsys):
+    """Both hand out labkit itself; the sentence says what to name, and no file is begun."""
+    to = tmp_path / "made.zip"
+    assert main([*words, "--to", str(to), "--course", str(course.root)]) == 2
+    said = capsys.readouterr().err
+    assert f"{course.root} holds a course without labkit's source" in said
+    assert "the whole repository, or name it with --course" in said and not to.exists()
 
 
 @pytest.mark.slow

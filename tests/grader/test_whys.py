@@ -81,3 +81,17 @@ def test_whys_of_notebooks_that_were_not_handed_out_are_not_drawn(course):
     record(course, NAME, [result])
     with open_gradebook(course) as book:
         assert book.find_grade(WHY, NAME, NAME, "ada").needs_manual_grade
+
+
+def test_whys_are_drawn_under_the_seed_of_the_term(course):
+    """Also those of a notebook that was released with another seed: two of all, not of each."""
+    course.term.parent.mkdir(exist_ok=True)
+    course.term.write_text('{"seed": 16}')  # under 7, the seed of the release, WHY is not drawn
+    for name in {*course.names()} - {NAME}:
+        (course.bundle / f"{name}.json").write_text("{}")
+    hand_in(course, NAME, "ada", notebook_of("ada"))
+    result = result_of(course, "ada", written={WHY: "Because it is so."}, data=notebook_of("ada"))
+    Results(course, NAME).keep(result)
+    record(course, NAME, [result])
+    with open_gradebook(course) as book:
+        assert book.find_grade(WHY, NAME, NAME, "ada").needs_manual_grade

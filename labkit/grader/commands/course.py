@@ -78,7 +78,7 @@ def release(course: Course, names: tuple[str, ...], seed: int | None) -> int:
     refused, the others are still made; the reasons come at the end, with exit code 1.
     """
     from ..each import Failures
-    from ..seeds import public_warning, seed_for
+    from ..seeds import public_warning, seed_for, seed_of
     from ..terms.release import release
 
     names = names or course.names()
@@ -100,6 +100,11 @@ def release(course: Course, names: tuple[str, ...], seed: int | None) -> int:
             )
             for warning in filter(None, map(public_warning, seeds)):
                 print(warning)
+            if course.term.exists() and seed not in (None, seed_of(course)):
+                print(
+                    f"hidden cases made with seed {seed}, which is not the term's; to use the "
+                    f"term's, type: labkit release {' '.join(names)}"
+                )
             print(f"for students: {course.release}\nfor graders, with hidden cases: {course.build}")
     return failures.code
 

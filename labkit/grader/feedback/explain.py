@@ -40,7 +40,7 @@ def explain(course: Course, student: str, question: str, assignment: str | None 
     """Explain to the instructor why an answer has its mark.
 
     An answer that tests check is tried again with all hidden cases shown, and a page is written
-    with its numbers and runs.  An answer that a person marks is not run.
+    with any numbers and runs of it.  An answer that a person marks is not run.
 
     Args:
         course: The course.
@@ -112,17 +112,13 @@ def _by_the_grader(
     changed = "the release" * (now_hash != result.hashes["bundle"])
     changed = changed or "labkit" * (again.hashes["engine"] != result.hashes["engine"])
     as_before = (shown.right, shown.earned) == (now.right, now.earned)
-    if shown.outcome is Outcome.NOT_ATTEMPTED:
-        pass  # no case decided the mark
-    elif hidden:
+    if hidden and shown.outcome is not Outcome.NOT_ATTEMPTED:
         if not changed or (as_before and changed == "labkit"):
             yield "\nThe hidden case that decided; do not show it before the term ends:"
             yield from (
                 wrapped(f"  {test_line(test, now)}") for test in now.tests if test.name in hidden
             )
-    elif shown.outcome is Outcome.NOT_COUNTED:
-        pass  # a withheld tool decided the mark
-    elif not shown.right:
+    elif shown.outcome in (Outcome.WRONG, Outcome.ERROR):
         yield "\nThe tests that the student has seen decided this mark; no hidden case did."
     if not as_before:
         says = "ATTENTION: this time the outcome was a different one:"
@@ -141,7 +137,7 @@ def _by_the_grader(
     file = course.build / "explain" / student / f"{question}.html"
     head = replace(mark, lines=lines, penalty=0.0, late="", raw=line.score, points=line.points)
     write(file, page(replace(again, notes=(*again.notes, _PRIVATE)), head))
-    yield f"\nA page with numbers and runs, for you only: {file}"
+    yield f"\nThe same as a page, with any numbers and runs, for you only: {file}"
 
 
 def _with_syntax_error(source: str) -> str:

@@ -14,7 +14,7 @@ from ...course.own_arm import HANDLES, Arms
 from ..pages import TEMPLATES
 from ..students.class_list import Student
 from ..students.roster import read_roster
-from ..terms.student_bundle import wheel
+from ..terms.student_bundle import check_repository, wheel
 
 
 def autograder(course: Course, assignment: str, to: Path) -> list[Student]:
@@ -29,12 +29,14 @@ def autograder(course: Course, assignment: str, to: Path) -> list[Student]:
         Students whose own arm Gradescope cannot find, as the roster has no address for them.
 
     Raises:
-        LabkitError: The assignment was not released, or the wheel could not be built.
+        LabkitError: The assignment was not released, the course is not the whole repository, or
+            the wheel could not be built.
     """
+    check_repository(course.root)
     bundle = Bundle.of(course, assignment)
     files = {f"build/course/bundle/{assignment}.json": json.dumps(bundle.data)}
     handles, roster = bundle.arms.handles, read_roster(course).students
-    own = any(bundle.of_student(student) is not bundle for student in [*handles][:1])
+    own = bundle.of_student(next(iter(handles), "")) is not bundle  # one student stands for all
     if own:
         by_mail = {x.email.casefold(): handles[x.id] for x in roster if x.email and x.id in handles}
         files[HANDLES] = Arms(bundle.arms.secret, by_mail).text()

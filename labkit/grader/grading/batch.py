@@ -67,7 +67,8 @@ class GradedSubmission:
 
     Attributes:
         result: The result that counts.
-        says: How the mark differs from the previous one; empty if it does not, or is the first.
+        says: What became of the previous mark: "as before", "was 3", or "kept" and why; empty if
+            there was none, or the submission was graded again and has the same mark.
     """
 
     result: Result

@@ -86,6 +86,7 @@ def grade(
     absent = bundle.added - todo.places.keys()
     todo = replace(todo, notes={**todo.notes, **dict.fromkeys(absent, (ADDED,))})
     tools = {q.name: withheld_tools(todo.looks, q.name, q.withheld) for q in bundle.questions}
+    absent |= todo.emptied()
     questions = [q for q in bundle.questions if q.name not in absent and not tools[q.name]]
     with closing(Session(sandbox, todo.steps, limits)) as session:
         with suppress(Disconnected):
@@ -215,7 +216,7 @@ def _mark_safely(function: RemoteFunction, tried: PublicResult) -> Verdict:
 
 
 def _unasked_verdict(question: Question, tools: Mapping[str, tuple[str, ...]]) -> Verdict:
-    """The verdict on a question that was not tried: it uses a withheld tool, or is missing."""
+    """The verdict on a question that was not tried: it uses a withheld tool, or has no answer."""
     if tools[question.name]:
         return not_counted(question, tools[question.name])
     return all_alike(question, Outcome.NOT_ATTEMPTED)

@@ -26,7 +26,7 @@ class Plan:
     Attributes:
         steps: The cells to run.
         places: For each question, the number of the cell that answers it.
-        unread: For each question that no cell answers, the text of the cells meant for it.
+        unread: For each question that no cell answers, the text of the cells meant for it, if any.
         notes: What was unusual, by question; under "" what concerns the whole notebook.
         own: The student's own cells, each with its ``type``, its ``source`` and the released cell
             ``after`` which it comes.
@@ -48,6 +48,11 @@ class Plan:
         """The text of the cell that answers a question or is meant to; empty if there is none."""
         place, unread = self.places.get(question), self.unread.get(question, "")
         return next((step.source for step in self.steps if step.number == place), unread)
+
+    def emptied(self) -> set[str]:
+        """The questions that no cell answers, and in whose own cell are at most comments."""
+        lines = {name: text.split("\n") for name, text in self.unread.items()}
+        return {k for k, v in lines.items() if all(x.lstrip()[:1] in {"", "#"} for x in v)}
 
 
 def plan(cells: Sequence[Cell], manifest: Sequence[Cell]) -> Plan:
@@ -73,8 +78,8 @@ def plan(cells: Sequence[Cell], manifest: Sequence[Cell]) -> Plan:
             ignored |= others
             if place is not None:
                 places[m["grade_id"]] = place
-            else:
-                unread[m["grade_id"]] = _home_cells(own, m)
+            elif home := _home_cells(own, m):
+                unread[m["grade_id"]] = home
     in_order = [places[m["grade_id"]] for m in manifest if m.get("grade_id") in places]
     if in_order != sorted(in_order):
         notes.setdefault("", []).append("the cells are in another order than in the release")

@@ -44,16 +44,17 @@ def numbers(question: Question, tried: PublicResult) -> Numbers | None:
     """The numbers of the first public call whose answer is wrong; None if there are none.
 
     Returns:
-        The ``call``; the first `MAX_NUMBERS` numbers ``expected`` and ``given``; and ``of``, how
-        many numbers the answer has.
+        The ``call``; the first `MAX_NUMBERS` numbers ``expected`` and ``given``, in which those far
+        below the tolerance are 0; and ``of``, how many numbers the answer has.
     """
+    noise = 1e-4 * getattr(question.judge, "atol", 0.0)
     found = tried.first_mismatch(question)
     if found is None or not len(found.given) or not np.isfinite(found.expected).all():
         return None
     return {
         "call": found.call,
-        "expected": [float(f"{x:.6g}") for x in found.expected[:MAX_NUMBERS]],
-        "given": [float(f"{x:.6g}") for x in found.given[:MAX_NUMBERS]],
+        "expected": [_short(x, noise) for x in found.expected[:MAX_NUMBERS]],
+        "given": [_short(x, noise) for x in found.given[:MAX_NUMBERS]],
         "of": len(found.given),
     }
 
@@ -99,6 +100,10 @@ def encode_to_fit(motion: Motion) -> str:
     short = MIN_SAMPLES / (motion.t[-1] - motion.t[0])
     texts = (motion.to_json(max(rate, short)) for rate in RATES)
     return next((text for text in texts if len(text.encode()) <= MAX_BYTES), "")
+
+
+def _short(x: float, noise: float) -> float:
+    return float(f"{x:.6g}") if abs(x) > noise else 0.0
 
 
 def _rounded(x: Any) -> float | None:

@@ -24,6 +24,7 @@ from ..clean import clean_text
 from ..each import Failure, for_student
 from ..nbgrader.autograded_notebook import as_typed
 from ..pseudonyms import pseudonyms
+from ..seeds import seed_for
 from ..students.class_list import Student
 from ..students.roster import read_roster
 from ..submission import Submission
@@ -77,7 +78,7 @@ def hand_out(course: Course, assignment: str) -> Iterator[str | Failure]:
         else:
             told[author] = done
     code = pseudonyms(course)
-    to_read = readers(int(bundle.data["seed"]), reports, people)
+    to_read = readers(seed_for(course, assignment), reports, people)
     new = {who: handed_out(course, assignment, who) for who in to_read}
     new = {who: path for who, path in new.items() if not path.exists()}
     for student, path in new.items():

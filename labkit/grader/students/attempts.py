@@ -2,8 +2,8 @@
 
 Each attempt is kept unchanged in ``attempts/STUDENT/ASSIGNMENT/TIME-HASH/``.  The file
 ``attempt.json`` beside it records the name of the notebook and when it was handed in, or when a
-platform showed it.  Nothing there is ever overwritten or deleted.  Identical content is the same
-attempt, however often it is handed in.
+platform showed it.  No new hand-in overwrites a notebook or deletes one.  Identical content is the
+same attempt, however often it is handed in; each time is added to the record.
 
 **The latest hand-in counts.**  The exchange records its time.  A download from Moodle or Canvas has
 no hand-in times, only the time of the download itself.  Such a hand-in is therefore dated by the
@@ -116,11 +116,11 @@ def attempts(course: Course, student: str, assignment: str) -> tuple[Attempt, ..
     return tuple(_read(path) for path in sorted(place.glob(f"*/{RECORD}")))
 
 
-def choose(all: Sequence[Attempt], assignment: str) -> Counted | None:
+def choose(theirs: Sequence[Attempt], assignment: str) -> Counted | None:
     """The attempt that counts, by the latest hand-in; None if there are no attempts."""
     found: list[Counted] = []
-    for origin in sorted({x.origin for one in all for x in one.hand_ins}):
-        shown = [(x, one) for one in all for x in one.hand_ins if x.origin == origin]
+    for origin in sorted({x.origin for one in theirs for x in one.hand_ins}):
+        shown = [(x, one) for one in theirs for x in one.hand_ins if x.origin == origin]
         shown.sort(key=lambda pair: (pair[0].when, *_rank(pair[0], assignment), pair[1].sha256))
         at_each_time = {hand_in.when: (hand_in, one) for hand_in, one in shown}
         *earlier, (first, last) = at_each_time.values()
@@ -138,19 +138,19 @@ def counted_attempt(course: Course, student: str, assignment: str) -> Counted | 
     Raises:
         LabkitError: A record or the rules file is damaged.
     """
-    all, rules = attempts(course, student, assignment), read_rules(course)
+    theirs, rules = attempts(course, student, assignment), read_rules(course)
     due = rules.due_for(student, assignment)
     if due is None or rules.counts == "latest":
-        return choose(all, assignment)
+        return choose(theirs, assignment)
 
-    def taken(x: HandIn, one: Attempt) -> bool:
-        return (x.when <= due and not x.late) or _by_a_person(x, one)
+    def in_time(one: Attempt) -> Attempt:
+        taken = (x for x in one.hand_ins if (x.when <= due and not x.late) or _by_a_person(x, one))
+        return replace(one, hand_ins=tuple(taken))
 
-    shown = (replace(one, hand_ins=tuple(x for x in one.hand_ins if taken(x, one))) for one in all)
-    found = choose([one for one in shown if one.hand_ins], assignment)
+    found = choose([one for one in map(in_time, theirs) if one.hand_ins], assignment)
     if found is None:
-        return choose(all, assignment)
-    return Counted(next(one for one in all if one.file == found.attempt.file), found.first)
+        return choose(theirs, assignment)
+    return Counted(next(one for one in theirs if one.file == found.attempt.file), found.first)
 
 
 def perhaps_late(course: Course, student: str, assignment: str) -> str:

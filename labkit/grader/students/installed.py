@@ -204,6 +204,6 @@ def _record_put_back(
 def _of_another(course: Course, chosen: Counted, folder: Path) -> bool:
     """Whether the time beside a file is that of another attempt of the student."""
     when = read_time(read_stamp(folder))
-    all = attempts(course, folder.parent.name, folder.name) if when else ()
-    others = (one for one in all if one.sha256 != chosen.attempt.sha256)
+    theirs = attempts(course, folder.parent.name, folder.name) if when else ()
+    others = (one for one in theirs if one.sha256 != chosen.attempt.sha256)
     return any(x.when == when for one in others for x in one.hand_ins)

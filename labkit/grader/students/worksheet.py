@@ -103,8 +103,8 @@ def keep_times(
     zone, taken = ZoneInfo(rules.zone), 0
     late, left, waiting, returned = (list[str]() for _ in range(4))
     for entry, student in rows:
-        all = attempts(course, student.id, assignment)
-        chosen, said = choose(all, assignment), entry.handed_in.strip(" -")
+        theirs = attempts(course, student.id, assignment)
+        chosen, said = choose(theirs, assignment), entry.handed_in.strip(" -")
         if chosen is None:
             if said:
                 waiting.append(str(student))
@@ -113,7 +113,7 @@ def keep_times(
         if first.origin != "moodle" or (first.exact and not said):
             continue
         at = read_time(said, zone)
-        when = _time(said, at, zone, chosen, all)
+        when = _time(said, at, zone, chosen, theirs)
         if when is None:
             if doubt := perhaps_late(course, student.id, assignment):
                 late.append(f"{student} handed in the same file again, at {said}; {doubt}")
@@ -161,10 +161,10 @@ def keep_times(
 
 def _late(rules: Rules, assignment: str, student: Student, when: datetime) -> str:
     """The sentence that a student was late, and what is deducted; "" if the work was in time."""
-    due = rules.due_for(student.id, assignment)
-    if due is None or when <= due:
+    latest = rules.due_for(student.id, assignment)
+    if latest is None or when <= latest:
         return ""
-    due -= timedelta(minutes=rules.late.grace_minutes)
+    due = latest - timedelta(minutes=rules.late.grace_minutes)
     seconds = (when - due).total_seconds()
     share = rules.late.penalty(100.0, seconds)
     costs = f"; {share:g} % of the points earned are deducted" if share else ""
@@ -173,14 +173,14 @@ def _late(rules: Rules, assignment: str, student: Student, when: datetime) -> st
 
 
 def _time(
-    said: str, when: datetime | None, zone: ZoneInfo, chosen: Counted, all: Sequence[Attempt]
+    said: str, when: datetime | None, zone: ZoneInfo, chosen: Counted, theirs: Sequence[Attempt]
 ) -> datetime | str | None:
     """The time of the attempt that counts; or why the worksheet gives none, and what to do.
 
     None if the same file was probably handed in again: the worksheet knows only when that was.
     """
     first = chosen.first.when
-    others = [x.when for one in all if one is not chosen.attempt for x in one.hand_ins]
+    others = [x.when for one in theirs if one is not chosen.attempt for x in one.hand_ins]
     earlier = max((x for x in others if x < first), default=None)
     if when is None:
         unread = "which is not a time that labkit can read; download the worksheet in English"

@@ -53,8 +53,8 @@ def student_bundle(course: Course, names: Sequence[str], to: Path, book: str | N
         ``to``.
 
     Raises:
-        LabkitError: An assignment is not released, or holds an answer, or the wheel could not be
-            built.
+        LabkitError: An assignment is not released, or holds an answer, or the course is not the
+            whole repository, or the wheel could not be built.
     """
     with tempfile.TemporaryDirectory() as folder:
         top = Path(folder) / "baxter-lab"
@@ -81,6 +81,7 @@ def student_folder(
     course: Course, names: Sequence[str], top: Path, book: str | None = None
 ) -> None:
     """Write what students get to the new folder ``top``; see `student_bundle`."""
+    check_repository(course.root)
     names = names or sorted(path.name for path in course.release.iterdir() if path.is_dir())
     for name in names:
         course.notebook_source(name)
@@ -133,6 +134,15 @@ def _first_prediction(folder: Path, name: str) -> tuple[str, str] | None:
     text = (folder / name / f"{name}.ipynb").read_text(encoding="utf-8")
     found = re.search(r"\*\*Predict first: `(\w+)`\*\* · 1 point", text)
     return (name, found[1]) if found else None
+
+
+def check_repository(root: Path) -> None:
+    """Raise a LabkitError if a course lacks labkit's source, from which the wheel is built."""
+    if not (root / "constraints.txt").exists():
+        raise LabkitError(
+            f"{root} holds a course without labkit's source and constraints.txt, which students "
+            "or Gradescope get too; make this in the whole repository, or name it with --course"
+        )
 
 
 def wheel(root: Path, to: Path) -> None:
