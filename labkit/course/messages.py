@@ -1,4 +1,4 @@
-"""Verdicts in words; this module writes all sentences about a verdict."""
+"""Verdicts in words; `differences` writes the sentences about what was found."""
 
 from __future__ import annotations
 
