@@ -1,7 +1,7 @@
 r"""Estimation: combining several noisy readings of a tag into a better one.
 
-Source: the Kalman filter's update, Thrun, Burgard & Fox, *Probabilistic Robotics*, section 3.2.  Its
-prediction is what students write in notebook 06.
+Source: the update of a Kalman filter, Thrun, Burgard & Fox, *Probabilistic Robotics*, section 3.2.
+The prediction is what students write in notebook 06.
 """
 
 from __future__ import annotations
