@@ -10,7 +10,7 @@ import sys
 import textwrap
 from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from contextlib import suppress
-from importlib.metadata import PackageNotFoundError, distribution, packages_distributions
+from importlib.metadata import PackageNotFoundError, distribution, packages_distributions, requires
 from pathlib import Path
 from typing import Any
 
@@ -192,12 +192,11 @@ def left_behind(folder: Path, cells: Iterable[dict[str, Any]]) -> tuple[list[str
 def _comes_with_labkit() -> set[str]:
     """The modules of labkit and of all packages that it requires."""
     waiting, names = ["labkit"], set[str]()
-    while waiting:
+    for one in waiting:  # the list grows
         with suppress(PackageNotFoundError):  # what only another system needs
-            package = distribution(waiting.pop())
-            needs = () if package.name in names else package.requires or ()
-            names.add(package.name)
-            waiting += [re.split(r"[^\w.-]", x)[0] for x in needs if "extra ==" not in x]
+            names.add(distribution(one).name)
+            needs = [x for x in requires(one) or () if "extra ==" not in x]
+            waiting += {re.split(r"[^\w.-]", x)[0] for x in needs} - {*waiting}
     return {x for x, owners in packages_distributions().items() if names.intersection(owners)}
 
 

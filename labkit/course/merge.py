@@ -108,7 +108,7 @@ def _is_answer(cell: dict[str, Any]) -> bool:
 
 def _has_work(cells: Cells) -> bool:
     """Whether a cell that was made for an answer holds a function that is not a stub."""
-    found = [analyse(cell["source"]) for cell in cells if _is_answer(cell)]
+    found = (analyse(cell["source"]) for cell in cells if _is_answer(cell))
     return any(x["functions"] != x["stubs"] for x in found)
 
 
