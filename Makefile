@@ -19,7 +19,7 @@ ON_SECOND := -m "not slow and not soak and not pybullet"
 .PHONY: help demo test test-313 wheels zip dev quick soak count record lab release grade book book-zip book-pdf film vendor campaign campaign-engines bench tag-bench report-card doctor lint types format clean
 
 help: ## list the targets
-	@grep -hE '^[a-z0-9-]+:.*##' $(MAKEFILE_LIST) | awk -F':.*## ' '{printf "  make %-12s %s\n", $$1, $$2}'
+	@grep -hE '^[a-z0-9-]+:.*##' $(MAKEFILE_LIST) | awk -F':.*## ' '{printf "  make %-16s %s\n", $$1, $$2}'
 
 demo: for-grading .venv/.course ## make a release, grade a small class, build the book and say where to look
 	@PATH="$(CURDIR)/$(BIN):$$PATH" $(BIN)/python .ci/demo.py
@@ -100,11 +100,11 @@ report-card: .venv/.course ## test that the checks reject wrong answers and acce
 doctor: .venv/.course ## say how well this machine can isolate submissions
 	@$(BIN)/labkit doctor
 
-lint: .venv/.dev
+lint: .venv/.dev ## check style and spelling, and nothing else
 	@$(BIN)/ruff check --quiet . && $(BIN)/ruff format --quiet --check . || { $(BIN)/ruff format --diff . ; exit 1; }
 	@$(BIN)/codespell *.md book labkit solutions tests .ci
 
-types: .venv/.dev
+types: .venv/.dev ## check the types, and nothing else
 	@$(BIN)/mypy --no-error-summary
 
 format: .venv/.dev ## correct the style of the code

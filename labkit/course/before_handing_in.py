@@ -125,8 +125,7 @@ def examine(path: Path) -> HandIn:
             f"the file has {size:.0f} MB, but the limit is {LARGEST:g}; clear the largest outputs"
         )
     asked = [question["name"] for question in questions]
-    for question in questions:
-        more, worth_knowing = _review(cells, question["name"], name)
+    for more, worth_knowing in (_review(cells, question, name) for question in asked):
         problems += more
         notes += worth_knowing
     again = {name: [*judged_another(cells, name, asked)] for name in asked}

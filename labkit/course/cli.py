@@ -101,7 +101,7 @@ def merge(mine: Path, new: Path, to: Path) -> int:
         raise LabkitError(f"{to} already exists; give another name with --to")
     release = json.loads(new.read_text(encoding="utf-8"))
     if not _is_valid(release):
-        raise LabkitError(f"{new.name} is not a release; fetch the assignment's folder again")
+        raise LabkitError(f"{new.name} is not a valid notebook; fetch the assignment again")
     notebook = release | {"cells": merge(cells, released)}
     text = json.dumps(notebook, indent=1, ensure_ascii=False) + "\n"
     to.write_text(text, encoding="utf-8", errors="replace")  # a lone surrogate is not text

@@ -6,8 +6,11 @@ import builtins
 import itertools
 import os
 import re
+import sys
 import textwrap
 from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
+from contextlib import suppress
+from importlib.metadata import PackageNotFoundError, distribution, packages_distributions, requires
 from pathlib import Path
 from typing import Any
 
@@ -27,6 +30,8 @@ _OWN_ARM = {"my_arm", "my_bug"}
 """Functions that the grader does not run."""
 _FILE = re.compile(r"""["']([\w ./-]+\.\w+)["']""")
 """A text that may name a file."""
+_GIVEN = {*sys.stdlib_module_names, *(re.split("[ .]", line)[1] for line in IMPORTS.values())}
+"""Modules that every notebook may import."""
 
 
 def _code(cells: Iterable[dict[str, Any]]) -> list[dict[str, Any]]:
@@ -157,7 +162,7 @@ def misnamed(homes: Iterable[dict[str, Any]], question: str) -> str:
 
 
 def left_behind(folder: Path, cells: Iterable[dict[str, Any]]) -> tuple[list[str], list[str]]:
-    """Problems about modules, and notes about other files, that are not handed in.
+    """Problems about modules, and notes about files and libraries, that marking may lack.
 
     Args:
         folder: The folder of the notebook.
@@ -169,6 +174,7 @@ def left_behind(folder: Path, cells: Iterable[dict[str, Any]]) -> tuple[list[str
     modules = [x for x in sorted(roots) if (folder / f"{x}.py").is_file() or (folder / x).is_dir()]
     named = {name for x in sources for name in _FILE.findall(plain(x))}
     files = [x for x in sorted(named - {ARMS, CHECKS}) if os.path.isfile(folder / x)]
+    foreign = roots - _GIVEN - {*modules}
     return [
         f"{name} is a module of yours, and only the notebook is handed in; copy what you import "
         "from it into a cell, and delete the import"
@@ -176,7 +182,22 @@ def left_behind(folder: Path, cells: Iterable[dict[str, Any]]) -> tuple[list[str
     ], [
         f"only the notebook is handed in, without {name}; an answer that reads it earns nothing"
         for name in files
+    ] + [
+        f"{name} does not come with labkit and may be missing where your notebook is marked; an "
+        "answer that needs it then earns nothing, so do without it, or ask your instructor"
+        for name in sorted(foreign and foreign - _comes_with_labkit())
     ]
+
+
+def _comes_with_labkit() -> set[str]:
+    """The modules of labkit and of all packages that it requires."""
+    waiting, names = ["labkit"], set[str]()
+    for one in waiting:  # the list grows
+        with suppress(PackageNotFoundError):  # what only another system needs
+            names.add(distribution(one).name)
+            needs = [x for x in requires(one) or () if "extra ==" not in x]
+            waiting += {re.split(r"[^\w.-]", x)[0] for x in needs} - {*waiting}
+    return {x for x, owners in packages_distributions().items() if names.intersection(owners)}
 
 
 def how_to_restore(name: str) -> str:

@@ -35,11 +35,16 @@ def merge(mine: Cells, new: Cells) -> Cells:
         below `KEPT_TEXT`, as does an answer that another cell replaced.
 
     Raises:
-        LabkitError: The new notebook is not a release, or none of the student's cells answers any
-            of its questions.
+        LabkitError: The new notebook is not a release, or has answers where the student's has none,
+            or none of the student's cells answers any of its questions.
     """
     if not new or not all(isinstance(cell.get("id"), str) for cell in new):
         raise LabkitError("the new notebook is not a release; fetch the assignment's folder again")
+    if _has_work(new) and not _has_work(mine):
+        raise LabkitError(
+            "the new notebook has answers, and yours has none; give the notebook in which you "
+            "worked first, and then a fresh copy of the release"
+        )
     merged = copy.deepcopy(new)
     home = _homes(mine, new)
     asked = [cell for cell in merged if _is_answer(cell)]
@@ -99,6 +104,12 @@ def _homes(mine: Cells, new: Cells) -> Callable[[dict[str, Any]], int | None]:
 
 def _is_answer(cell: dict[str, Any]) -> bool:
     return bool(nbgrader_info(cell).get("solution"))
+
+
+def _has_work(cells: Cells) -> bool:
+    """Whether a cell that was made for an answer holds a function that is not a stub."""
+    found = (analyse(cell["source"]) for cell in cells if _is_answer(cell))
+    return any(x["functions"] != x["stubs"] for x in found)
 
 
 def _is_own(cell: dict[str, Any], new: Cells) -> bool:

@@ -1,4 +1,4 @@
-"""Verdicts in words; this module writes all sentences about a verdict."""
+"""Verdicts in words; `differences` writes the sentences about what was found."""
 
 from __future__ import annotations
 
@@ -133,8 +133,7 @@ def message(
                 f"It uses your {' and '.join(depends_on)}, which {was} not right when you last "
                 f"checked {it}; correct {it} and check {it} again first."
             )
-    tests: list[str] = []
-    numbers: list[str] = []
+    tests, numbers = list[str](), list[str]()
     match verdict.outcome:
         case Outcome.NOT_ATTEMPTED:
             helps.append(f"To do: {question.asks}")
@@ -248,8 +247,7 @@ def why(test: TestResult) -> str:
 
 def _numbers(question: Question, verdict: Verdict) -> list[str]:
     """The cases that failed, each difference once, and how to repeat such a call."""
-    lines: list[str] = []
-    before: list[TestResult] = []
+    lines, before = list[str](), list[TestResult]()
     for test, result in zip(question.tests, verdict.tests, strict=True):
         if result.difference is not None:
             if not _again(test, result.difference, result.call, before):

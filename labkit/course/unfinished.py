@@ -37,8 +37,7 @@ def watch(shell: Any) -> set[str]:
         unfinished.difference_update(names)
         if not result.success:
             _say_quotes(result.info.raw_cell or "", result.error_in_exec)
-            same = {name for name in names if shell.user_ns.get(name) is before.get(name)}
-            unfinished.update(same)
+            unfinished.update(x for x in names if shell.user_ns.get(x) is before.get(x))
 
     shell.events.register("pre_run_cell", begins)
     shell.events.register("post_run_cell", ends)

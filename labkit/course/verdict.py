@@ -1,6 +1,7 @@
 """Verdicts, which are the results of questions as data, from the check to the gradebook.
 
-They do not contain sentences about the result; `messages` writes those.
+The only sentences in them are what authors say about known mistakes; `messages` writes all others,
+with `differences`.
 """
 
 from __future__ import annotations

@@ -44,8 +44,10 @@ class Hand:
     Attributes:
         at: Point at which it holds the arm, world axes, shape (3,) in [m]; None while it holds
             nothing.
-        force: Its force in the last physics step, world axes, shape (3,) in [N].
+        force: Its force in the last physics step, or the constant one, world axes, shape (3,) in
+            [N].
         move: The page's number of the last move, which the next picture returns.
+        heard: Time of the page's last message, by `time.monotonic`, in [s].
         patience: How long it keeps hold after the last message of a page, in [s].
     """
 
@@ -78,7 +80,7 @@ class Hand:
             force: Force, world axes, shape (3,) in [N].
         """
         self._point, self._to = (body, as_array(point, (3,), "point")), None
-        self._force = _bounded(as_array(force, (3,), "force"))
+        self.force = _bounded(as_array(force, (3,), "force"))
 
     def let_go(self) -> None:
         """Let go of the arm."""
@@ -116,11 +118,8 @@ class Hand:
             return
         _, q, dq, _ = self._arm.truth()
         self.at, J = self._arm.model.point_on(q, *self._point)
-        self.force = (
-            self._force
-            if self._to is None
-            else _bounded(STIFFNESS * (self._to - self.at) - DAMPING * (J @ dq))
-        )
+        if self._to is not None:
+            self.force = _bounded(STIFFNESS * (self._to - self.at) - DAMPING * (J @ dq))
         self._arm.pull(J.T @ self.force)
 
 

@@ -119,7 +119,7 @@ class Motion:
 
     @cached_property
     def alt(self) -> str:
-        """One or two sentences for readers who cannot see the picture, with the run's numbers."""
+        """A sentence for readers who cannot see the picture, with the run's numbers."""
         name = self.robot.name
         whose = f"Baxter's {name} arm" if name in SIDES else f"The arm {name}"
         words = f"{whose} moves for {self.t[-1] - self.t[0]:.1f} s"

@@ -1,8 +1,7 @@
 r"""Estimation: combining several noisy readings of a tag into a better one.
 
-Sources: the Kalman filter, Thrun, Burgard & Fox, *Probabilistic Robotics*, section 3.2; constant
-velocity under white acceleration, Bar-Shalom, Li & Kirubarajan, *Estimation with Applications*,
-section 6.2.2.
+Source: the update of a Kalman filter, Thrun, Burgard & Fox, *Probabilistic Robotics*, section 3.2.
+The prediction is what students write in notebook 06.
 """
 
 from __future__ import annotations

@@ -224,6 +224,18 @@ def test_what_is_beside_the_notebook_is_not_handed_in(path):
     }
 
 
+def test_a_library_that_does_not_come_with_labkit_is_named(path):
+    """What Python, labkit or a package that it requires brings can be imported everywhere."""
+    foreign = "import pandas as pd\nfrom pytest.x import y\nimport collections.abc, numpy.linalg\n"
+    comes = "from PIL import Image\nimport dateutil, mujoco, pinocchio, labkit.se3\n"
+    notes = [x for x in handed_in(path, foreign + comes + CIRCLE.format(1)).notes if "come" in x]
+    assert [note.split()[0] for note in notes] == ["pandas", "pytest"]
+    assert notes[0] == (
+        "pandas does not come with labkit and may be missing where your notebook is marked; an "
+        "answer that needs it then earns nothing, so do without it, or ask your instructor"
+    )
+
+
 def test_a_long_text_of_numbers_is_not_taken_for_a_file(path):
     """No file has a name of 800 characters, so nothing is said about it."""
     numbers = "0.1 " * 200 + "0.1"

@@ -116,6 +116,20 @@ def test_what_is_no_release_is_a_sentence(folder, new):
         merge(read_cells(folder / "01_paths.ipynb"), new)
 
 
+def test_the_release_given_in_place_of_the_students_notebook_is_refused(folder):
+    """Swapped, they would give the old notebook back; a release that was begun is still one."""
+    mine, new = (read_cells(folder / "01_paths.ipynb") for _ in range(2))
+    for cell in mine:
+        if "def witness" in cell["source"]:
+            cell["source"] = "def witness(theta, duration):\n    return 1.0"
+    with pytest.raises(LabkitError, match="has answers, and yours has none; give the notebook in"):
+        merge(new, mine)
+    for cell in new:
+        if "def compose" in cell["source"]:
+            cell["source"] = "def compose(*given):\n    return 2.0"
+    assert any("return 1.0" in cell["source"] for cell in merge(mine, new))
+
+
 def test_text_that_no_file_can_hold_is_merged_all_the_same(folder, tmp_path):
     """A lone surrogate in an answer becomes a question mark; nothing is lost beside it."""
     path = folder / "01_paths.ipynb"
