@@ -21,7 +21,7 @@ SEED = 7
 
 @pytest.fixture(scope="session", autouse=True)
 def _version_of_the_tables():
-    """nbgrader starts a program for each new gradebook, which always has the same answer."""
+    """One answer for all: for each new gradebook nbgrader starts a program to learn a constant."""
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(nbgrader.api, "get_alembic_version", cache(nbgrader.api.get_alembic_version))
         yield

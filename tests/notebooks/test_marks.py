@@ -18,20 +18,38 @@ COURSE = Course.here(Path(__file__))
 NAMES = [name for name in COURSE.names() if COURSE.problems(name)]
 PROBLEMS = [problem for name in NAMES for problem in COURSE.problems(name)]
 SAMPLE = {"open_loop", "joint_velocity_pd", "shaped_impedance"}
-"""Of the questions for which the arm runs, those that are drawn twice in the gate too."""
+"""Of the questions for which the arm runs, those that are tried as often as the others."""
 POINTS = dict.fromkeys(NAMES, 20) | {"00_warmup": 10}
 
 # scipy says so of the nearly equal differences in some cases of paired_difference
 pytestmark = pytest.mark.filterwarnings("ignore:Precision loss occurred")
 
-each = pytest.mark.parametrize(
-    "problem",
-    [
-        pytest.param(p, id=p.name, marks=pytest.mark.xdist_group(f"marks {p.name}"))
-        for p in PROBLEMS
-    ],
-)
-"""One worker has all tests of a problem, which share what they marked."""
+
+def runs_the_arm(problem):
+    """Whether a question takes more than calls of a function."""
+    return any(not isinstance(case, Call | Choice) for t in problem.trials for case in t.public)
+
+
+def each(*long):
+    """All problems; those for which the arm runs have the marks of what takes long, if not sampled.
+
+    One worker has all tests of a problem, which share what they marked.
+    """
+    sampled = {p for p in PROBLEMS if not runs_the_arm(p) or p.name in SAMPLE}
+    return pytest.mark.parametrize(
+        "problem",
+        [
+            pytest.param(
+                p,
+                id=p.name,
+                marks=[
+                    pytest.mark.xdist_group(f"marks {p.name}"),
+                    *(() if p in sampled else long),
+                ],
+            )
+            for p in PROBLEMS
+        ],
+    )
 
 
 @cache
@@ -50,7 +68,7 @@ def stub(*args, **kwargs):
     raise NotImplementedError
 
 
-@each
+@each()
 def test_the_answer_gets_full_marks(problem):
     """The reference is right, hidden cases included."""
     verdict = verdict_of(problem, 1, problem.answer)
@@ -58,7 +76,7 @@ def test_the_answer_gets_full_marks(problem):
     assert verdict.earned == problem.points
 
 
-@each
+@each()
 def test_the_stub_gets_nothing(problem):
     """A stub counts as not attempted, and a function that gives only zeros earns nothing."""
     question = question_of(problem, 1)
@@ -68,14 +86,14 @@ def test_the_stub_gets_nothing(problem):
         assert mark(question, nothing).earned == 0.0
 
 
-@each
+@each()
 def test_zeros_of_the_right_shape_earn_nothing(problem):
     """A gate stands before the points: the answer's shape, filled with zeros, does not pass it."""
     question = question_of(problem, 1)
     assert mark(question, lambda *a, **k: zeros_like(problem.answer(*a, **k))).earned == 0.0
 
 
-@each
+@each(pytest.mark.slow)
 def test_known_mistakes_are_rejected_and_named(problem):
     """Each earns less than half, or its largest right part, and is called by its name."""
     assert problem.wrong
@@ -87,7 +105,7 @@ def test_known_mistakes_are_rejected_and_named(problem):
         assert verdict.mistake.name == wrong.name
 
 
-@each
+@each()
 def test_fingerprints_differ(problem):
     """No two mistakes answer the public calls alike, and none as the reference does."""
     question = question_of(problem, 1)
@@ -98,7 +116,7 @@ def test_fingerprints_differ(problem):
         assert recognise(alone, list(fingerprint(question, b.function))) is None, (a.name, b.name)
 
 
-@each
+@each()
 def test_right_answers_written_otherwise_are_accepted(problem):
     """A list, a class, another formula: what is right earns full marks."""
     for variant in problem.variants:
@@ -106,26 +124,8 @@ def test_right_answers_written_otherwise_are_accepted(problem):
         assert verdict.outcome is Outcome.RIGHT, (variant, verdict.tests)
 
 
-def runs_the_arm(problem):
-    """Whether a question takes more than calls of a function."""
-    return any(not isinstance(case, Call | Choice) for t in problem.trials for case in t.public)
-
-
 @pytest.mark.slow
-@pytest.mark.parametrize(
-    "problem",
-    [
-        pytest.param(
-            p,
-            id=p.name,
-            marks=[
-                pytest.mark.xdist_group(f"marks {p.name}"),
-                *([pytest.mark.soak] if runs_the_arm(p) and p.name not in SAMPLE else []),
-            ],
-        )
-        for p in PROBLEMS
-    ],
-)
+@each(pytest.mark.soak)
 def test_seeds_agree(problem):
     """Every draw of the hidden cases gives the same marks to the answer, mistakes and variants.
 
