@@ -129,29 +129,62 @@ def judged_another(cells: Cells, question: str, asked: Collection[str]) -> Itera
                 f"the check of {question} tried what {the_cell(cells[k]['source'])} defines, but "
                 f"{the_cell(cells[written[-1]]['source'])} is marked; write your answer there"
             )
-    for name, place in _used_anew(parts, above[-1][1], check):
+    for name, place, does, instead in _used_anew(parts, above[-1][1], check):
         yield (
-            f"{question} uses {name}, which {the_cell(cells[place]['source'])} defines again "
-            f"below the check, and {question} is marked with that {name}; change one of the two "
-            f"names, or check {question} again below it"
+            f"{question} uses {name}, which {the_cell(cells[place]['source'])} {does} below the "
+            f"check, and {question} is marked with that {name}; {instead}, or check {question} "
+            "again below it"
         )
 
 
 def _used_anew(
     parts: Sequence[tuple[int, _Part]], answer: _Part, check: int
-) -> Iterator[tuple[str, int]]:
-    """Names that an answer uses when it is called and that a cell below its check defines again."""
-    seen, waiting = set[str](), [answer]
+) -> Iterator[tuple[str, int, str, str]]:
+    """Names that an answer uses when it is called, and that a cell below its check makes another.
+
+    What the answer changes itself, such as a record of its calls, may be changed.
+
+    Yields:
+        The name, the position of the last such cell, what it does, and what to do instead.
+    """
+    met = _met(parts, answer, check)
+    uses, fills = ({x for part in met for x in part[key]} for key in ("uses", "fills"))
+    for name in sorted({name for part in met for name in part["later"]}):
+        known = _known(parts, name, check)
+        module = any(name in part["mean"] for part in known)
+        for k, part in reversed([pair for pair in parts if pair[0] > check]):
+            changes = {x for x in part["changes"] if x.partition(".")[0] == name}
+            if module:  # `np.pi = 3` changes what uses np.pi, but `np.append` changes nothing
+                changes = (changes & uses) - {name}
+            if _binds(part, name):
+                if not _same(name, known[0], part) if known else hasattr(builtins, name):
+                    yield name, k, "defines again", "change one of the two names"
+                break
+            if changes and known and name not in fills:
+                what = min(changes) if module else name
+                yield what, k, "changes", "give the changed value another name"
+                break
+
+
+def _met(parts: Sequence[tuple[int, _Part]], answer: _Part, check: int) -> list[_Part]:
+    """An answer, and the definitions above its check that it meets when it is called."""
+    met, seen, waiting = list[_Part](), set[str](), [answer]
     while waiting:
-        for name in sorted({*waiting.pop()["later"]} - seen):
-            seen.add(name)
-            bound = [(k, part) for k, part in parts if name in part["binds"] and not part["stub"]]
-            known = [part for k, part in bound if k <= check][-1:]
-            waiting += known
-            again = [(k, part) for k, part in bound if k > check][-1:]
-            for k, part in again if known or hasattr(builtins, name) else ():
-                if not (known and _same(name, known[0], part)):
-                    yield name, k
+        met.append(waiting.pop())
+        names = {*met[-1]["later"]} - seen
+        seen |= names
+        waiting += [part for name in names for part in _known(parts, name, check)]
+    return met
+
+
+def _known(parts: Sequence[tuple[int, _Part]], name: str, check: int) -> list[_Part]:
+    """The last definition of a name at or above a check, if there is one."""
+    return [part for k, part in parts if k <= check and _binds(part, name)][-1:]
+
+
+def _binds(part: _Part, name: str) -> bool:
+    """Whether a statement defines a name, and not with an empty stub."""
+    return name in part["binds"] and not part["stub"]
 
 
 def _same(name: str, one: _Part, other: _Part) -> bool:

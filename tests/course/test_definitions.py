@@ -90,6 +90,55 @@ def test_a_helper_that_is_defined_again_below_the_check_is_named(path, above, be
     assert "defines again below the check, and circle is marked with that half" in problem
 
 
+@pytest.mark.parametrize(
+    "below",
+    [
+        "half[0] = 5.0",
+        "half[:] = [1.0]",
+        "half[0][1] += 1",
+        "del half[0]",
+        "half.size = 3",
+        "half.append(3.0)",
+        "last = half.pop()",
+        "for k in range(3):\n    half.sort()",
+        "half = [4.0]\nhalf.clear()",
+        "import numpy as np\nnp.pi = 3",
+    ],
+)
+def test_what_the_answer_uses_and_a_cell_below_the_check_changes_is_named(path, below):
+    """An object that is changed keeps its name, and marking uses what it holds at the end."""
+    name, above = "np.pi" if "np" in below else "half", "import numpy as np\nhalf = [4.0]"
+    answer = "def deep(s): return half[0] * np.pi\n" + CIRCLE.format("deep(s)")
+    (problem,) = handed_in(path, answer, code(below), above=[code(above)]).problems
+    first = below.partition("\n")[0]
+    assert problem == (
+        f"circle uses {name}, which the cell that begins with `{first}` changes below the check, "
+        f"and circle is marked with that {name}; give the changed value another name, or check "
+        "circle again below it"
+    )
+
+
+@pytest.mark.parametrize(
+    ("above", "below"),
+    [
+        ("half = [4.0]\nhalf[0] = 5.0", ""),
+        ("half = [4.0]", "half[0] = 5.0\nhalf = [4.0]"),
+        ("half = [4.0]", "def later(): half[0] = 5.0"),
+        ("half = [4.0]", "runs = []\nruns.append(half[0])"),
+        ("half = [4.0]", "calls.clear()"),
+        ("half = [4.0]", "plt.rcParams['font.size'] = 9\nlonger = np.append(half, 1)"),
+    ],
+)
+def test_a_change_that_the_answer_does_not_meet_is_not_named(path, above, below):
+    """Above the check, undone, in a function, of another object, or of the answer's own record."""
+    answer = (
+        "calls = []\ndef circle(s, start, centre):\n    calls.append(s)\n"
+        "    plt.plot(np.array(half))\n    return 0"
+    )
+    imports = "import numpy as np\nimport matplotlib.pyplot as plt\n"
+    assert not handed_in(path, answer, code(below), above=[code(imports + above)]).problems
+
+
 def test_what_is_hidden_below_the_check_is_named(path):
     """A value takes Python's function, or another answer, from an answer that ran before."""
     above = [code("def bang_bang(*a): return 1")]
