@@ -18,7 +18,7 @@ from typing import Any
 from ..sim import chosen
 from .brief import words_in_all
 from .checks_file import read_checks
-from .definitions import cells_that_count, changed_since, judged_another
+from .definitions import cells_that_count, changed_since, defined_late, judged_another
 from .forms import COMMITTED, OWN_ARM
 from .gaps import (
     calculated_from_runs,
@@ -157,6 +157,7 @@ def examine(path: Path) -> HandIn:
         for name in predictions
         if (said := verdicts[name]) and said.right and _lacks_prediction(code, name)
     ]
+    notes += chain(*(defined_late(cells, name, asked) for name in asked))
     if stale := [name for name in verdicts if not again[name] and changed_since(cells, name)]:
         notes.append(
             f"changed since the last check: {', '.join(stale)}; the verdicts below are old, so run "
@@ -248,8 +249,7 @@ def _verdict(
         count: The cells of code that matter in marking.
     """
     name = question["name"]
-    tools = withheld_tools(count, name, decode(question["withheld"]))
-    if tools:
+    if tools := withheld_tools(count, name, decode(question["withheld"])):
         points = float(question["points"])
         return Verdict(name, Outcome.NOT_COUNTED, 0.0, points, withheld=tools)
     return last_verdict(cells, name)

@@ -74,9 +74,11 @@ def cells_that_count(cells: Cells, asked: Iterable[str]) -> dict[int, Analysis]:
 def changed_since(cells: Cells, question: str) -> bool:
     """Whether an answer, or what it uses, was changed after its check."""
     judged, (check, _) = last_judged(cells, question), _last_check(cells, question)
-    # What is defined above the check replaces what a cell below it defines.
-    order = sorted(_code(cells), key=lambda k: (k <= check, k))
-    return bool(judged) and judged != answer_hash((cells[k]["source"] for k in order), question)
+    above = [cells[k]["source"] for k in _code(cells) if k <= check]
+    below = [cells[k]["source"] for k in _code(cells) if k > check]
+    # The cells below may have run before the check; what is defined above replaces them.
+    same = [answer_hash(order, question) for order in (above, below + above)]
+    return bool(judged) and judged not in same
 
 
 def answer_hash(sources: Iterable[str], question: str) -> str:
@@ -112,7 +114,7 @@ def judged_another(cells: Cells, question: str, asked: Collection[str]) -> Itera
             f"the check of {question} tried {tried}, but {question} is marked; check {question} "
             f"itself, or rename {tried} to {question} and check it again"
         )
-    parts = [(k, part) for k, found in count.items() for part in found["definitions"]]
+    parts = _parts(count)
     own = [(k, part) for k, part in parts if question in part["binds"] and k in written]
     above = [pair for pair in own if pair[0] <= check]
     if not above:
@@ -137,6 +139,28 @@ def judged_another(cells: Cells, question: str, asked: Collection[str]) -> Itera
         )
 
 
+def defined_late(cells: Cells, question: str, asked: Collection[str]) -> Iterator[str]:
+    """Sentences about an answer, and names that it uses later, that only a later cell defines.
+
+    Args:
+        cells: The cells of the notebook.
+        question: The question's name.
+        asked: The names of all questions.
+    """
+    parts, (check, _) = _parts(cells_that_count(cells, asked)), _last_check(cells, question)
+    answers = _known(parts, question, check)
+    used = [name for answer in answers for name in _used_later(_met(parts, answer, check))]
+    for name in used if answers else [question]:
+        late = [k for k, part in parts if _binds(part, name)]
+        if late and late[0] > check and not hasattr(builtins, name):
+            uses = f", which {question} uses" if answers else ""
+            yield (
+                f"only {the_cell(cells[late[0]]['source'])} defines {name}{uses}, and it is below "
+                f"the check of {question}; move it above the check, so that this can try the "
+                "answer (it is marked all the same)"
+            )
+
+
 def _used_anew(
     parts: Sequence[tuple[int, _Part]], answer: _Part, check: int
 ) -> Iterator[tuple[str, int, str, str]]:
@@ -149,7 +173,7 @@ def _used_anew(
     """
     met = _met(parts, answer, check)
     uses, fills = ({x for part in met for x in part[key]} for key in ("uses", "fills"))
-    for name in sorted({name for part in met for name in part["later"]}):
+    for name in _used_later(met):
         known = _known(parts, name, check)
         module = any(name in part["mean"] for part in known)
         for k, part in reversed([pair for pair in parts if pair[0] > check]):
@@ -177,6 +201,10 @@ def _met(parts: Sequence[tuple[int, _Part]], answer: _Part, check: int) -> list[
     return met
 
 
+def _used_later(met: Iterable[_Part]) -> list[str]:
+    return sorted({name for part in met for name in part["later"]})
+
+
 def _known(parts: Sequence[tuple[int, _Part]], name: str, check: int) -> list[_Part]:
     """The last definition of a name at or above a check, if there is one."""
     return [part for k, part in parts if k <= check and _binds(part, name)][-1:]
@@ -191,6 +219,11 @@ def _same(name: str, one: _Part, other: _Part) -> bool:
     """Whether two statements define a name in the same words."""
     same_import = name in one["mean"] and one["mean"][name] == other["mean"].get(name)
     return bool(one["text"] == other["text"] or same_import)
+
+
+def _parts(code: Mapping[int, Analysis]) -> list[tuple[int, _Part]]:
+    """All statements with the positions of their cells."""
+    return [(k, part) for k, found in code.items() for part in found["definitions"]]
 
 
 def _code(cells: Cells) -> dict[int, Analysis]:

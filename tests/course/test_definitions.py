@@ -237,12 +237,30 @@ def test_an_answer_that_was_edited_after_its_check_is_not_called_right(
         (["import math", PI], ["import math, os"], PI, []),
         (["two = 2", "half = two", HALF], ["two = 2", "half = two"], HALF, ["two = 3"]),
         ([STUB, RIGHT], [], STUB, [RIGHT]),
+        ([HALF], [], HALF, ["half = 2"]),
     ],
 )
 def test_an_answer_that_means_the_same_is_not_called_changed(path, judged, above, answer, below):
     """Empty lines, other imports and what the answer does not meet change nothing."""
     notes = handed_in(path, answer, *map(code, below), above=map(code, above), judged=judged).notes
     assert not any("changed since the last check" in note for note in notes)
+
+
+def test_what_only_a_cell_below_the_check_defines_is_named(path):
+    """From the top the check finds no answer or a NameError, although the answer is marked."""
+    note = (
+        "only the cell that begins with `{}` defines {}, and it is below the check of circle; move "
+        "it above the check, so that this can try the answer (it is marked all the same)"
+    )
+    helper, ring = note.format("half = 2", "half, which circle uses"), code(CIRCLE.format("half"))
+    found = handed_in(path, f"def deep(s): return half\n{CIRCLE.format('deep')}", code("half = 2"))
+    assert not found.problems and helper in found.notes
+    alone = handed_in(path, STUB, ring, judged=[STUB]).notes
+    assert note.format("def circle(s, start, centre):", "circle") in alone
+    check = code('check("circle", circle)')
+    for above, below in (([code("half = 3")], []), ([], [check])):
+        notes = handed_in(path, HALF, code("half = 2"), *below, above=above).notes
+        assert not any("below the check" in note for note in notes)
 
 
 @pytest.mark.parametrize("early", ["half = 2 * four", "half = [four for _ in 'ab']"])
