@@ -16,7 +16,7 @@ import numpy as np
 from .advice import IMPORTS
 from .brief import WORDS, words_in_all, words_of
 from .checks_file import FILE as CHECKS
-from .notebook import cells_made_for, grade_id, kind, released
+from .notebook import cells_made_for, grade_id, is_edited, kind, released
 from .own_arm import FILE as ARMS
 from .source import analyse, plain
 from .unfinished import defined_in
@@ -25,6 +25,7 @@ _KNOWN = {*vars(builtins), "get_ipython", "display", "In", "Out", "_", "__", "__
 """Names that every notebook defines."""
 _OWN_ARM = {"my_arm", "my_bug"}
 """Functions that the grader does not run."""
+_GIVEN = "you were given this cell as it is, so correct what it uses: your answers and cells above"
 _FILE = re.compile(r"""["']([\w ./-]+\.\w+)["']""")
 """A text that may name a file."""
 
@@ -74,8 +75,8 @@ def _todo(name: str) -> str:
     if hasattr(np, name):
         return f"if you mean NumPy's {name}, write np.{name}"
     return (
-        "if you deleted a cell, copy it from a fresh copy of the notebook, which is in the zip "
-        "that you were given"
+        "if you deleted a given cell, copy it from a fresh copy of the notebook, which is in the "
+        "zip that you were given; if you deleted a cell of your own, write it again"
     )
 
 
@@ -120,9 +121,10 @@ def first_error(cells: list[dict[str, Any]]) -> str:
             failed = isinstance(output, dict) and output.get("output_type") == "error"
             if failed and not analyse(cell["source"])["broken"]:  # those are `unreadable`
                 says = _shown(f"{output.get('ename')}: {output.get('evalue')}", 120)
+                given = kind(cell) in ("walk", "check") and not is_edited(cell)
                 return (
                     f"{the_cell(cell['source'])} ended with an error ({says}), and Run All Cells "
-                    "stops there; correct or delete it"
+                    f"stops there; {_GIVEN if given else 'correct or delete it'}"
                 )
     return ""
 

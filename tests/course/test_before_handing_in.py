@@ -226,8 +226,9 @@ def test_a_given_cell_that_is_gone_and_an_error_are_named(folder):
     [
         ("math.pi", "uses; to use math, begin the cell with `import math`"),
         ("sqrt(2)", "uses; if you mean NumPy's sqrt, write np.sqrt"),
-        ("gone(2)", "uses; if you deleted a cell, copy it from a fresh copy of the notebook, "
-         "which is in the zip that you were given"),
+        ("gone(2)", "uses; if you deleted a given cell, copy it from a fresh copy of the notebook, "
+         "which is in the zip that you were given; if you deleted a cell of your own, write it "
+         "again"),
     ],
 )  # fmt: skip
 def test_a_forgotten_import_is_no_deleted_cell(folder, uses, todo):
@@ -235,6 +236,23 @@ def test_a_forgotten_import_is_no_deleted_cell(folder, uses, todo):
     found = answered(folder, "circle", f"def circle(*a): return {uses}")
     (problem,) = found.problems
     assert problem.endswith(todo)
+
+
+@pytest.mark.parametrize(
+    ("begins", "edit"), [("centre = ", ""), ("centre = ", "\n1 / 0"), ('check("circle"', "")]
+)
+def test_a_given_cell_that_stopped_is_not_to_be_deleted(folder, begins, edit):
+    """A given cell stops because of what it uses, unless the student changed it."""
+
+    def change(cells):
+        (cell,) = (c for c in cells if "".join(c["source"]).startswith(begins))
+        cell["source"] = "".join(cell["source"]) + edit
+        cell["outputs"] = [{"output_type": "error", "ename": "TypeError", "evalue": "bad"}]
+        return cells
+
+    (problem,) = examine(edited(folder / "01_paths.ipynb", change)).problems
+    todo = "correct or delete it" if edit else "you were given this cell as it is, so correct what"
+    assert f"error (TypeError: bad), and Run All Cells stops there; {todo}" in problem
 
 
 def test_a_cell_that_python_cannot_read_is_to_be_mended(folder):
