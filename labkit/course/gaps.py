@@ -146,12 +146,18 @@ def _shown(text: str, most: int) -> str:
     return textwrap.shorten(text, most, placeholder=" ...")
 
 
-def misnamed(homes: Iterable[dict[str, Any]], question: str) -> str:
-    """A sentence if a question's own cells hold code that does not define it, else ""."""
+def misnamed(homes: Iterable[dict[str, Any]], question: str, prediction: bool) -> str:
+    """A sentence if a question's own cells hold code that does not define it, else "".
+
+    Of a prediction the sentence gives the line, so its cell may also be empty.
+    """
     sources = [cell["source"] for cell in homes]
     found = [name for x in sources for name in analyse(x)["functions"] or sorted(defined_in(x))]
-    if not found and any(re.search(r"^predict\(", x, re.MULTILINE) for x in sources):
-        return f"the cell of {question} does not define it; begin its line with `{question} = `"
+    if prediction and sources and not found:
+        return (
+            f"the cell of {question} does not define it; write `{question} = "
+            f'predict("{question}", ...)` there, with your prediction in place of the dots'
+        )
     if not found and not any(analyse(x)["broken"] for x in sources):
         return ""
     but = f", but {', '.join(found)}" if found else ""

@@ -297,15 +297,19 @@ def test_a_long_text_of_numbers_is_not_taken_for_a_file(path):
     assert not handed_in(path, CIRCLE.format(f"'{numbers}'")).problems
 
 
-def test_a_prediction_without_its_name_is_told_how_its_line_begins(path):
+@pytest.mark.parametrize("source", ['predict("twice_the_time", 2.0)', "", "# later"])
+def test_a_prediction_without_its_name_is_told_its_line(path, source):
     """A fresh copy of the cell would not help."""
     data = json.loads(path.read_text())
     for cell in data["cells"]:
         if "".join(cell["source"]).startswith("twice_the_time ="):
-            cell["source"] = 'predict("twice_the_time", 2.0)'
+            cell["source"] = source
     path.write_text(json.dumps(data))
     (problem,) = examine(path).problems
-    assert problem.endswith("does not define it; begin its line with `twice_the_time = `")
+    assert problem == (
+        "the cell of twice_the_time does not define it; write `twice_the_time = "
+        'predict("twice_the_time", ...)` there, with your prediction in place of the dots'
+    )
 
 
 def test_merging_takes_the_value_that_would_be_marked():
