@@ -540,6 +540,17 @@ def test_the_last_word_says_whether_to_hand_in(folder):
     assert _advice("f", blank, timedelta(seconds=5), []) == word
 
 
+def test_a_file_that_lacks_what_ran_last_is_not_said_to_be_ready(folder, capsys, monkeypatch):
+    """Two sentences about handing in would contradict each other."""
+    answered(folder, "circle", "def circle(*a): return 1", [output("circle", Outcome.WRONG)])
+    monkeypatch.chdir(folder)
+    for unsaved in ["circle"], []:
+        monkeypatch.setattr("labkit.course.receipt._unsaved", lambda *_, now=unsaved: now)
+        hand_in("01_paths")
+        said = " ".join(capsys.readouterr().out.split())
+        assert ("can be handed in as it is" in said) == (not unsaved)
+
+
 def test_a_file_without_any_result_is_not_told_task_by_task(folder, capsys, monkeypatch):
     """After Run All the file is as it was before; a table of what did not run would be wrong."""
     monkeypatch.chdir(folder)
