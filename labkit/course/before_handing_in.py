@@ -18,7 +18,7 @@ from typing import Any
 from ..sim import chosen
 from .brief import words_in_all
 from .checks_file import read_checks
-from .definitions import cells_that_count, changed_since, judged_another
+from .definitions import cells_that_count, changed_since, defined_late, judged_another
 from .forms import COMMITTED, OWN_ARM
 from .gaps import (
     calculated_from_runs,
@@ -124,24 +124,19 @@ def examine(path: Path) -> HandIn:
         problems.append(
             f"the file has {size:.0f} MB, but the limit is {LARGEST:g}; clear the largest outputs"
         )
-    asked = [question["name"] for question in questions]
-    for more, worth_knowing in (_review(cells, question, name) for question in asked):
+    tests = {x["name"]: [test["name"] for test in x["tests"]["items"]] for x in questions}
+    asked, predictions = [*tests], [each for each in tests if tests[each] == [COMMITTED]]
+    for each in asked:
+        more, worth_knowing = _review(cells, each, name, each in predictions)
         problems += more
         notes += worth_knowing
     again = {name: [*judged_another(cells, name, asked)] for name in asked}
     problems += [*chain(*again.values()), *unreadable(cells), *undefined_names(cells, asked)]
     code = [cell["source"] for cell in cells if cell["cell_type"] == "code"]
-    for question in questions:
-        if any(test["name"] == OWN_ARM for test in question["tests"]["items"]):
-            problems += filter(None, [calculated_from_runs(code, question["name"])])
-    problems += filter(None, [first_error(cells)])
+    runs = [calculated_from_runs(code, each) for each in asked if OWN_ARM in tests[each]]
+    problems += filter(None, [*runs, first_error(cells)])
     count = [*cells_that_count(cells, asked).values()]
     verdicts = {question["name"]: _verdict(cells, question, count) for question in questions}
-    predictions = [
-        question["name"]
-        for question in questions
-        if [test["name"] for test in question["tests"]["items"]] == [COMMITTED]
-    ]
     problems += [
         f"{head(verdict)} Write it yourself."
         for verdict in verdicts.values()
@@ -156,6 +151,7 @@ def examine(path: Path) -> HandIn:
         for name in predictions
         if (said := verdicts[name]) and said.right and _lacks_prediction(code, name)
     ]
+    notes += chain(*(defined_late(cells, name, asked) for name in asked))
     if stale := [name for name in verdicts if not again[name] and changed_since(cells, name)]:
         notes.append(
             f"changed since the last check: {', '.join(stale)}; the verdicts below are old, so run "
@@ -211,7 +207,9 @@ def _lacks_prediction(code: list[str], name: str) -> bool:
     return bool(made) and bool(re.search(pattern, made[-1], re.MULTILINE))
 
 
-def _review(cells: list[dict[str, Any]], question: str, name: str) -> tuple[list[str], list[str]]:
+def _review(
+    cells: list[dict[str, Any]], question: str, name: str, prediction: bool
+) -> tuple[list[str], list[str]]:
     """Problems and notes about the cells of a question."""
     problems, notes = [], []
     ids = Counter(map(grade_id, cells))
@@ -224,7 +222,8 @@ def _review(cells: list[dict[str, Any]], question: str, name: str) -> tuple[list
             if magic
             else f"the cell of {question} is not code any more; click on it, press Esc and then Y"
             if any(cell["cell_type"] != "code" for cell in homes)
-            else misnamed(homes, question) or f"no cell defines {question}. {how_to_restore(name)}"
+            else misnamed(homes, question, prediction)
+            or f"no cell defines {question}. {how_to_restore(name)}"
         )
     others = [] if problems else [question]  # a problem says already that this cell is gone
     for each in (*others, check_id(question)):
@@ -247,8 +246,7 @@ def _verdict(
         count: The cells of code that matter in marking.
     """
     name = question["name"]
-    tools = withheld_tools(count, name, decode(question["withheld"]))
-    if tools:
+    if tools := withheld_tools(count, name, decode(question["withheld"])):
         points = float(question["points"])
         return Verdict(name, Outcome.NOT_COUNTED, 0.0, points, withheld=tools)
     return last_verdict(cells, name)

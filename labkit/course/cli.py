@@ -93,6 +93,7 @@ def merge(mine: Path, new: Path, to: Path) -> int:
 
     MINE is the notebook that you worked in; NEW is the corrected one from your instructor.
     """
+    from .checks_file import FILE
     from .merge import KEPT_TEXT, merge
     from .notebook import read_cells
 
@@ -109,6 +110,12 @@ def merge(mine: Path, new: Path, to: Path) -> int:
         f"{to}: the new release with your work; look through it, replace your notebook with it, "
         "and run all its cells"
     )
+    checks, old = new.with_name(FILE), mine.with_name(FILE)
+    if checks.is_file() and not (old.is_file() and old.read_bytes() == checks.read_bytes()):
+        print(
+            f"copy {checks} over {old} as well, and restart the kernel; until then the checks have "
+            "the tests and points of the older release"
+        )
     if any(KEPT_TEXT in cell["source"] for cell in notebook["cells"]):
         print(
             "what you wrote in cells that the new release changed or does not have is in added "

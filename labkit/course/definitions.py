@@ -74,9 +74,11 @@ def cells_that_count(cells: Cells, asked: Iterable[str]) -> dict[int, Analysis]:
 def changed_since(cells: Cells, question: str) -> bool:
     """Whether an answer, or what it uses, was changed after its check."""
     judged, (check, _) = last_judged(cells, question), _last_check(cells, question)
-    # What is defined above the check replaces what a cell below it defines.
-    order = sorted(_code(cells), key=lambda k: (k <= check, k))
-    return bool(judged) and judged != answer_hash((cells[k]["source"] for k in order), question)
+    above = [cells[k]["source"] for k in _code(cells) if k <= check]
+    below = [cells[k]["source"] for k in _code(cells) if k > check]
+    # The cells below may have run before the check; what is defined above replaces them.
+    same = [answer_hash(order, question) for order in (above, below + above)]
+    return bool(judged) and judged not in same
 
 
 def answer_hash(sources: Iterable[str], question: str) -> str:
@@ -112,7 +114,7 @@ def judged_another(cells: Cells, question: str, asked: Collection[str]) -> Itera
             f"the check of {question} tried {tried}, but {question} is marked; check {question} "
             f"itself, or rename {tried} to {question} and check it again"
         )
-    parts = [(k, part) for k, found in count.items() for part in found["definitions"]]
+    parts = _parts(count)
     own = [(k, part) for k, part in parts if question in part["binds"] and k in written]
     above = [pair for pair in own if pair[0] <= check]
     if not above:
@@ -129,35 +131,99 @@ def judged_another(cells: Cells, question: str, asked: Collection[str]) -> Itera
                 f"the check of {question} tried what {the_cell(cells[k]['source'])} defines, but "
                 f"{the_cell(cells[written[-1]]['source'])} is marked; write your answer there"
             )
-    for name, place in _used_anew(parts, above[-1][1], check):
+    for name, place, does, instead in _used_anew(parts, above[-1][1], check):
         yield (
-            f"{question} uses {name}, which {the_cell(cells[place]['source'])} defines again "
-            f"below the check, and {question} is marked with that {name}; change one of the two "
-            f"names, or check {question} again below it"
+            f"{question} uses {name}, which {the_cell(cells[place]['source'])} {does} below the "
+            f"check, and {question} is marked with that {name}; {instead}, or check {question} "
+            "again below it"
         )
+
+
+def defined_late(cells: Cells, question: str, asked: Collection[str]) -> Iterator[str]:
+    """Sentences about an answer, and names that it uses later, that only a later cell defines.
+
+    Args:
+        cells: The cells of the notebook.
+        question: The question's name.
+        asked: The names of all questions.
+    """
+    parts, (check, _) = _parts(cells_that_count(cells, asked)), _last_check(cells, question)
+    answers = _known(parts, question, check)
+    used = [name for answer in answers for name in _used_later(_met(parts, answer, check))]
+    for name in used if answers else [question]:
+        late = [k for k, part in parts if _binds(part, name)]
+        if late and late[0] > check and not hasattr(builtins, name):
+            uses = f", which {question} uses" if answers else ""
+            yield (
+                f"only {the_cell(cells[late[0]]['source'])} defines {name}{uses}, and it is below "
+                f"the check of {question}; move it above the check, so that this can try the "
+                "answer (it is marked all the same)"
+            )
 
 
 def _used_anew(
     parts: Sequence[tuple[int, _Part]], answer: _Part, check: int
-) -> Iterator[tuple[str, int]]:
-    """Names that an answer uses when it is called and that a cell below its check defines again."""
-    seen, waiting = set[str](), [answer]
+) -> Iterator[tuple[str, int, str, str]]:
+    """Names that an answer uses when it is called, and that a cell below its check makes another.
+
+    What the answer changes itself, such as a record of its calls, may be changed.
+
+    Yields:
+        The name, the position of the last such cell, what it does, and what to do instead.
+    """
+    met = _met(parts, answer, check)
+    uses, fills = ({x for part in met for x in part[key]} for key in ("uses", "fills"))
+    for name in _used_later(met):
+        known = _known(parts, name, check)
+        module = any(name in part["mean"] for part in known)
+        for k, part in reversed([pair for pair in parts if pair[0] > check]):
+            changes = {x for x in part["changes"] if x.partition(".")[0] == name}
+            if module:  # `np.pi = 3` changes what uses np.pi, but `np.append` changes nothing
+                changes = (changes & uses) - {name}
+            if _binds(part, name):
+                if not _same(name, known[0], part) if known else hasattr(builtins, name):
+                    yield name, k, "defines again", "change one of the two names"
+                break
+            if changes and known and name not in fills:
+                what = min(changes) if module else name
+                yield what, k, "changes", "give the changed value another name"
+                break
+
+
+def _met(parts: Sequence[tuple[int, _Part]], answer: _Part, check: int) -> list[_Part]:
+    """An answer, and the definitions above its check that it meets when it is called."""
+    met, seen, waiting = list[_Part](), set[str](), [answer]
     while waiting:
-        for name in sorted({*waiting.pop()["later"]} - seen):
-            seen.add(name)
-            bound = [(k, part) for k, part in parts if name in part["binds"] and not part["stub"]]
-            known = [part for k, part in bound if k <= check][-1:]
-            waiting += known
-            again = [(k, part) for k, part in bound if k > check][-1:]
-            for k, part in again if known or hasattr(builtins, name) else ():
-                if not (known and _same(name, known[0], part)):
-                    yield name, k
+        met.append(waiting.pop())
+        names = {*met[-1]["later"]} - seen
+        seen |= names
+        waiting += [part for name in names for part in _known(parts, name, check)]
+    return met
+
+
+def _used_later(met: Iterable[_Part]) -> list[str]:
+    return sorted({name for part in met for name in part["later"]})
+
+
+def _known(parts: Sequence[tuple[int, _Part]], name: str, check: int) -> list[_Part]:
+    """The last definition of a name at or above a check, if there is one."""
+    return [part for k, part in parts if k <= check and _binds(part, name)][-1:]
+
+
+def _binds(part: _Part, name: str) -> bool:
+    """Whether a statement defines a name, and not with an empty stub."""
+    return name in part["binds"] and not part["stub"]
 
 
 def _same(name: str, one: _Part, other: _Part) -> bool:
     """Whether two statements define a name in the same words."""
     same_import = name in one["mean"] and one["mean"][name] == other["mean"].get(name)
     return bool(one["text"] == other["text"] or same_import)
+
+
+def _parts(code: Mapping[int, Analysis]) -> list[tuple[int, _Part]]:
+    """All statements with the positions of their cells."""
+    return [(k, part) for k, found in code.items() for part in found["definitions"]]
 
 
 def _code(cells: Cells) -> dict[int, Analysis]:

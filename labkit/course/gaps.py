@@ -19,7 +19,7 @@ import numpy as np
 from .advice import IMPORTS
 from .brief import WORDS, words_in_all, words_of
 from .checks_file import FILE as CHECKS
-from .notebook import cells_made_for, grade_id, kind, released
+from .notebook import cells_made_for, grade_id, is_edited, kind, released
 from .own_arm import FILE as ARMS
 from .source import analyse, plain
 from .unfinished import defined_in
@@ -28,6 +28,7 @@ _KNOWN = {*vars(builtins), "get_ipython", "display", "In", "Out", "_", "__", "__
 """Names that every notebook defines."""
 _OWN_ARM = {"my_arm", "my_bug"}
 """Functions that the grader does not run."""
+_GIVEN = "you were given this cell as it is, so correct what it uses: your answers and cells above"
 _FILE = re.compile(r"""["']([\w ./-]+\.\w+)["']""")
 """A text that may name a file."""
 _GIVEN = {*sys.stdlib_module_names, *(re.split("[ .]", line)[1] for line in IMPORTS.values())}
@@ -79,8 +80,8 @@ def _todo(name: str) -> str:
     if hasattr(np, name):
         return f"if you mean NumPy's {name}, write np.{name}"
     return (
-        "if you deleted a cell, copy it from a fresh copy of the notebook, which is in the zip "
-        "that you were given"
+        "if you deleted a given cell, copy it from a fresh copy of the notebook, which is in the "
+        "zip that you were given; if you deleted a cell of your own, write it again"
     )
 
 
@@ -125,9 +126,10 @@ def first_error(cells: list[dict[str, Any]]) -> str:
             failed = isinstance(output, dict) and output.get("output_type") == "error"
             if failed and not analyse(cell["source"])["broken"]:  # those are `unreadable`
                 says = _shown(f"{output.get('ename')}: {output.get('evalue')}", 120)
+                given = kind(cell) in ("walk", "check") and not is_edited(cell)
                 return (
                     f"{the_cell(cell['source'])} ended with an error ({says}), and Run All Cells "
-                    "stops there; correct or delete it"
+                    f"stops there; {_GIVEN if given else 'correct or delete it'}"
                 )
     return ""
 
@@ -149,12 +151,18 @@ def _shown(text: str, most: int) -> str:
     return textwrap.shorten(text, most, placeholder=" ...")
 
 
-def misnamed(homes: Iterable[dict[str, Any]], question: str) -> str:
-    """A sentence if a question's own cells hold code that does not define it, else ""."""
+def misnamed(homes: Iterable[dict[str, Any]], question: str, prediction: bool) -> str:
+    """A sentence if a question's own cells hold code that does not define it, else "".
+
+    Of a prediction the sentence gives the line, so its cell may also be empty.
+    """
     sources = [cell["source"] for cell in homes]
     found = [name for x in sources for name in analyse(x)["functions"] or sorted(defined_in(x))]
-    if not found and any(re.search(r"^predict\(", x, re.MULTILINE) for x in sources):
-        return f"the cell of {question} does not define it; begin its line with `{question} = `"
+    if prediction and sources and not found:
+        return (
+            f"the cell of {question} does not define it; write `{question} = "
+            f'predict("{question}", ...)` there, with your prediction in place of the dots'
+        )
     if not found and not any(analyse(x)["broken"] for x in sources):
         return ""
     but = f", but {', '.join(found)}" if found else ""

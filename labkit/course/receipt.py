@@ -34,19 +34,24 @@ def hand_in(name: str) -> None:
     sources = [cell["source"] for cell in read_cells(path)]
     saved = datetime.fromtimestamp(path.stat().st_mtime, UTC).astimezone()
     age = max(datetime.now(UTC) - saved, timedelta())
+    unsaved = _unsaved(found, sources)
     lines = [
-        *_findings(found),
+        *_findings(found, unsaved),
         f"receipt: {receipt(sources)} of {path.name}, saved {saved:%Y-%m-%d %H:%M %Z}",
-        _advice(path.name, found, age, _unsaved(found, sources)),
+        _advice(path.name, found, age, unsaved),
     ]
     print("\n".join(map(wrapped, lines)))
 
 
-def _findings(found: HandIn) -> list[str]:
-    """The findings in the saved file; without any saved result, only what must be corrected."""
+def _findings(found: HandIn, unsaved: Collection[str]) -> list[str]:
+    """The findings in the saved file; without any saved result, only what must be corrected.
+
+    Of a file that lacks what ran last, it is not said that it can be handed in.
+    """
     if found.verdicts and not any(found.verdicts.values()):
         return [f"[fix] {text}" for text in found.problems]
-    return str(found).splitlines()
+    lines = str(found).splitlines()
+    return lines[:-1] if unsaved else lines
 
 
 def _unsaved(found: HandIn, sources: Iterable[str]) -> list[str]:

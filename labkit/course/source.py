@@ -25,7 +25,11 @@ Any other, such as ``%%timeit`` or ``%%bash``, defines no name in the notebook.
 """
 _MAGIC = re.compile(r"\s*%%(\S+)[^\n]*\n?")
 _CHAINS = {ast.Name, ast.Attribute, ast.Call}
-_GROW = {"append", "extend", "insert", "add", "update"}
+_CHANGE = {
+    "append", "extend", "insert", "add", "update", "setdefault", "fill", "sort", "reverse", "pop",
+    "remove", "clear",
+}  # fmt: skip
+_DEFINITIONS = ast.FunctionDef | ast.AsyncFunctionDef | ast.ClassDef
 _IMPORTS = {ast.Import, ast.ImportFrom}
 _OTHER_MAGIC = re.compile(r"get_ipython\(\)\.run_cell_magic\('([^']*)'")
 
@@ -185,9 +189,10 @@ def _definition(part: list[ast.stmt], lines: list[str]) -> dict[str, Any]:
     Returns:
         Names that it ``binds``; names that it takes from ``outside``, and those that its functions
         take only ``later``, when they are called; the dotted names that it ``uses``; names whose
-        contents it ``fills`` without defining them; questions that it ``asks`` `use` about; what
-        the names that it imports ``mean``, with "*" for all of a module; whether it is a ``stub``;
-        and a hash of its ``text``, without empty lines and spaces at the end of lines.
+        contents it ``fills`` without defining them; the dotted names of what it ``changes`` at
+        once; questions that it ``asks`` `use` about; what the names that it imports ``mean``, with
+        "*" for all of a module; whether it is a ``stub``; and a hash of its ``text``, without empty
+        lines and spaces at the end of lines.
     """
     text = _text(part, lines)
     scope = symtable.symtable(text, "", "exec")
@@ -195,6 +200,7 @@ def _definition(part: list[ast.stmt], lines: list[str]) -> dict[str, Any]:
     binds, outside = _own_names(scope), set(_outside_names(scope))
     mean: dict[str, str] = {}
     chains, fills, sets, asks = set[str](), set[str](), set[str](), set[str]()
+    changes = set[str]()
     grown: set[ast.AST] = set()
     for node in _nodes(part):
         kind = type(node)
@@ -202,15 +208,17 @@ def _definition(part: list[ast.stmt], lines: list[str]) -> dict[str, Any]:
             chains.add(dotted(node))
         if isinstance(node, ast.Call) and dotted(node) == "use" and node.args:
             asks.add(str(getattr(node.args[0], "value", "")))
-        stores = isinstance(getattr(node, "ctx", None), ast.Store)
+        stores = isinstance(getattr(node, "ctx", None), ast.Store | ast.Del)
         if isinstance(node, ast.AugAssign):
             grown.add(node.target)
         elif isinstance(node, ast.Name) and stores:  # `x = 1`, or `x += 1`
             (fills if node in grown else sets).add(node.id)
-        elif stores or getattr(node, "attr", "") in _GROW:  # `x[k] = 1`, `x.k = 1`, `x.append(1)`
-            fills.add(dotted(getattr(node, "value", node)).partition(".")[0])
+        elif stores or getattr(node, "attr", "") in _CHANGE:  # `x[k] = 1`, `x.k = 1`, `x.pop()`
+            whole = dotted(node if stores and kind is ast.Attribute else _whole(node))
+            changes.add(whole if stores else whole.partition(".")[0])
         elif kind in _IMPORTS:
             mean |= imported(node)
+    fills |= {x.partition(".")[0] for x in changes}
     uses = {x for x in chains if (root := x.partition(".")[0]) in outside or root in mean}
     return {
         "binds": sorted(binds | (mean.keys() & {"*"})),
@@ -218,6 +226,7 @@ def _definition(part: list[ast.stmt], lines: list[str]) -> dict[str, Any]:
         "later": sorted({name for inner in _functions(scope) for name in _outside_names(inner)}),
         "uses": sorted(uses),
         "fills": sorted((fills - sets) & (binds | outside)),
+        "changes": [] if isinstance(part[0], _DEFINITIONS) else sorted(changes),
         "asks": sorted(asks),
         "mean": mean,
         "stub": is_stub(part[0]),
@@ -236,6 +245,12 @@ def _nodes(part: list[ast.stmt]) -> Iterator[ast.AST]:
             waiting += [x.value for x in node.keywords if x.arg != "given"]
         else:
             waiting += ast.iter_child_nodes(node)
+
+
+def _whole(node: Any) -> Any:
+    """What contains an attribute or an element, with all elements of elements."""
+    node = getattr(node, "value", node)
+    return _whole(node) if isinstance(node, ast.Subscript) else node
 
 
 def _is_text(node: ast.stmt) -> bool:

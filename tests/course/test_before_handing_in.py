@@ -226,8 +226,9 @@ def test_a_given_cell_that_is_gone_and_an_error_are_named(folder):
     [
         ("math.pi", "uses; to use math, begin the cell with `import math`"),
         ("sqrt(2)", "uses; if you mean NumPy's sqrt, write np.sqrt"),
-        ("gone(2)", "uses; if you deleted a cell, copy it from a fresh copy of the notebook, "
-         "which is in the zip that you were given"),
+        ("gone(2)", "uses; if you deleted a given cell, copy it from a fresh copy of the notebook, "
+         "which is in the zip that you were given; if you deleted a cell of your own, write it "
+         "again"),
     ],
 )  # fmt: skip
 def test_a_forgotten_import_is_no_deleted_cell(folder, uses, todo):
@@ -235,6 +236,23 @@ def test_a_forgotten_import_is_no_deleted_cell(folder, uses, todo):
     found = answered(folder, "circle", f"def circle(*a): return {uses}")
     (problem,) = found.problems
     assert problem.endswith(todo)
+
+
+@pytest.mark.parametrize(
+    ("begins", "edit"), [("centre = ", ""), ("centre = ", "\n1 / 0"), ('check("circle"', "")]
+)
+def test_a_given_cell_that_stopped_is_not_to_be_deleted(folder, begins, edit):
+    """A given cell stops because of what it uses, unless the student changed it."""
+
+    def change(cells):
+        (cell,) = (c for c in cells if "".join(c["source"]).startswith(begins))
+        cell["source"] = "".join(cell["source"]) + edit
+        cell["outputs"] = [{"output_type": "error", "ename": "TypeError", "evalue": "bad"}]
+        return cells
+
+    (problem,) = examine(edited(folder / "01_paths.ipynb", change)).problems
+    todo = "correct or delete it" if edit else "you were given this cell as it is, so correct what"
+    assert f"error (TypeError: bad), and Run All Cells stops there; {todo}" in problem
 
 
 def test_a_cell_that_python_cannot_read_is_to_be_mended(folder):
@@ -520,6 +538,17 @@ def test_the_last_word_says_whether_to_hand_in(folder):
     assert "but does not hold the circle that you ran last: run all cells, save it" in says[3]
     word = "f was saved 5 s ago, before any check had run: save it and run this cell again."
     assert _advice("f", blank, timedelta(seconds=5), []) == word
+
+
+def test_a_file_that_lacks_what_ran_last_is_not_said_to_be_ready(folder, capsys, monkeypatch):
+    """Two sentences about handing in would contradict each other."""
+    answered(folder, "circle", "def circle(*a): return 1", [output("circle", Outcome.WRONG)])
+    monkeypatch.chdir(folder)
+    for unsaved in ["circle"], []:
+        monkeypatch.setattr("labkit.course.receipt._unsaved", lambda *_, now=unsaved: now)
+        hand_in("01_paths")
+        said = " ".join(capsys.readouterr().out.split())
+        assert ("can be handed in as it is" in said) == (not unsaved)
 
 
 def test_a_file_without_any_result_is_not_told_task_by_task(folder, capsys, monkeypatch):

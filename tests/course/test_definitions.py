@@ -90,6 +90,55 @@ def test_a_helper_that_is_defined_again_below_the_check_is_named(path, above, be
     assert "defines again below the check, and circle is marked with that half" in problem
 
 
+@pytest.mark.parametrize(
+    "below",
+    [
+        "half[0] = 5.0",
+        "half[:] = [1.0]",
+        "half[0][1] += 1",
+        "del half[0]",
+        "half.size = 3",
+        "half.append(3.0)",
+        "last = half.pop()",
+        "for k in range(3):\n    half.sort()",
+        "half = [4.0]\nhalf.clear()",
+        "import numpy as np\nnp.pi = 3",
+    ],
+)
+def test_what_the_answer_uses_and_a_cell_below_the_check_changes_is_named(path, below):
+    """An object that is changed keeps its name, and marking uses what it holds at the end."""
+    name, above = "np.pi" if "np" in below else "half", "import numpy as np\nhalf = [4.0]"
+    answer = "def deep(s): return half[0] * np.pi\n" + CIRCLE.format("deep(s)")
+    (problem,) = handed_in(path, answer, code(below), above=[code(above)]).problems
+    first = below.partition("\n")[0]
+    assert problem == (
+        f"circle uses {name}, which the cell that begins with `{first}` changes below the check, "
+        f"and circle is marked with that {name}; give the changed value another name, or check "
+        "circle again below it"
+    )
+
+
+@pytest.mark.parametrize(
+    ("above", "below"),
+    [
+        ("half = [4.0]\nhalf[0] = 5.0", ""),
+        ("half = [4.0]", "half[0] = 5.0\nhalf = [4.0]"),
+        ("half = [4.0]", "def later(): half[0] = 5.0"),
+        ("half = [4.0]", "runs = []\nruns.append(half[0])"),
+        ("half = [4.0]", "calls.clear()"),
+        ("half = [4.0]", "plt.rcParams['font.size'] = 9\nlonger = np.append(half, 1)"),
+    ],
+)
+def test_a_change_that_the_answer_does_not_meet_is_not_named(path, above, below):
+    """Above the check, undone, in a function, of another object, or of the answer's own record."""
+    answer = (
+        "calls = []\ndef circle(s, start, centre):\n    calls.append(s)\n"
+        "    plt.plot(np.array(half))\n    return 0"
+    )
+    imports = "import numpy as np\nimport matplotlib.pyplot as plt\n"
+    assert not handed_in(path, answer, code(below), above=[code(imports + above)]).problems
+
+
 def test_what_is_hidden_below_the_check_is_named(path):
     """A value takes Python's function, or another answer, from an answer that ran before."""
     above = [code("def bang_bang(*a): return 1")]
@@ -188,12 +237,30 @@ def test_an_answer_that_was_edited_after_its_check_is_not_called_right(
         (["import math", PI], ["import math, os"], PI, []),
         (["two = 2", "half = two", HALF], ["two = 2", "half = two"], HALF, ["two = 3"]),
         ([STUB, RIGHT], [], STUB, [RIGHT]),
+        ([HALF], [], HALF, ["half = 2"]),
     ],
 )
 def test_an_answer_that_means_the_same_is_not_called_changed(path, judged, above, answer, below):
     """Empty lines, other imports and what the answer does not meet change nothing."""
     notes = handed_in(path, answer, *map(code, below), above=map(code, above), judged=judged).notes
     assert not any("changed since the last check" in note for note in notes)
+
+
+def test_what_only_a_cell_below_the_check_defines_is_named(path):
+    """From the top the check finds no answer or a NameError, although the answer is marked."""
+    note = (
+        "only the cell that begins with `{}` defines {}, and it is below the check of circle; move "
+        "it above the check, so that this can try the answer (it is marked all the same)"
+    )
+    helper, ring = note.format("half = 2", "half, which circle uses"), code(CIRCLE.format("half"))
+    found = handed_in(path, f"def deep(s): return half\n{CIRCLE.format('deep')}", code("half = 2"))
+    assert not found.problems and helper in found.notes
+    alone = handed_in(path, STUB, ring, judged=[STUB]).notes
+    assert note.format("def circle(s, start, centre):", "circle") in alone
+    check = code('check("circle", circle)')
+    for above, below in (([code("half = 3")], []), ([], [check])):
+        notes = handed_in(path, HALF, code("half = 2"), *below, above=above).notes
+        assert not any("below the check" in note for note in notes)
 
 
 @pytest.mark.parametrize("early", ["half = 2 * four", "half = [four for _ in 'ab']"])
@@ -242,15 +309,19 @@ def test_a_long_text_of_numbers_is_not_taken_for_a_file(path):
     assert not handed_in(path, CIRCLE.format(f"'{numbers}'")).problems
 
 
-def test_a_prediction_without_its_name_is_told_how_its_line_begins(path):
+@pytest.mark.parametrize("source", ['predict("twice_the_time", 2.0)', "", "# later"])
+def test_a_prediction_without_its_name_is_told_its_line(path, source):
     """A fresh copy of the cell would not help."""
     data = json.loads(path.read_text())
     for cell in data["cells"]:
         if "".join(cell["source"]).startswith("twice_the_time ="):
-            cell["source"] = 'predict("twice_the_time", 2.0)'
+            cell["source"] = source
     path.write_text(json.dumps(data))
     (problem,) = examine(path).problems
-    assert problem.endswith("does not define it; begin its line with `twice_the_time = `")
+    assert problem == (
+        "the cell of twice_the_time does not define it; write `twice_the_time = "
+        'predict("twice_the_time", ...)` there, with your prediction in place of the dots'
+    )
 
 
 def test_merging_takes_the_value_that_would_be_marked():

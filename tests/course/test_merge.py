@@ -144,6 +144,26 @@ def test_text_that_no_file_can_hold_is_merged_all_the_same(folder, tmp_path):
     assert "return 1  # ?" in merged
 
 
+def test_merging_says_to_copy_the_tests_of_the_new_release(folder, tmp_path, capsys):
+    """With the old file the checks go on with its tests and points; one that agrees may stay."""
+    mine, new = folder / "01_paths.ipynb", tmp_path / "new" / "01_paths.ipynb"
+    shutil.copytree(folder, new.parent)
+
+    def said(to):
+        assert main(["merge", str(mine), str(new), "--to", str(tmp_path / to)]) == 0
+        return capsys.readouterr().out
+
+    assert "checks.json" not in said("same.ipynb")
+    with new.with_name("checks.json").open("a") as checks:
+        checks.write("\n")
+    copy = f"copy {new.parent / 'checks.json'} over {folder / 'checks.json'} as well, and restart"
+    assert copy in said("corrected.ipynb")
+    (folder / "checks.json").unlink()
+    assert copy in said("missing.ipynb")
+    new.with_name("checks.json").unlink()
+    assert "checks.json" not in said("alone.ipynb")
+
+
 def test_merging_an_untouched_notebook_gives_the_new_release(folder):
     """Without any work of the student's, the merge is the new release."""
     cells = read_cells(folder / "01_paths.ipynb")
