@@ -31,7 +31,7 @@ _OWN_ARM = {"my_arm", "my_bug"}
 _GIVEN = "you were given this cell as it is, so correct what it uses: your answers and cells above"
 _FILE = re.compile(r"""["']([\w ./-]+\.\w+)["']""")
 """A text that may name a file."""
-_GIVEN = {*sys.stdlib_module_names, *(re.split("[ .]", line)[1] for line in IMPORTS.values())}
+_ANYWHERE = {*sys.stdlib_module_names, *(re.split("[ .]", line)[1] for line in IMPORTS.values())}
 """Modules that every notebook may import."""
 
 
@@ -182,7 +182,7 @@ def left_behind(folder: Path, cells: Iterable[dict[str, Any]]) -> tuple[list[str
     modules = [x for x in sorted(roots) if (folder / f"{x}.py").is_file() or (folder / x).is_dir()]
     named = {name for x in sources for name in _FILE.findall(plain(x))}
     files = [x for x in sorted(named - {ARMS, CHECKS}) if os.path.isfile(folder / x)]
-    foreign = roots - _GIVEN - {*modules}
+    foreign = roots - _ANYWHERE - {*modules}
     return [
         f"{name} is a module of yours, and only the notebook is handed in; copy what you import "
         "from it into a cell, and delete the import"
