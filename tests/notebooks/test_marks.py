@@ -21,9 +21,6 @@ SAMPLE = {"open_loop", "joint_velocity_pd", "shaped_impedance"}
 """Of the questions for which the arm runs, those that are drawn twice in the gate too."""
 POINTS = dict.fromkeys(NAMES, 20) | {"00_warmup": 10}
 
-# scipy says so of the nearly equal differences in some cases of paired_difference
-pytestmark = pytest.mark.filterwarnings("ignore:Precision loss occurred")
-
 each = pytest.mark.parametrize(
     "problem",
     [
