@@ -32,7 +32,7 @@ from .question import Call, Question
 from .reply import LocalFunction
 from .serialize import read_question
 from .source import analyse
-from .stand_ins import STAND_IN, WRONG, StandIns
+from .stand_ins import STAND_IN, WRONG, StandIns, in_form
 from .unfinished import watch
 from .verdict import Outcome, Verdict
 from .withheld import withheld_tools, withhold
@@ -278,12 +278,14 @@ def use(
     if known is not function or verdict is None:
         verdict, *_ = desk().verdict(name, function)
     wrong = verdict.outcome is Outcome.WRONG
+    calls = (x for x in desk().question(name).calls if isinstance(x, Call))
+    yours = yours or in_form(function, getattr(next(calls, None), "expected", None))
     if verdict.right:
         desk().stand_ins.pop(name, None)
-        return yours or function
+        return yours
     if anyway and wrong:
         print(f"[anyway] {name}: your function is not right yet, and is used all the same.")
-        return desk().stand_ins.give(name, WRONG, yours or function, shell())
+        return desk().stand_ins.give(name, WRONG, yours, shell())
     text = f"[stand-in] {name}: yours is replaced here by a stand-in ({HEADS[verdict.outcome]})."
     if wrong:
         text += " To see what your function does, add anyway=True to this use(...)."
