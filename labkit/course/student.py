@@ -33,7 +33,7 @@ from .reply import LocalFunction
 from .serialize import read_question
 from .source import analyse
 from .stand_ins import STAND_IN, WRONG, StandIns, in_form
-from .unfinished import watch
+from .unfinished import still_raises, watch
 from .verdict import Outcome, Verdict
 from .withheld import withheld_tools, withhold
 
@@ -186,7 +186,8 @@ def check(name: str, function: Callable[..., Any]) -> float:
         print(wrapped(_NOT_RUN.format(name=name)))
         return Points(0.0)
     verdict, printed, found = desk().verdict(name, function)
-    more: list[str] = []
+    stub = verdict.outcome is Outcome.NOT_ATTEMPTED
+    more = [still_raises(executed_cells(function), name)] if stub else []
     handle = shell() and str(shell().user_ns.get("HANDLE"))
     if awaits_marking(verdict) and handle and normalised(handle) == DEMO:
         verdict, *more = on_the_public_arm(question, verdict, function)
