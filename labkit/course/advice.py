@@ -139,7 +139,8 @@ _REMEDIES = {
     "argument 0 of type TransferFunction": "numpy cannot take the exponential of a transfer "
     "function; control.pade approximates a delay",
     "must have different signs": "brentq needs a function that has opposite signs at its two "
-    "bounds; print it there, and look for degrees among radians",
+    "bounds; print it there, and look for a wrong sign, bounds that are too close together, or "
+    "degrees among radians",
     "missing required argument 'cameraMatrix'": "after the pixels, pass the camera matrix and "
     "None for the distortion",
 }

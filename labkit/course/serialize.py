@@ -152,7 +152,9 @@ def encode(value: Any) -> Any:
     if isinstance(value, np.ndarray):
         if value.dtype.kind not in "fiub":
             raise NotComparable(
-                f"an array of {value.dtype} cannot be compared; return real numbers"
+                f"{'an array' if value.ndim else 'a number'} of type {value.dtype} cannot be "
+                "compared; return real numbers or, if the question asks for one, a transfer "
+                "function of python-control"
             )
         numbers = [_number(x) for x in np.asarray(value).ravel().tolist()]  # a matrix stays 2-D
         return {"$": "array", "shape": list(value.shape), "numbers": numbers}
@@ -169,14 +171,19 @@ def encode(value: Any) -> Any:
         return {"$": "dict", "items": {key: encode(x) for key, x in value.items()}}
     if isinstance(value, MethodType):
         return {"$": "method", "of": encode(value.__self__), "name": value.__name__}
+    if type(value).__module__ == "control.statesp":
+        from control import tf
+
+        value = tf(value)
     if type(value).__module__.startswith("control.") and hasattr(value, "num"):
         num, den = (tuple(float(x) for x in part[0][0]) for part in (value.num, value.den))
         return encode(Ratio(num, den))
     if isinstance(value, type) and value is _COMMANDS.get(value.__name__):
         return {"$": "command type", "name": value.__name__}
     raise NotComparable(
-        f"a value of type {name} cannot be compared; give numbers, arrays, lists or "
-        + ", ".join(kind.__name__ for kind in DATA)
+        f"a value of type {name} cannot be compared; give real numbers, arrays, lists or "
+        + ", ".join(kind.__name__ for kind in DATA if kind is not Ratio)
+        + ", or a transfer function of python-control"
     )
 
 

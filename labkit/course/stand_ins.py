@@ -3,8 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Collection, Iterable
+from functools import wraps
 from typing import Any
 
+import numpy as np
+
+from ..trajectory import PoseSample, Sample
 from .source import analyse
 
 STAND_IN, WRONG = "a stand-in for", "your wrong"
@@ -37,6 +41,25 @@ class StandIns(dict[str, str]):
     def wrong(self) -> list[str]:
         """The student's wrong answers on which a prediction's truth in the last cell depends."""
         return [x for x in drawn_with(self.ran, self, ("predict",)) if self[x] == WRONG]
+
+
+def in_form(function: Callable[..., Any], right: Any) -> Callable[..., Any]:
+    """A function whose results are of a right answer's type, where lists or tuples are accepted.
+
+    Args:
+        function: The student's function.
+        right: One right answer; only for samples and arrays the results are converted.
+    """
+    kind = type(right)
+    if kind not in (Sample, PoseSample, np.ndarray):
+        return function
+
+    @wraps(function)
+    def formed(*args: Any, **kwargs: Any) -> Any:
+        result = function(*args, **kwargs)
+        return np.asarray(result) if kind is np.ndarray else kind(*map(np.asarray, result))
+
+    return formed
 
 
 def drawn_with(

@@ -32,8 +32,8 @@ from .question import Call, Question
 from .reply import LocalFunction
 from .serialize import read_question
 from .source import analyse
-from .stand_ins import STAND_IN, WRONG, StandIns
-from .unfinished import watch
+from .stand_ins import STAND_IN, WRONG, StandIns, in_form
+from .unfinished import still_raises, watch
 from .verdict import Outcome, Verdict
 from .withheld import withheld_tools, withhold
 
@@ -186,7 +186,8 @@ def check(name: str, function: Callable[..., Any]) -> float:
         print(wrapped(_NOT_RUN.format(name=name)))
         return Points(0.0)
     verdict, printed, found = desk().verdict(name, function)
-    more: list[str] = []
+    stub = verdict.outcome is Outcome.NOT_ATTEMPTED
+    more = [still_raises(executed_cells(function), name)] if stub else []
     handle = shell() and str(shell().user_ns.get("HANDLE"))
     if awaits_marking(verdict) and handle and normalised(handle) == DEMO:
         verdict, *more = on_the_public_arm(question, verdict, function)
@@ -278,12 +279,14 @@ def use(
     if known is not function or verdict is None:
         verdict, *_ = desk().verdict(name, function)
     wrong = verdict.outcome is Outcome.WRONG
+    calls = (x for x in desk().question(name).calls if isinstance(x, Call))
+    yours = yours or in_form(function, getattr(next(calls, None), "expected", None))
     if verdict.right:
         desk().stand_ins.pop(name, None)
-        return yours or function
+        return yours
     if anyway and wrong:
         print(f"[anyway] {name}: your function is not right yet, and is used all the same.")
-        return desk().stand_ins.give(name, WRONG, yours or function, shell())
+        return desk().stand_ins.give(name, WRONG, yours, shell())
     text = f"[stand-in] {name}: yours is replaced here by a stand-in ({HEADS[verdict.outcome]})."
     if wrong:
         text += " To see what your function does, add anyway=True to this use(...)."

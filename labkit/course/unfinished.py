@@ -1,4 +1,4 @@
-"""Cells that stopped before they defined an answer, so that an older answer is still defined."""
+"""Answers that are not finished: their cell stopped with an error, or they raise as a stub does."""
 
 from __future__ import annotations
 
@@ -16,6 +16,17 @@ def defined_in(source: str) -> set[str]:
     if not found["broken"]:
         return set(found["binds"])
     return {function or value for function, value in _DEFINES.findall(source)}
+
+
+def still_raises(cells: list[str], name: str) -> str:
+    """What to do where a function has more in it than a stub but raises as a stub does, or ""."""
+    own = [cell for cell in map(analyse, cells) if name in cell["functions"]]
+    if not own or name in own[-1]["stubs"]:
+        return ""
+    return (
+        "Your function reaches its line `raise NotImplementedError`; delete this line once your "
+        "own lines return the answer, and run the cell again."
+    )
 
 
 def watch(shell: Any) -> set[str]:

@@ -240,7 +240,7 @@ lk.plotting.show(measured.describe())
 #
 # Your gains are then used where you could not try them: on another path, at twice the speed, with a kilogram
 # in the hand, with a state that is a few milliseconds older. Then 1.3 times your `Kp` is tried as well, so leave
-# at least this much margin; the check tries 1.6 times your `Kp` on the line. Your function is called for this arm
+# at least this much margin; the check tries 1.8 times your `Kp` on the line. Your function is called for this arm
 # and for one that takes about four times as long for everything, its path included. Each time it may make twenty
 # runs. No pair of gains serves both arms, so let the function look for them.
 

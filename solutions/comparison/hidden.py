@@ -24,10 +24,10 @@ UNSEEN_LIMIT = 3.9
 """The largest error allowed on unseen cases, in [mm], met by gains of 12.4 to 38 without D."""
 RESERVE = 1.3
 """This multiple of the chosen Kp must meet the limit, too, which leaves 12.4 to 29."""
-LINE_LIMIT = 3.5
+LINE_LIMIT = 3.05
 """The largest error allowed on the line, in [mm]; gains that pass unseen cases leave up to 3.0."""
-FAR = 1.6
-"""This multiple of the chosen Kp must meet it, too; gains that pass unseen cases then leave 2.8."""
+FAR = 1.8
+"""This multiple of the chosen Kp must meet it, too; so no gains pass on the line of both arms."""
 
 
 def stiffer(trials: Trials, factor: float) -> Trials:

@@ -78,6 +78,13 @@ def paired_by_hand(errors_a: Sequence[float], errors_b: Sequence[float]) -> Any:
     return mean(d), stats.t.interval(0.95, len(d) - 1)[1] * stdev(d) / sqrt(len(d))
 
 
+def paired_by_interval(errors_a: Sequence[float], errors_b: Sequence[float]) -> Any:
+    """With the interval of Student's t about the mean; scipy has none where nothing spreads."""
+    d = np.subtract(errors_a, errors_b)
+    low, high = stats.t.interval(0.95, len(d) - 1, loc=d.mean(), scale=stats.sem(d))
+    return d.mean(), (high - low) / 2
+
+
 def verdicts_by_comprehension(table: Mapping[str, Any]) -> Any:
     """In one expression, from the signs of the two ends of the interval."""
     words = {2: "holds", -2: "does not hold"}

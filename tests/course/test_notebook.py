@@ -75,6 +75,17 @@ def test_streams_work_again_afterwards(capfd):
     assert capfd.readouterr() == ("here\n", "there\n")
 
 
+def test_a_line_of_the_stub_that_is_left_in_an_answer_is_told(capsys, monkeypatch):
+    """Own lines beside `raise NotImplementedError` need one more step; a mere stub needs them."""
+    for own, told in (("", False), ("    y = 2 * x\n", True)):
+        cell = f"def double(x):\n{own}    raise NotImplementedError\n"
+        monkeypatch.setattr(notebook, "executed_cells", lambda function, cell=cell: [cell])
+        check("double", stub)
+        said = " ".join(capsys.readouterr().out.split())
+        assert said.startswith("double: not attempted yet.") and "To do: " in said
+        assert ("delete this line once your own lines return the answer" in said) == told
+
+
 def test_an_answer_that_leans_on_a_wrong_one_is_told(capsys):
     """Where a function calls another answer that is not right, that one is to be mended first.
 

@@ -66,6 +66,7 @@ def misspells(angles=None):
         (lambda: np.linalg.inv(np.zeros((6, 7))), "only a square matrix"),
         (lambda: FIXED(2.0), "is a * missing"),
         (lambda: brentq(lambda w: 1.6 - w - 60.0, 0.0, 9.0), "degrees among radians"),
+        (lambda: brentq(lambda w: 1.6 + w, 0.0, 9.0), "look for a wrong sign, bounds that are too"),
     ],
 )
 def test_a_usual_slip_has_a_way_out(does, remedy):

@@ -4,13 +4,15 @@ import json
 from collections import OrderedDict
 from dataclasses import replace
 
+import control
 import numpy as np
 import pytest
 from questions import DOUBLE
 
 import labkit as lk
-from labkit.course import Call, Close, Outcome, Question, Test
+from labkit.course import Call, Close, Outcome, Question, Response, Test
 from labkit.course.calling import ArgumentChanged, call
+from labkit.course.equivalence import Ratio
 from labkit.course.marking import mark
 from labkit.course.messages import message, why
 from labkit.course.reply import LocalFunction, NoAnswer, answer, reply
@@ -224,6 +226,21 @@ def test_a_value_of_a_wrong_kind_is_returned_and_not_raised(made):
     words = str(message(DOUBLE, verdict))
     assert verdict.outcome is Outcome.WRONG and words.startswith("double: not yet right.")
     assert "It returned a wrong kind of value: a" in words and "raised" not in words
+
+
+@pytest.mark.parametrize("made", [lambda: np.complex128(2j), lambda: 2j, object])
+def test_what_may_be_returned_is_told_in_full(made):
+    """A transfer function is named too, by its own name, and one number is not called an array."""
+    says = reply(made, (), {})["says"]
+    assert "a transfer function of python-control" in says
+    assert "an array of" not in says and "Ratio" not in says
+
+
+def test_a_state_space_model_is_judged_as_its_transfer_function():
+    """Both have the same frequency response, which is all that counts."""
+    loop = control.ss([[-20.0, 0.0], [1.0, 0.0]], [[80.0], [0.0]], [[0.0, 1.0]], [[0.0]])
+    given = answer(json.loads(json.dumps(reply(lambda: loop, (), {}))), ())
+    assert Response((1.0, 25.0), 1e-6)(given, Ratio((80.0,), (1.0, 20.0, 0.0))) is None
 
 
 @pytest.mark.filterwarnings("ignore:the matrix subclass")

@@ -21,9 +21,6 @@ SAMPLE = {"open_loop", "joint_velocity_pd", "shaped_impedance"}
 """Of the questions for which the arm runs, those that are tried as often as the others."""
 POINTS = dict.fromkeys(NAMES, 20) | {"00_warmup": 10}
 
-# scipy says so of the nearly equal differences in some cases of paired_difference
-pytestmark = pytest.mark.filterwarnings("ignore:Precision loss occurred")
-
 
 def runs_the_arm(problem):
     """Whether a question takes more than calls of a function."""

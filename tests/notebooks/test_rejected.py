@@ -18,7 +18,15 @@ from labkit.course.authoring.layout import Course
 from labkit.course.authoring.report_card import rejected_below
 from labkit.course.marking import mark
 from labkit.course.messages import message
-from solutions.comparison.hidden import RESERVE, UNSEEN, UNSEEN_LIMIT, stiffer
+from solutions.comparison.hidden import (
+    FAR,
+    LINE_LIMIT,
+    ON_THE_LINE,
+    RESERVE,
+    UNSEEN,
+    UNSEEN_LIMIT,
+    stiffer,
+)
 
 COURSE = Course.here(Path(__file__))
 PROBLEMS = {f"{name[:2]} {p.name}": p for name in COURSE.names() for p in COURSE.problems(name)}
@@ -240,8 +248,8 @@ def lowest(seeds, grid, share=1.0):
 
 
 GRID = (14.0, 22.0, 34.0, 50.0)
-ONLY_ON_THE_LINE = lowest((0,), np.geomspace(10.0, 90.0, 18))
-"""Its gains hold on the line, and with 1.6 times Kp: that they do not elsewhere is the lesson."""
+ONLY_ON_THE_LINE = lowest((0,), np.geomspace(8.0, 80.0, 18))
+"""Its gains hold on the line, and with 1.8 times Kp: that they do not elsewhere is the lesson."""
 REJECTED = [
     ("00 joint_error", wrapped, "the error wrapped to half a turn"),
     ("00 orientation_error", zero_by_zero, "0/0 where there is no turn"),
@@ -317,6 +325,7 @@ REJECTED = [
     ("07 choose_gains", lowest(range(5), GRID, 0.9), "only a tenth below the lowest point"),
     ("07 choose_gains", lambda runner: (20.0, 1.0), "gains chosen without a run"),
     ("07 choose_gains", lambda runner: (40.0, 0.6), None),
+    ("07 choose_gains", lambda runner: (8, 0), None),
 ]
 
 
@@ -348,9 +357,9 @@ def test_a_delay_of_second_order_is_right():
     ("Kp", "where"),
     [
         (5.0, "on the first arm, with the chosen Kp"),
-        (60.0, "on the first arm, with 1.6 times the chosen Kp"),
+        (60.0, "on the first arm, with 1.8 times the chosen Kp"),
         (20.0, "on the second, slower arm, with the chosen Kp"),
-        (14.0, "on the second, slower arm, with 1.6 times the chosen Kp"),
+        (14.0, "on the second, slower arm, with 1.8 times the chosen Kp"),
     ],
 )
 def test_a_choice_of_gains_is_told_on_which_arm_and_with_which_gain_it_fails(Kp, where):
@@ -358,6 +367,29 @@ def test_a_choice_of_gains_is_told_on_which_arm_and_with_which_gain_it_fails(Kp,
     asked = PROBLEMS["07 choose_gains"].question(2019).public()
     words = " ".join(str(message(asked, mark(asked, lambda runner: (Kp, 0.0)))).split())
     assert f"Where it fails: choose_gains(runner) {where} Stuck?" in words
+
+
+def test_no_typed_gains_pass_the_check():
+    """A pair that suits the line of one arm fails on that of the other, and the check shows it."""
+    cases = PROBLEMS["07 choose_gains"].trials[0].public
+    most = min(case.unseen.Kp[-2] for case in cases)
+    assert not [
+        (Kp, Kd)
+        for Kp in np.geomspace(2.0, most, 100)
+        for Kd in np.linspace(0.0, 1.0, 11)
+        if all(case.measured((Kp, Kd))["worst_mm"] <= LINE_LIMIT for case in cases)
+    ]
+
+
+def test_no_gains_that_hold_elsewhere_fail_on_the_line():
+    """The check is not stricter than the instructor's cases, whichever gains are chosen."""
+    line, unseen = ([stiffer(t, x) for x in xs] for t, xs in (
+        (ON_THE_LINE, (1.0, FAR)), (UNSEEN, (1.0, RESERVE)),
+    ))  # fmt: skip
+    for Kp in np.geomspace(2.0, 55.0, 100):
+        for Kd in np.linspace(0.0, 1.0, 11):
+            if all(trials.worst(Kp, Kd) <= UNSEEN_LIMIT for trials in unseen):
+                assert all(trials.worst(Kp, Kd) <= LINE_LIMIT for trials in line), (Kp, Kd)
 
 
 def test_no_typed_gains_serve_both_arms():
