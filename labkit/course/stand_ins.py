@@ -44,7 +44,7 @@ class StandIns(dict[str, str]):
 
 
 def in_form(function: Callable[..., Any], right: Any) -> Callable[..., Any]:
-    """A function whose results are of a right answer's type, where lists or tuples are accepted.
+    """A function whose lists and tuples become what a right answer is, as the check accepts them.
 
     Args:
         function: The student's function.
@@ -57,6 +57,8 @@ def in_form(function: Callable[..., Any], right: Any) -> Callable[..., Any]:
     @wraps(function)
     def formed(*args: Any, **kwargs: Any) -> Any:
         result = function(*args, **kwargs)
+        if type(result) not in (list, tuple):
+            return result
         return np.asarray(result) if kind is np.ndarray else kind(*map(np.asarray, result))
 
     return formed
