@@ -76,8 +76,9 @@ def changed_since(cells: Cells, question: str) -> bool:
     judged, (check, _) = last_judged(cells, question), _last_check(cells, question)
     above = [cells[k]["source"] for k in _code(cells) if k <= check]
     below = [cells[k]["source"] for k in _code(cells) if k > check]
-    # The cells below may have run before the check; what is defined above replaces them.
-    same = [answer_hash(order, question) for order in (above, below + above)]
+    # The cells below may have run before the check, and those above once more after them.
+    orders = above, above + below, below + above
+    same = [answer_hash(order, question) for order in orders]
     return bool(judged) and judged not in same
 
 

@@ -236,6 +236,7 @@ def test_an_answer_that_was_edited_after_its_check_is_not_called_right(
         (["half = 2", HALF], [], HALF, ["half = 2"]),
         (["import math", PI], ["import math, os"], PI, []),
         (["two = 2", "half = two", HALF], ["two = 2", "half = two"], HALF, ["two = 3"]),
+        (["two = 2", "half = two", "two = 3", HALF], ["two = 2", "half = two"], HALF, ["two = 3"]),
         ([STUB, RIGHT], [], STUB, [RIGHT]),
         ([HALF], [], HALF, ["half = 2"]),
     ],
