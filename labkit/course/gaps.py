@@ -47,18 +47,18 @@ def undefined_names(cells: list[dict[str, Any]], asked: Collection[str]) -> Iter
         cells: The cells of the notebook.
         asked: Names of the questions, which are reported elsewhere.
     """
-    code = [cell["source"] for cell in _code(cells)]
-    above, written = {*_KNOWN}, set[str]().union(*map(defined_in, code))
+    code = _code(cells)
+    above, written = {*_KNOWN}, set[str]().union(*(defined_in(x["source"]) for x in code))
     if "*" in written:  # an import of everything may define any name
         return
     defined = _KNOWN.union(asked, written)
-    for source in code:
-        found = analyse(source)
+    for cell in code:
+        found = analyse(source := cell["source"])
         parts, uses = found["definitions"], {*found["uses"]}
         at_once = {name for part in parts for name in {*part["outside"]} - {*part["later"]}}
         early = at_once & uses & written - above
         above |= early | defined_in(source)
-        if early:
+        if early and kind(cell) != "check":  # marking runs none, and `defined_late` tells of it
             yield (
                 f"{the_cell(source)} uses {' and '.join(sorted(early))}, which only a cell below "
                 "it defines; move it below that cell, because cells run from the top when the "

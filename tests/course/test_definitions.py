@@ -256,8 +256,10 @@ def test_what_only_a_cell_below_the_check_defines_is_named(path):
     helper, ring = note.format("half = 2", "half, which circle uses"), code(CIRCLE.format("half"))
     found = handed_in(path, f"def deep(s): return half\n{CIRCLE.format('deep')}", code("half = 2"))
     assert not found.problems and helper in found.notes
-    alone = handed_in(path, STUB, ring, judged=[STUB]).notes
-    assert note.format("def circle(s, start, centre):", "circle") in alone
+    for home in STUB, "# below":
+        alone = handed_in(path, home, ring, judged=[STUB])
+        assert note.format("def circle(s, start, centre):", "circle") in alone.notes
+        assert not any("uses circle" in problem for problem in alone.problems)
     check = code('check("circle", circle)')
     for above, below in (([code("half = 3")], []), ([], [check])):
         notes = handed_in(path, HALF, code("half = 2"), *below, above=above).notes
