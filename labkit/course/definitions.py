@@ -152,7 +152,7 @@ def defined_late(cells: Cells, question: str, asked: Collection[str]) -> Iterato
     answers = _known(parts, question, check)
     used = [name for answer in answers for name in _used_later(_met(parts, answer, check))]
     for name in used if answers else [question]:
-        late = [k for k, part in parts if _binds(part, name)]
+        late = [k for k, part in parts if _binds(part, name) or _binds(part, "*")]
         if late and late[0] > check and not hasattr(builtins, name):
             uses = f", which {question} uses" if answers else ""
             yield (

@@ -260,8 +260,8 @@ def test_what_only_a_cell_below_the_check_defines_is_named(path):
         alone = handed_in(path, home, ring, judged=[STUB])
         assert note.format("def circle(s, start, centre):", "circle") in alone.notes
         assert not any("uses circle" in problem for problem in alone.problems)
-    check = code('check("circle", circle)')
-    for above, below in (([code("half = 3")], []), ([], [check])):
+    check, every = code('check("circle", circle)'), code("from halves import *")
+    for above, below in (([code("half = 3")], []), ([], [check]), ([every], [])):
         notes = handed_in(path, HALF, code("half = 2"), *below, above=above).notes
         assert not any("below the check" in note for note in notes)
 
