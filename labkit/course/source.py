@@ -214,8 +214,8 @@ def _definition(part: list[ast.stmt], lines: list[str]) -> dict[str, Any]:
         elif isinstance(node, ast.Name) and stores:  # `x = 1`, or `x += 1`
             (fills if node in grown else sets).add(node.id)
         elif stores or getattr(node, "attr", "") in _CHANGE:  # `x[k] = 1`, `x.k = 1`, `x.pop()`
-            whole = dotted(node if stores and kind is ast.Attribute else _whole(node))
-            changes.add(whole if stores else whole.partition(".")[0])
+            root = _root(node)
+            changes.add((root and stores and dotted(node)) or root)
         elif kind in _IMPORTS:
             mean |= imported(node)
     fills |= {x.partition(".")[0] for x in changes}
@@ -247,10 +247,11 @@ def _nodes(part: list[ast.stmt]) -> Iterator[ast.AST]:
             waiting += ast.iter_child_nodes(node)
 
 
-def _whole(node: Any) -> Any:
-    """What contains an attribute or an element, with all elements of elements."""
-    node = getattr(node, "value", node)
-    return _whole(node) if isinstance(node, ast.Subscript) else node
+def _root(node: Any) -> str:
+    """The name to which an attribute or an element belongs; "" if it is of what a call returns."""
+    while isinstance(node, ast.Attribute | ast.Subscript):
+        node = node.value
+    return str(getattr(node, "id", ""))
 
 
 def _is_text(node: ast.stmt) -> bool:

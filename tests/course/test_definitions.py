@@ -98,6 +98,7 @@ def test_a_helper_that_is_defined_again_below_the_check_is_named(path, above, be
         "half[0][1] += 1",
         "del half[0]",
         "half.size = 3",
+        "half[0].size = 3",
         "half.append(3.0)",
         "last = half.pop()",
         "for k in range(3):\n    half.sort()",
@@ -126,11 +127,12 @@ def test_what_the_answer_uses_and_a_cell_below_the_check_changes_is_named(path, 
         ("half = [4.0]", "def later(): half[0] = 5.0"),
         ("half = [4.0]", "runs = []\nruns.append(half[0])"),
         ("half = [4.0]", "calls.clear()"),
+        ("def half(): return [4.0]", "half().sort()\nhalf()[0] = 5.0\nhalf().size = 3"),
         ("half = [4.0]", "plt.rcParams['font.size'] = 9\nlonger = np.append(half, 1)"),
     ],
 )
 def test_a_change_that_the_answer_does_not_meet_is_not_named(path, above, below):
-    """Above the check, undone, in a function, of another object, or of the answer's own record."""
+    """Above the check, undone, in a function, of another object, or of an answer's own record."""
     answer = (
         "calls = []\ndef circle(s, start, centre):\n    calls.append(s)\n"
         "    plt.plot(np.array(half))\n    return 0"
