@@ -18,7 +18,7 @@ def seed_of(course: Course) -> int:
     """
     if not course.term.exists():
         return PUBLIC_SEED
-    return _seed_in(course.term, 'write it again: {"seed": 123}')
+    return _seed_in(course.term, 'write into it the term\'s, as {"seed": 123}')
 
 
 def seed_for(course: Course, assignment: str) -> int:

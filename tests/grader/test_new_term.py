@@ -371,7 +371,7 @@ def test_a_damaged_record_is_a_sentence(course, text):
     file = course.root / "course_private" / "term.json"
     file.parent.mkdir()
     file.write_text(text)
-    with pytest.raises(LabkitError, match="holds no seed; restore it"):
+    with pytest.raises(LabkitError, match="holds no seed; restore it, or write into it the term's"):
         seeds.seed_of(course)
 
 

@@ -70,7 +70,7 @@ def apply_rules(course: Course, book: Any, assignment: str) -> None:
     """Update the gradebook to the present rules: whys that nobody marks, and late work.
 
     Raises:
-        LabkitError: The rules cannot be used, or the assignment was not released here.
+        LabkitError: The rules cannot be used, or the seed of the term cannot be read.
     """
     credit_whys(course, book, assignment)
     _update_times(course, book, assignment)
