@@ -11,8 +11,9 @@ from collections.abc import Collection, Iterable
 from functools import partial
 from typing import Any
 
+from ..course.authoring.bundle import Bundle
 from ..course.authoring.layout import Course
-from .seeds import seed_for
+from .seeds import seed_of
 
 DRAWN = 2
 """The number of whys that a person marks, per student and term."""
@@ -39,6 +40,10 @@ def credit_whys(course: Course, book: Any, assignment: str) -> None:
     of the course's if no term was begun.  A mark that somebody gave by hand stays, and so does the
     0 of a why that is blank.  A why with such a mark is one of the two, also where the lot, which
     is by the name of the folder, says otherwise since a list was imported.
+
+    Raises:
+        LabkitError: There is such a why, and the seed of the term, or that of the release if no
+            term was begun, cannot be read.
     """
     waiting = [
         (submission.student.id, grade)
@@ -60,9 +65,9 @@ def credit_whys(course: Course, book: Any, assignment: str) -> None:
         for grade in by_hand
         if grade.manual_score is not None
     }
-    released = {path.stem for path in course.bundle.glob("*.json")}
-    asked = [name for name, x in whys.items() if x in released or not course.term.exists()]
-    seed = seed_for(course, assignment)
+    released, term = {path.stem for path in course.bundle.glob("*.json")}, course.term.exists()
+    asked = [name for name, x in whys.items() if x in released or not term]
+    seed = seed_of(course) if term else int(Bundle.of(course, assignment).data["seed"])
     for student, grade in waiting:
         mine = [name for name in asked if (student, name) in marked]
         if grade.name not in drawn(seed, student, asked, mine):

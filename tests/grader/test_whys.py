@@ -5,14 +5,16 @@ from __future__ import annotations
 from collections import Counter
 from dataclasses import replace
 
+import pytest
 from handmade import hand_in
 from made import NAME, WHY, notebook_of, result_of
 
+from labkit import LabkitError
 from labkit.__main__ import main
 from labkit.course.notebook import grade_id
 from labkit.grader.grading.results import Results
 from labkit.grader.nbgrader.autograded_notebook import release_source
-from labkit.grader.nbgrader.gradebook import open_gradebook, record
+from labkit.grader.nbgrader.gradebook import apply_rules, open_gradebook, record
 from labkit.grader.nbgrader.unreleased import enter_tasks
 from labkit.grader.whys import DRAWN, drawn
 
@@ -95,3 +97,15 @@ def test_whys_are_drawn_under_the_seed_of_the_term(course):
     record(course, NAME, [result])
     with open_gradebook(course) as book:
         assert book.find_grade(WHY, NAME, NAME, "ada").needs_manual_grade
+
+
+def test_no_why_is_drawn_where_its_seed_is_lost(course):
+    """Without a term it is that of the release; under another one a why that waits has points."""
+    hand_in(course, NAME, "dan", notebook_of("dan"))  # by lot one of Dan's two is WHY
+    result = result_of(course, "dan", written={WHY: "So."}, data=notebook_of("dan"))
+    record(course, NAME, [result])
+    (course.bundle / f"{NAME}.json").unlink()
+    with open_gradebook(course) as book:
+        with pytest.raises(LabkitError, match="was not released here"):
+            apply_rules(course, book, NAME)
+        assert book.find_grade(WHY, NAME, NAME, "dan").needs_manual_grade

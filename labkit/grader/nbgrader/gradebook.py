@@ -70,7 +70,7 @@ def apply_rules(course: Course, book: Any, assignment: str) -> None:
     """Update the gradebook to the present rules: whys that nobody marks, and late work.
 
     Raises:
-        LabkitError: The rules cannot be used, or the seed of the term cannot be read.
+        LabkitError: The rules, or the seed of the whys that a person marks, cannot be used.
     """
     credit_whys(course, book, assignment)
     _update_times(course, book, assignment)
