@@ -76,9 +76,13 @@ def test_streams_work_again_afterwards(capfd):
 
 
 def test_a_line_of_the_stub_that_is_left_in_an_answer_is_told(capsys, monkeypatch):
-    """Own lines beside `raise NotImplementedError` need one more step; a mere stub needs them."""
-    for own, told in (("", False), ("    y = 2 * x\n", True)):
-        cell = f"def double(x):\n{own}    raise NotImplementedError\n"
+    """Own lines beside `raise NotImplementedError` need one more step; a mere stub needs them.
+
+    If a library raises it, there is no such line.
+    """
+    left = "raise NotImplementedError"
+    for own, told in ((left, False), (f"y = 2 * x\n    {left}", True), ("return far(x)", False)):
+        cell = f"def double(x):\n    {own}\n"
         monkeypatch.setattr(notebook, "executed_cells", lambda function, cell=cell: [cell])
         check("double", stub)
         said = " ".join(capsys.readouterr().out.split())
