@@ -29,6 +29,9 @@ _KNOWN = {*vars(builtins), "get_ipython", "display", "In", "Out", "_", "__", "__
 _OWN_ARM = {"my_arm", "my_bug"}
 """Functions that the grader does not run."""
 _GIVEN = "you were given this cell as it is, so correct what it uses: your answers and cells above"
+_SETUP = "leave it as you were given it, restart the kernel and run all cells"
+_STOPPED = {"walk": _GIVEN, "check": _GIVEN, "setup": _SETUP}
+"""What to do about a given cell that stopped, by its kind."""
 _FILE = re.compile(r"""["']([\w ./-]+\.\w+)["']""")
 """A text that may name a file."""
 _ANYWHERE = {*sys.stdlib_module_names, *(re.split("[ .]", line)[1] for line in IMPORTS.values())}
@@ -126,10 +129,10 @@ def first_error(cells: list[dict[str, Any]]) -> str:
             failed = isinstance(output, dict) and output.get("output_type") == "error"
             if failed and not analyse(cell["source"])["broken"]:  # those are `unreadable`
                 says = _shown(f"{output.get('ename')}: {output.get('evalue')}", 120)
-                given = kind(cell) in ("walk", "check") and not is_edited(cell)
+                todo = "" if is_edited(cell) else _STOPPED.get(kind(cell))
                 return (
                     f"{the_cell(cell['source'])} ended with an error ({says}), and Run All Cells "
-                    f"stops there; {_GIVEN if given else 'correct or delete it'}"
+                    f"stops there; {todo or 'correct or delete it'}"
                 )
     return ""
 

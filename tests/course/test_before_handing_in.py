@@ -239,9 +239,15 @@ def test_a_forgotten_import_is_no_deleted_cell(folder, uses, todo):
 
 
 @pytest.mark.parametrize(
-    ("begins", "edit"), [("centre = ", ""), ("centre = ", "\n1 / 0"), ('check("circle"', "")]
+    ("begins", "edit", "todo"),
+    [
+        ("centre = ", "", "you were given this cell as it is, so correct what"),
+        ("centre = ", "\n1 / 0", "correct or delete it"),
+        ('check("circle"', "", "you were given this cell as it is, so correct what"),
+        ("import matplotlib", "", "leave it as you were given it, restart the kernel"),
+    ],
 )
-def test_a_given_cell_that_stopped_is_not_to_be_deleted(folder, begins, edit):
+def test_a_given_cell_that_stopped_is_not_to_be_deleted(folder, begins, edit, todo):
     """A given cell stops because of what it uses, unless the student changed it."""
 
     def change(cells):
@@ -251,7 +257,6 @@ def test_a_given_cell_that_stopped_is_not_to_be_deleted(folder, begins, edit):
         return cells
 
     (problem,) = examine(edited(folder / "01_paths.ipynb", change)).problems
-    todo = "correct or delete it" if edit else "you were given this cell as it is, so correct what"
     assert f"error (TypeError: bad), and Run All Cells stops there; {todo}" in problem
 
 
