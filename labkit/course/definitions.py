@@ -5,15 +5,17 @@ Answers are marked after all cells have run, with the last definition of every n
 
 from __future__ import annotations
 
+import ast
 import builtins
 import hashlib
-import re
+import sys
+import textwrap
 from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from typing import Any
 
 from .gaps import the_cell
 from .notebook import grade_id, is_edited, kind, last_judged
-from .source import Analysis, analyse
+from .source import Analysis, analyse, dotted, parsed
 from .withheld import last_definitions
 
 Cells = Sequence[dict[str, Any]]
@@ -111,9 +113,10 @@ def judged_another(cells: Cells, question: str, asked: Collection[str]) -> Itera
     count, written = cells_that_count(cells, asked), _answering(cells, question)
     check, tried = _last_check(cells, question)
     if tried not in ("", question):
+        rename = f", or rename {tried} to {question} and check it again"
         yield (
-            f"the check of {question} tried {tried}, but {question} is marked; check {question} "
-            f"itself, or rename {tried} to {question} and check it again"
+            f"the check of {question} tried {textwrap.shorten(tried, 60, placeholder=' ...')}, but "
+            f"{question} is marked; check {question} itself{rename if tried.isidentifier() else ''}"
         )
     parts = _parts(count)
     own = [(k, part) for k, part in parts if question in part["binds"] and k in written]
@@ -132,11 +135,15 @@ def judged_another(cells: Cells, question: str, asked: Collection[str]) -> Itera
                 f"the check of {question} tried what {the_cell(cells[k]['source'])} defines, but "
                 f"{the_cell(cells[written[-1]]['source'])} is marked; write your answer there"
             )
+    anew: dict[tuple[int, str, str], list[str]] = {}
     for name, place, does, instead in _used_anew(parts, above[-1][1], check):
+        anew.setdefault((place, does, instead), []).append(name)
+    for (place, does, instead), names in anew.items():
+        those = "those" if names[1:] else f"that {names[0]}"
         yield (
-            f"{question} uses {name}, which {the_cell(cells[place]['source'])} {does} below the "
-            f"check, and {question} is marked with that {name}; {instead}, or check {question} "
-            "again below it"
+            f"{question} uses {' and '.join(names)}, which {the_cell(cells[place]['source'])} "
+            f"{does} below the check, and {question} is marked with {those}; {instead}, or check "
+            f"{question} again below it"
         )
 
 
@@ -183,11 +190,13 @@ def _used_anew(
                 changes = (changes & uses) - {name}
             if _binds(part, name):
                 if not _same(name, known[0], part) if known else hasattr(builtins, name):
-                    yield name, k, "defines again", "change one of the two names"
+                    only = "import only the names that you need"
+                    rename = only if "*" in part["mean"] else "change one of the two names"
+                    yield name, k, "defines again", rename
                 break
             if changes and known and name not in fills:
-                what = min(changes) if module else name
-                yield what, k, "changes", "give the changed value another name"
+                rename = "leave it as it is" if module else "give the changed value another name"
+                yield min(changes) if module else name, k, "changes", rename
                 break
 
 
@@ -224,7 +233,18 @@ def _same(name: str, one: _Part, other: _Part) -> bool:
 
 def _parts(code: Mapping[int, Analysis]) -> list[tuple[int, _Part]]:
     """All statements with the positions of their cells."""
-    return [(k, part) for k, found in code.items() for part in found["definitions"]]
+    return [(k, _with_all(part)) for k, found in code.items() for part in found["definitions"]]
+
+
+def _with_all(part: _Part) -> _Part:
+    """A statement; an import of everything binds each name of a module that is loaded."""
+    module = part["mean"].get("*", "").removesuffix(".*")
+    if module not in sys.modules:
+        return part
+    found = vars(sys.modules[module])
+    names = found.get("__all__") or [x for x in found if x[0] != "_"]
+    mean = part["mean"] | {x: f"{module}.{x}" for x in names}
+    return {**part, "binds": [*part["binds"], *names], "mean": mean}
 
 
 def _code(cells: Cells) -> dict[int, Analysis]:
@@ -237,9 +257,18 @@ def _answering(cells: Cells, question: str) -> list[int]:
 
 
 def _last_check(cells: Cells, question: str) -> tuple[int, str]:
-    """Where a question's last check is, else the end; and the name that it tries, or ""."""
-    call = rf"""^[^#\n]*\bcheck\(\s*["']{question}["'](?:\s*,\s*(\w+)\s*\))?"""
-    for k in reversed(_code(cells)):
-        if tried := re.findall(call, cells[k]["source"], re.MULTILINE):
-            return k, tried[-1]
+    """Where a question's last check is, else the end; and what it tries, or ""."""
+    for k, found in reversed(_code(cells).items()):
+        source, broken = cells[k]["source"], found["broken"]
+        calls = [] if broken or question not in source else [*_checks(source, question)]
+        if calls:
+            return k, ast.unparse(max(calls, key=lambda x: x.lineno).args[1])
     return len(cells), ""
+
+
+def _checks(source: str, question: str) -> Iterator[ast.Call]:
+    for node in ast.walk(parsed(source)[1]):
+        if isinstance(node, ast.Call) and len(node.args) > 1:
+            called, asked = dotted(node.func).rpartition(".")[2], node.args[0]
+            if called == "check" and isinstance(asked, ast.Constant) and asked.value == question:
+                yield node

@@ -58,7 +58,8 @@ def undefined_names(cells: list[dict[str, Any]], asked: Collection[str]) -> Iter
     for cell in code:
         found = analyse(source := cell["source"])
         parts, uses = found["definitions"], {*found["uses"]}
-        at_once = {name for part in parts for name in {*part["outside"]} - {*part["later"]}}
+        others = [part for part in parts if not {*part["binds"]} & {*asked}]  # answers come last
+        at_once = {name for part in others for name in {*part["outside"]} - {*part["later"]}}
         early = at_once & uses & written - above
         above |= early | defined_in(source)
         if early and kind(cell) != "check":  # marking runs none, and `defined_late` tells of it
@@ -128,7 +129,8 @@ def first_error(cells: list[dict[str, Any]]) -> str:
         for output in outputs if isinstance(outputs, list) else ():
             failed = isinstance(output, dict) and output.get("output_type") == "error"
             if failed and not analyse(cell["source"])["broken"]:  # those are `unreadable`
-                says = _shown(f"{output.get('ename')}: {output.get('evalue')}", 120)
+                told = filter(None, (output.get("ename"), output.get("evalue")))
+                says = _shown(": ".join(map(str, told)), 120)
                 todo = "" if is_edited(cell) else _STOPPED.get(kind(cell))
                 return (
                     f"{the_cell(cell['source'])} ended with an error ({says}), and Run All Cells "

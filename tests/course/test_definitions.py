@@ -111,11 +111,11 @@ def test_what_the_answer_uses_and_a_cell_below_the_check_changes_is_named(path, 
     name, above = "np.pi" if "np" in below else "half", "import numpy as np\nhalf = [4.0]"
     answer = "def deep(s): return half[0] * np.pi\n" + CIRCLE.format("deep(s)")
     (problem,) = handed_in(path, answer, code(below), above=[code(above)]).problems
-    first = below.partition("\n")[0]
+    first, other = below.partition("\n")[0], "give the changed value another name"
     assert problem == (
         f"circle uses {name}, which the cell that begins with `{first}` changes below the check, "
-        f"and circle is marked with that {name}; give the changed value another name, or check "
-        "circle again below it"
+        f"and circle is marked with that {name}; {'leave it as it is' if '.' in name else other}, "
+        "or check circle again below it"
     )
 
 
@@ -170,6 +170,41 @@ def test_the_check_of_another_function_is_named(path):
         "the check of circle tried what the cell that begins with `circle = abs` defines, but the "
         "cell that begins with `def circle(s, start, centre):` is marked; write your answer there"
     )
+
+
+@pytest.mark.parametrize("tried", ["lambda s, start, centre: 2", "(\n    ring\n)", "rings[0]"])
+def test_the_check_of_what_has_no_name_is_named(path, tried):
+    """An expression is not the answer, on however many lines it is written."""
+    cells = code("def ring(*a): return 2\nrings = [ring]"), code(f"check('circle', {tried})")
+    (problem,) = handed_in(path, CIRCLE.format("1"), *cells).problems
+    plain = " ".join(tried.split()).strip("( )")
+    assert problem.startswith(f"the check of circle tried {plain}, but circle is marked; check")
+    assert ("rename ring" in problem) == (plain == "ring")
+    same = code("check(\n    'circle',\n    circle,\n)")
+    assert not handed_in(path, CIRCLE.format("1"), same).problems
+
+
+@pytest.mark.parametrize("above", ["", "from math import *", "from numpy import pi"])
+def test_an_import_of_everything_below_the_check_is_named(path, above):
+    """It hides Python's own functions, and what was imported before from elsewhere."""
+    every, answer = "from numpy import *", CIRCLE.format("min(s, 1) + max(s, 0)")
+    (problem,) = handed_in(path, answer, code(every), above=[code(above)]).problems
+    assert problem == (
+        f"circle uses max and min, which the cell that begins with `{every}` defines again below "
+        "the check, and circle is marked with those; import only the names that you need, or "
+        "check circle again below it"
+    )
+    again = code("check('circle', circle)")
+    assert not handed_in(path, answer, code(every), again, above=[code(above)]).problems
+    for one in ("from numpy import pi", every):
+        pi = handed_in(path, CIRCLE.format("pi"), code(every), above=[code(one)])
+        assert not pi.problems
+
+
+def test_an_answer_may_stand_above_a_value_that_it_needs_at_once(path):
+    """Answers are marked after all other cells have run, so this costs nothing."""
+    answer = CIRCLE.format("1").replace("centre)", "centre, four=FOUR)")
+    assert not handed_in(path, answer, code("FOUR = 4.0")).problems
 
 
 def test_a_comment_tries_nothing_and_an_empty_stub_replaces_nothing(path):
