@@ -73,30 +73,28 @@ def test_a_why_that_is_marked_is_one_of_the_two(course):
         assert (grade.auto_score, grade.needs_manual_grade) == (2.0, False)
 
 
-def test_whys_of_notebooks_that_were_not_handed_out_are_not_drawn(course):
-    """In a term with this notebook alone, a person marks the one why that there is."""
+def a_person_marks(course, seed):
+    """Whether WHY waits for a person, once Ada has handed it in in a term of this seed."""
     course.term.parent.mkdir(exist_ok=True)
-    course.term.write_text('{"seed": 7}')
+    course.term.write_text(f'{{"seed": {seed}}}')
     hand_in(course, NAME, "ada", notebook_of("ada"))
     result = result_of(course, "ada", written={WHY: "Because it is so."}, data=notebook_of("ada"))
     Results(course, NAME).keep(result)
     record(course, NAME, [result])
     with open_gradebook(course) as book:
-        assert book.find_grade(WHY, NAME, NAME, "ada").needs_manual_grade
+        return book.find_grade(WHY, NAME, NAME, "ada").needs_manual_grade
+
+
+def test_whys_of_notebooks_that_were_not_handed_out_are_not_drawn(course):
+    """In a term with this notebook alone, a person marks the one why that there is."""
+    assert a_person_marks(course, 7)
 
 
 def test_whys_are_drawn_under_the_seed_of_the_term(course):
     """Also those of a notebook that was released with another seed: two of all, not of each."""
-    course.term.parent.mkdir(exist_ok=True)
-    course.term.write_text('{"seed": 16}')  # under 7, the seed of the release, WHY is not drawn
     for name in {*course.names()} - {NAME}:
         (course.bundle / f"{name}.json").write_text("{}")
-    hand_in(course, NAME, "ada", notebook_of("ada"))
-    result = result_of(course, "ada", written={WHY: "Because it is so."}, data=notebook_of("ada"))
-    Results(course, NAME).keep(result)
-    record(course, NAME, [result])
-    with open_gradebook(course) as book:
-        assert book.find_grade(WHY, NAME, NAME, "ada").needs_manual_grade
+    assert a_person_marks(course, 16)  # under 7, the seed of the release, WHY is not drawn
 
 
 def test_no_why_is_drawn_where_its_seed_is_lost(course):
