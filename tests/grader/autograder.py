@@ -13,6 +13,7 @@ from contextlib import contextmanager
 from pathlib import Path
 from typing import NamedTuple
 
+import pytest
 from handmade import ROOT
 
 from labkit.grader.gradescope import setup_zip as gradescope_zip
@@ -26,6 +27,8 @@ RIGHTS = (
     "sys_chroot mknod audit_write setfcap"
 )
 """The rights of root in a container by default; none of them allows making a namespace."""
+as_root = pytest.mark.skipif(os.geteuid() != 0, reason="only root can give a process another user")
+"""Marks a test of what root alone may do; pytest says so to everybody else."""
 
 
 class Ended(NamedTuple):
@@ -45,6 +48,13 @@ def packed(course, assignment, to, monkeypatch):
     monkeypatch.setattr(gradescope_zip, "wheel", lambda root, to: None)
     gradescope_zip.autograder(course, assignment, to)
     return to
+
+
+def closed_to_others():
+    """The folders around the environment and labkit that another user may not enter."""
+    places = [Path(sys.prefix), ROOT]
+    around = {folder for place in places for folder in (place, *place.parents)}
+    return sorted(str(folder) for folder in around if not folder.stat().st_mode & 1)
 
 
 def installed(folder):

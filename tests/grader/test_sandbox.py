@@ -9,6 +9,7 @@ import subprocess
 import sys
 
 import pytest
+from autograder import as_root
 from handmade import ROOT
 
 from labkit.grader.doctor import DOCKER, elsewhere, examine
@@ -87,11 +88,10 @@ def test_where_no_sandbox_can_be_made_doctor_says_what_each_system_needs(monkeyp
         assert command in found.says
 
 
+@as_root
 @pytest.mark.parametrize("added", [DOCKER, DOCKER[:-1], ()], ids=["all", "one less", "none"])
 def test_dockers_rights_suffice(added):
     """With the rights that a container is given there is a sandbox; with one less, a way out."""
-    if os.geteuid():  # only root has rights to lose; others sandbox without any
-        return
     left = ",".join(f"+{name}" for name in (*DOCKERS_OWN.split(), *rights(added)))
     run = subprocess.run(
         ["setpriv", f"--bounding-set=-all,{left}", sys.executable, "-m", "labkit", "doctor"],
