@@ -27,9 +27,9 @@ demo: for-grading .venv/.course ## make a release, grade a small class, build th
 test: for-tests .venv/.dev browser lint types test-313 ## everything: style, types, all tests and a second Python
 	@PATH="$(CURDIR)/$(BIN):$$PATH" $(BIN)/python -m pytest -n 2 --dist loadgroup --no-loadscope-reorder
 
-test-313: .venv-313/.made ## on Python 3.13 without PyBullet: the lab, Run All, a report card
+test-313: .venv-313/.made ## on Python 3.13 without PyBullet: the lab, the course, Run All, a report card
 	@$(SECOND)/python -m labkit report-card --draws 1 --to build/report-card-313 & card=$$!; \
-	$(SECOND)/python -m pytest -q -n 2 $(ON_SECOND) tests/test_*.py tests/sim tests/tags \
+	$(SECOND)/python -m pytest -q -n 2 $(ON_SECOND) tests/test_*.py tests/sim tests/tags tests/course \
 	&& $(SECOND)/python -m pytest -q -n 2 $(ON_SECOND) tests/notebooks/test_always_runs.py -k "all or none"; \
 	tests=$$?; wait $$card && exit $$tests
 

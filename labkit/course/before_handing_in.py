@@ -25,6 +25,7 @@ from .gaps import (
     first_error,
     how_to_restore,
     left_behind,
+    listed,
     misnamed,
     review_texts,
     undefined_names,
@@ -53,6 +54,7 @@ class HandIn:
         verdicts: The last verdict in the file on each question; None if its check was not run.
         predictions: Names of the questions that ask for a prediction.
         texts: The number of words in each text that a person marks.
+        old: Names of the questions whose answers changed after their checks.
     """
 
     assignment: str
@@ -61,11 +63,16 @@ class HandIn:
     verdicts: Mapping[str, Verdict | None]
     predictions: Collection[str] = ()
     texts: Mapping[str, int] = field(default_factory=dict)
+    old: Collection[str] = ()
 
     @property
     def lines(self) -> list[str]:
         """The verdict on each question in words."""
-        return [head(v) if v else f"{name}: not run" for name, v in self.verdicts.items()]
+        before = dict.fromkeys(self.old, " (This was before your last change.)")
+        return [
+            head(v) + before.get(name, "") if v else f"{name}: not run"
+            for name, v in self.verdicts.items()
+        ]
 
     def __str__(self) -> str:
         lines = [f"[fix] {text}" for text in self.problems]
@@ -89,10 +96,12 @@ class HandIn:
         end = (
             "correct what is marked with [fix] first."
             if self.problems
+            else "run the notebook from the top, save it, and look again."
+            if self.old
             else f"the notebook can be handed in as it is{ran}."
         )
         if empty := [name for name, n in self.texts.items() if not n]:
-            end += f" Without a text, {' and '.join(empty)} will earn nothing."
+            end += f" Without a text, {listed(empty)} will earn nothing."
         return "\n".join([*lines, f"{self.assignment}: {end}"])
 
     def for_the_forum(self) -> str:
@@ -152,10 +161,12 @@ def examine(path: Path) -> HandIn:
         if (said := verdicts[name]) and said.right and _lacks_prediction(code, name)
     ]
     notes += chain(*(defined_late(cells, name, asked) for name in asked))
-    if stale := [name for name in verdicts if not again[name] and changed_since(cells, name)]:
+    old = [name for name in tests if not again[name] and changed_since(cells, name)]
+    old = [name for name in old if name not in predictions]  # the mouse writes after the cell ran
+    if old:
         notes.append(
-            f"changed since the last check: {', '.join(stale)}; the verdicts below are old, so run "
-            "the notebook from the top and save it"
+            f"changed since the last check: {', '.join(old)}; run the notebook from the top and "
+            "save it, so that the check tries what will be marked"
         )
     if unrun := sum(verdict is None for verdict in verdicts.values()):
         notes.append(
@@ -174,7 +185,7 @@ def examine(path: Path) -> HandIn:
     ):
         if names:
             notes.append(says.format(", ".join(names)))
-    return HandIn(name, tuple(problems), tuple(notes), verdicts, predictions, texts)
+    return HandIn(name, tuple(problems), tuple(notes), verdicts, predictions, texts, old)
 
 
 def _on_the_public_arm(

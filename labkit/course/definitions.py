@@ -11,12 +11,12 @@ import hashlib
 import sys
 import textwrap
 from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
+from types import ModuleType
 from typing import Any
 
-from .gaps import the_cell
+from .gaps import listed, the_cell
 from .notebook import grade_id, is_edited, kind, last_judged
 from .source import Analysis, analyse, dotted, parsed
-from .withheld import last_definitions
 
 Cells = Sequence[dict[str, Any]]
 _Part = Mapping[str, Any]
@@ -85,21 +85,38 @@ def changed_since(cells: Cells, question: str) -> bool:
 
 
 def answer_hash(sources: Iterable[str], question: str) -> str:
-    """A short hash of the last definitions of an answer and of what it uses; "" without one.
+    """A short hash of an answer, of what it uses, and of what changes that; "" without one.
 
     Args:
         sources: The texts of the cells, in the order in which they ran.
         question: The question's name.
     """
-    last, found = last_definitions(map(analyse, sources)), dict[str, str]()
+    last, found = _last_parts(map(analyse, sources)), dict[str, str]()
     waiting = [question]
     while waiting:
         if (name := waiting.pop()) in last and name not in found:
-            part = last[name]
-            found[name] = part["mean"].get(name, part["text"])
-            waiting += part["outside"]
+            parts = last[name].values()
+            found[name] = " ".join(part["mean"].get(name, part["text"]) for part in parts)
+            waiting += [x for part in parts for x in part["outside"]]
     text = "\n".join(f"{name} {found[name]}" for name in sorted(found))
     return hashlib.sha256(text.encode()).hexdigest()[:12] if question in found else ""
+
+
+def _last_parts(cells: Iterable[Analysis]) -> dict[str, dict[str, _Part]]:
+    """For each name its last definition and what changes that at once, each statement by its text.
+
+    A stub does not replace an answer.
+    """
+    last: dict[str, dict[str, _Part]] = {}
+    for part in (part for cell in cells for part in cell["definitions"]):
+        changes = {x.partition(".")[0] for x in part["changes"]}  # `x[k] = 1`
+        changes |= {*part["binds"]} & {*part["fills"]}  # `x += 1`
+        for name in {*part["binds"]} - changes:
+            if not part["stub"] or name not in last:
+                last[name] = {part["text"]: part}
+        for name in changes & last.keys():
+            last[name][part["text"]] = part
+    return last
 
 
 def judged_another(cells: Cells, question: str, asked: Collection[str]) -> Iterator[str]:
@@ -126,7 +143,7 @@ def judged_another(cells: Cells, question: str, asked: Collection[str]) -> Itera
     if not _same(question, above[-1][1], own[-1][1]):
         yield (
             f"{the_cell(cells[own[-1][0]]['source'])} defines {question} again below its check, "
-            "and counts; delete it, or check again below it"
+            "and that later one is marked; delete it, or check again below it"
         )
         return
     for k, found in count.items():
@@ -141,7 +158,7 @@ def judged_another(cells: Cells, question: str, asked: Collection[str]) -> Itera
     for (place, does, instead), names in anew.items():
         those = "those" if names[1:] else f"that {names[0]}"
         yield (
-            f"{question} uses {' and '.join(names)}, which {the_cell(cells[place]['source'])} "
+            f"{question} uses {listed(names)}, which {the_cell(cells[place]['source'])} "
             f"{does} below the check, and {question} is marked with {those}; {instead}, or check "
             f"{question} again below it"
         )
@@ -159,13 +176,14 @@ def defined_late(cells: Cells, question: str, asked: Collection[str]) -> Iterato
     answers = _known(parts, question, check)
     used = [name for answer in answers for name in _used_later(_met(parts, answer, check))]
     for name in used if answers else [question]:
-        late = [k for k, part in parts if _binds(part, name) or _binds(part, "*")]
-        if late and late[0] > check and not hasattr(builtins, name):
+        stars = [k for k, part in parts if _binds(part, "*")]  # any of them may define the name
+        late = [k for k, part in parts if _binds(part, name)] or stars
+        if late and min([late[0], *stars]) > check and not hasattr(builtins, name):
             uses = f", which {question} uses" if answers else ""
             yield (
                 f"only {the_cell(cells[late[0]]['source'])} defines {name}{uses}, and it is below "
-                f"the check of {question}; move it above the check, so that this can try the "
-                "answer (it is marked all the same)"
+                f"the check of {question}; move it above the check, so that the check can try "
+                "the answer (it is marked all the same)"
             )
 
 
@@ -195,7 +213,7 @@ def _used_anew(
                     yield name, k, "defines again", rename
                 break
             if changes and known and name not in fills:
-                rename = "leave it as it is" if module else "give the changed value another name"
+                rename = "do not change it" if module else "give the changed value another name"
                 yield min(changes) if module else name, k, "changes", rename
                 break
 
@@ -243,8 +261,13 @@ def _with_all(part: _Part) -> _Part:
         return part
     found = vars(sys.modules[module])
     names = found.get("__all__") or [x for x in found if x[0] != "_"]
-    mean = part["mean"] | {x: f"{module}.{x}" for x in names}
+    mean = part["mean"] | {x: _full_name(module, x, found.get(x)) for x in names}
     return {**part, "binds": [*part["binds"], *names], "mean": mean}
+
+
+def _full_name(module: str, name: str, thing: object) -> str:
+    """The name that an import gives a thing; a module, such as ``np``, has one of its own."""
+    return thing.__name__ if isinstance(thing, ModuleType) else f"{module}.{name}"
 
 
 def _code(cells: Cells) -> dict[int, Analysis]:
@@ -262,13 +285,16 @@ def _last_check(cells: Cells, question: str) -> tuple[int, str]:
         source, broken = cells[k]["source"], found["broken"]
         calls = [] if broken or question not in source else [*_checks(source, question)]
         if calls:
-            return k, ast.unparse(max(calls, key=lambda x: x.lineno).args[1])
+            return k, ast.unparse(max(calls, key=lambda x: (x.lineno, x.col_offset)))
     return len(cells), ""
 
 
-def _checks(source: str, question: str) -> Iterator[ast.Call]:
+def _checks(source: str, question: str) -> Iterator[ast.expr]:
+    """What each check of a question in a cell tries."""
     for node in ast.walk(parsed(source)[1]):
-        if isinstance(node, ast.Call) and len(node.args) > 1:
-            called, asked = dotted(node.func).rpartition(".")[2], node.args[0]
-            if called == "check" and isinstance(asked, ast.Constant) and asked.value == question:
-                yield node
+        if isinstance(node, ast.Call) and dotted(node.func).rpartition(".")[2] == "check":
+            given = dict(zip(("name", "function"), node.args, strict=False))
+            given |= {x.arg or "": x.value for x in node.keywords}
+            asked, tried = given.get("name"), given.get("function")
+            if isinstance(asked, ast.Constant) and asked.value == question and tried:
+                yield tried

@@ -58,13 +58,15 @@ def undefined_names(cells: list[dict[str, Any]], asked: Collection[str]) -> Iter
     for cell in code:
         found = analyse(source := cell["source"])
         parts, uses = found["definitions"], {*found["uses"]}
-        others = [part for part in parts if not {*part["binds"]} & {*asked}]  # answers come last
+        others = [
+            part for part in parts if not {*part["binds"]} & {*asked}
+        ]  # run again when marked
         at_once = {name for part in others for name in {*part["outside"]} - {*part["later"]}}
         early = at_once & uses & written - above
         above |= early | defined_in(source)
         if early and kind(cell) != "check":  # marking runs none, and `defined_late` tells of it
             yield (
-                f"{the_cell(source)} uses {' and '.join(sorted(early))}, which only a cell below "
+                f"{the_cell(source)} uses {listed(sorted(early))}, which only a cell below "
                 "it defines; move it below that cell, because cells run from the top when the "
                 "notebook is marked"
             )
@@ -137,6 +139,11 @@ def first_error(cells: list[dict[str, Any]]) -> str:
                     f"stops there; {todo or 'correct or delete it'}"
                 )
     return ""
+
+
+def listed(names: Sequence[str]) -> str:
+    """Names as a sentence lists them: "a", "a and b" or "a, b and c"."""
+    return " and ".join(filter(None, (", ".join(names[:-1]), *names[-1:])))
 
 
 def the_cell(source: str) -> str:

@@ -3,14 +3,18 @@
 from __future__ import annotations
 
 import hashlib
-from collections.abc import Collection, Iterable
+import os
+import re
+from collections.abc import Collection, Iterable, Iterator
+from dataclasses import replace
 from datetime import UTC, datetime, timedelta
 from pathlib import Path
 
+from ..errors import LabkitError
 from .before_handing_in import HandIn, examine
 from .messages import wrapped
 from .notebook import read_cells
-from .student import shell
+from .student import desk, shell
 from .unfinished import defined_in
 
 JUST_NOW = timedelta(minutes=1)
@@ -27,10 +31,18 @@ def hand_in(name: str) -> None:
         name: Name of the notebook in the working directory, without ``.ipynb``.
 
     Raises:
-        LabkitError: The file is missing or is not a notebook.
+        LabkitError: The file is missing, is not a notebook, or is not the one that is open.
     """
     path = Path.cwd() / f"{name}.ipynb"
+    if other := _open_as(path):
+        first = f"move {path.name}, which is another file, out of this folder, and then "
+        raise LabkitError(
+            f"you are working in {other}, but what you hand in must be called {path.name}; save "
+            f"your notebook, {first if path.is_file() else ''}rename it to {path.name}, and run "
+            "this cell again"
+        )
     found = examine(path)
+    found = replace(found, problems=(*found.problems, *_no_longer_right(found)))
     sources = [cell["source"] for cell in read_cells(path)]
     saved = datetime.fromtimestamp(path.stat().st_mtime, UTC).astimezone()
     age = max(datetime.now(UTC) - saved, timedelta())
@@ -41,6 +53,37 @@ def hand_in(name: str) -> None:
         _advice(path.name, found, age, unsaved),
     ]
     print("\n".join(map(wrapped, lines)))
+
+
+def _open_as(path: Path) -> str:
+    """The name of the open notebook's file, if another one is about to be inspected, else "".
+
+    Jupyter gives its kernels the name that the file had when they started.  If no file has that
+    name any more, the file was renamed meanwhile.
+    """
+    opened = Path(os.environ.get("JPY_SESSION_NAME", ""))
+    return opened.name if opened.name != path.name and (Path.cwd() / opened.name).is_file() else ""
+
+
+def _no_longer_right(found: HandIn) -> Iterator[str]:
+    """A sentence for each answer that its check found right, and that is not right any more.
+
+    All cells have run by now, as when the notebook is marked, so this finds every change that a
+    cell below a check makes, also those that the text of the cells does not show.
+    """
+    notebook = shell()
+    for name, verdict in found.verdicts.items() if notebook is not None else ():
+        known = any(re.search(rf"\b{name}\b", text) for text in found.problems)
+        if not verdict or not verdict.right or known or name not in notebook.user_ns:
+            continue
+        now, *_ = desk().verdict(name, notebook.user_ns[name])
+        if not now.right:
+            yield (
+                f"{name} was right when it was checked and is not right now; restart the kernel "
+                f"and run all cells. If you see this line again, a cell below the check of {name} "
+                f"changes what {name} uses: check {name} once more in a new cell at the end to see "
+                "what is different"
+            )
 
 
 def _findings(found: HandIn, unsaved: Collection[str]) -> list[str]:
@@ -80,6 +123,8 @@ def _advice(file: str, found: HandIn, age: timedelta, unsaved: Collection[str]) 
         return f"{says}, before any check had run: {again}."
     if found.problems:
         return f"{says}: correct what is marked with [fix], then {again}."
+    if found.old:
+        return f"{says}: run all cells from the top, {again}."
     if not recent:
         return f"{says}. Hand it in if you have changed nothing since then; if you have, {again}."
     if found.notes:

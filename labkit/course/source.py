@@ -7,9 +7,11 @@ the same answers, and the same tools in them.
 from __future__ import annotations
 
 import ast
+import copy
 import hashlib
 import re
 import symtable
+import sys
 import warnings
 from collections.abc import Collection, Iterator, Mapping
 from functools import lru_cache
@@ -23,6 +25,7 @@ RUNS_HERE = ("time", "capture", "prun")
 
 Any other, such as ``%%timeit`` or ``%%bash``, defines no name in the notebook.
 """
+_TIMED = re.compile(r"^%time[ \t]+(?=\S)", re.MULTILINE)
 _MAGIC = re.compile(r"\s*%%(\S+)[^\n]*\n?")
 _CHAINS = {ast.Name, ast.Attribute, ast.Call}
 _CHANGE = {
@@ -37,9 +40,10 @@ _OTHER_MAGIC = re.compile(r"get_ipython\(\)\.run_cell_magic\('([^']*)'")
 def plain(source: str) -> str:
     """A cell as plain Python, line for line.
 
-    The magics of `RUNS_HERE` are removed; other magics and shell commands become calls, as in a
-    notebook.
+    The magics of `RUNS_HERE` and ``%time`` are removed; other magics and shell commands become
+    calls, as in a notebook.
     """
+    source = _TIMED.sub("", source)
     while (found := _MAGIC.match(source)) and found[1] in RUNS_HERE:
         source = "\n" * found[0].count("\n") + source[found.end() :]
     if not any(line.lstrip()[:1] in {"%", "!", "?"} or "?" in line for line in source.split("\n")):
@@ -155,8 +159,9 @@ def needed(source: str, name: str, given: Collection[str] = ()) -> list[str]:
         given: Names that are defined elsewhere.
     """
     lines = source.split("\n")
-    texts = [_text(part, lines) for part in _parts(ast.parse(source).body)]
-    scopes = [symtable.symtable(text, "", "exec") for text in texts]
+    parts = _parts(ast.parse(source).body)
+    texts = [_text(part, lines) for part in parts]
+    scopes = [_scope(*pair) for pair in zip(parts, texts, strict=True)]
     wanted, found, before = {name}, set[int](), -1
     while before < len(found):
         before = len(found)
@@ -183,6 +188,31 @@ def _text(part: list[ast.stmt], lines: list[str]) -> str:
     return "\n".join(lines[first - 1 : part[-1].end_lineno])
 
 
+class _Generators(ast.NodeTransformer):
+    """Makes a generator of each comprehension."""
+
+    def visit_ListComp(self, node: ast.ListComp | ast.SetComp) -> ast.GeneratorExp:
+        """A generator of the same elements."""
+        self.generic_visit(node)
+        return ast.GeneratorExp(node.elt, node.generators)
+
+    visit_SetComp = visit_ListComp
+
+    def visit_DictComp(self, node: ast.DictComp) -> ast.GeneratorExp:
+        """A generator of the keys and values."""
+        self.generic_visit(node)
+        return ast.GeneratorExp(ast.Tuple([node.key, node.value], ast.Load()), node.generators)
+
+
+def _scope(part: list[ast.stmt], text: str) -> symtable.SymbolTable:
+    """The names of statements, written as ``text``, and of the scopes in them."""
+    if sys.version_info >= (3, 12):
+        # There the variables of a comprehension are among the names of the scope around it.
+        tree = _Generators().visit(ast.Module(copy.deepcopy(part), []))
+        text = ast.unparse(tree)
+    return symtable.symtable(text, "", "exec")
+
+
 def _definition(part: list[ast.stmt], lines: list[str]) -> dict[str, Any]:
     """What a statement at a cell's top level defines, and on what it depends.
 
@@ -195,7 +225,7 @@ def _definition(part: list[ast.stmt], lines: list[str]) -> dict[str, Any]:
         lines and spaces at the end of lines.
     """
     text = _text(part, lines)
-    scope = symtable.symtable(text, "", "exec")
+    scope = _scope(part, text)
     written = "\n".join(line.rstrip() for line in text.split("\n") if line.strip())
     binds, outside = _own_names(scope), set(_outside_names(scope))
     mean: dict[str, str] = {}

@@ -2,6 +2,7 @@
 
 import json
 import shutil
+from importlib import import_module
 from pathlib import Path
 
 import pytest
@@ -60,7 +61,7 @@ def test_an_answer_that_is_defined_again_below_its_check_is_named(path):
     (problem,) = handed_in(path, CIRCLE.format("1"), again).problems
     assert problem == (
         "the cell that begins with `def circle(s, start, centre):` defines circle again below its "
-        "check, and counts; delete it, or check again below it"
+        "check, and that later one is marked; delete it, or check again below it"
     )
     assert not handed_in(path, CIRCLE.format("1"), code(STUB)).problems
     check = code('check("circle", circle)')
@@ -114,7 +115,7 @@ def test_what_the_answer_uses_and_a_cell_below_the_check_changes_is_named(path, 
     first, other = below.partition("\n")[0], "give the changed value another name"
     assert problem == (
         f"circle uses {name}, which the cell that begins with `{first}` changes below the check, "
-        f"and circle is marked with that {name}; {'leave it as it is' if '.' in name else other}, "
+        f"and circle is marked with that {name}; {'do not change it' if '.' in name else other}, "
         "or check circle again below it"
     )
 
@@ -180,8 +181,35 @@ def test_the_check_of_what_has_no_name_is_named(path, tried):
     plain = " ".join(tried.split()).strip("( )")
     assert problem.startswith(f"the check of circle tried {plain}, but circle is marked; check")
     assert ("rename ring" in problem) == (plain == "ring")
-    same = code("check(\n    'circle',\n    circle,\n)")
-    assert not handed_in(path, CIRCLE.format("1"), same).problems
+
+
+@pytest.mark.parametrize(
+    "last",
+    [
+        "check(\n    'circle',\n    circle,\n)",
+        "%time check('circle', circle)",
+        "check('circle', function=circle)",
+        "check('circle', abs); check('circle', circle)",
+    ],
+)
+def test_the_last_check_counts_however_it_is_written(path, last):
+    """It tries what is marked, so nothing above it has to be corrected."""
+    again = code(CIRCLE.format("2")), code("check('circle', abs)"), code(last)
+    assert not handed_in(path, CIRCLE.format("1"), *again).problems
+
+
+def test_a_timed_statement_defines_its_name(path):
+    """IPython's %time runs one statement as it is."""
+    timed = [code("%time half = 4.0"), code("%time import math")]
+    assert not handed_in(path, CIRCLE.format("half * math.pi"), above=timed).problems
+
+
+def test_a_module_that_an_import_of_everything_brings_is_the_same(path):
+    """Matplotlib's pyplot has a name np, too, and means NumPy by it."""
+    import_module("matplotlib.pyplot")  # in a notebook labkit has loaded it
+    answer, every = CIRCLE.format("np.pi"), code("from matplotlib.pyplot import *")
+    found = handed_in(path, answer, every, above=[code("import numpy as np")])
+    assert not any("np" in problem for problem in found.problems)
 
 
 @pytest.mark.parametrize("above", ["", "from math import *", "from numpy import pi"])
@@ -202,7 +230,7 @@ def test_an_import_of_everything_below_the_check_is_named(path, above):
 
 
 def test_an_answer_may_stand_above_a_value_that_it_needs_at_once(path):
-    """Answers are marked after all other cells have run, so this costs nothing."""
+    """A cell that lacks a name runs once more after all others, so this costs nothing."""
     answer = CIRCLE.format("1").replace("centre)", "centre, four=FOUR)")
     assert not handed_in(path, answer, code("FOUR = 4.0")).problems
 
@@ -255,6 +283,10 @@ RIGHT, OTHER, HALF, PI = map(CIRCLE.format, ("1", "2", "half", "math.pi"))
         ([LOOP], [], LOOP.replace("    return", "        return"), []),
         (["half = 2", HALF], ["half = 3"], HALF, []),
         ([STUB, RIGHT], [], STUB, [OTHER]),
+        (["half = [2]\nhalf[0] = 3", HALF], ["half = [2]\nhalf[0] = 4"], HALF, []),
+        (["half = [2]\nhalf[0] = 3", HALF], ["half = [2]"], HALF, []),
+        (["half = 2\nhalf *= 2", HALF], ["half = 3\nhalf *= 2"], HALF, []),
+        (["half = [2]\nhalf.append(a)", "a = 1", HALF], ["half = [2]\nhalf.append(a)"], HALF, []),
     ],
 )
 def test_an_answer_that_was_edited_after_its_check_is_not_called_right(
@@ -276,6 +308,8 @@ def test_an_answer_that_was_edited_after_its_check_is_not_called_right(
         (["two = 2", "half = two", "two = 3", HALF], ["two = 2", "half = two"], HALF, ["two = 3"]),
         ([STUB, RIGHT], [], STUB, [RIGHT]),
         ([HALF], [], HALF, ["half = 2"]),
+        (["half = [2]\nhalf[0] = 3"] * 2 + [HALF], ["half = [2]\nhalf[0] = 3"], HALF, []),
+        (["half = [2]", "half[0] = 3", "half = [2]", HALF], ["half = [2]"], HALF, []),
     ],
 )
 def test_an_answer_that_means_the_same_is_not_called_changed(path, judged, above, answer, below):
@@ -288,7 +322,7 @@ def test_what_only_a_cell_below_the_check_defines_is_named(path):
     """From the top the check finds no answer or a NameError, although the answer is marked."""
     note = (
         "only the cell that begins with `{}` defines {}, and it is below the check of circle; move "
-        "it above the check, so that this can try the answer (it is marked all the same)"
+        "it above the check, so that the check can try the answer (it is marked all the same)"
     )
     helper, ring = note.format("half = 2", "half, which circle uses"), code(CIRCLE.format("half"))
     found = handed_in(path, f"def deep(s): return half\n{CIRCLE.format('deep')}", code("half = 2"))
@@ -301,6 +335,8 @@ def test_what_only_a_cell_below_the_check_defines_is_named(path):
     for above, below in (([code("half = 3")], []), ([], [check]), ([every], [])):
         notes = handed_in(path, HALF, code("half = 2"), *below, above=above).notes
         assert not any("below the check" in note for note in notes)
+    both = handed_in(path, HALF, every, code("half = 2")).notes  # the first need not define it
+    assert note.format("half = 2", "half, which circle uses") in both
 
 
 @pytest.mark.parametrize("early", ["half = 2 * four", "half = [four for _ in 'ab']"])
