@@ -464,10 +464,9 @@ predict("twenty_pairs", truth="b" if pooled < 0.7 * by_task else "c" if pooled >
 #
 # ### BEGIN SOLUTION
 # The interval from 20 differences was much narrower: 1.1 mm to either side, where the means of the tasks give
-# 3.3 mm. The five seeds of a task share path, speed and pose, so they are not independent: they tell how noisy
-# this task is, not how tasks differ. A sixth seed makes the mean of this task surer; a second task shows how much
-# another task changes it. A claim about controllers in general rests on four independent numbers, and has their
-# wide interval.
+# 3.3 mm. The five seeds of a task share path, speed and pose: they tell how noisy this task is, not how tasks
+# differ. A sixth seed makes the mean of this task surer; a second task shows how much another task changes it. A
+# claim about controllers in general rests on four independent numbers, and has their wide interval.
 # ### END SOLUTION
 
 # %% [markdown]

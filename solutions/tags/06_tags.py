@@ -471,12 +471,10 @@ lk.replay.show(lk.replay.motion_of(log, "The arm in the same run", label="the ha
 # hand, or for both.
 #
 # ### BEGIN SOLUTION
-# On a circle that turns by two radians during the picture's age, the straight prediction was farther off
-# than the old place. In the run with the arm the tag turned by about a third of a radian in the time that was
-# predicted, and there it helped: the tip was 6 mm off, without the prediction 40 mm. The predictor believes in a
-# constant velocity, and its error grows with the square of the age times the acceleration. A conveyor has none, so
-# it gains everything. For a waving hand the age decides: within a tenth of a second the hand moves nearly straight
-# on, and within two seconds it has reversed several times.
+# Where the circle turned by two radians during the picture's age, the prediction was farther off than the old
+# place. With the arm the tag turned by a third of a radian, and it helped: 6 mm off, without it 40 mm. It assumes
+# constant velocity; its error grows with the square of the age. A conveyor keeps its velocity and gains
+# all. A waving hand moves nearly straight within a tenth of a second, but not within two.
 # ### END SOLUTION
 
 # %% [markdown]

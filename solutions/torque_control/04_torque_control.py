@@ -706,12 +706,10 @@ lk.replay.show(
 # m/rad.
 #
 # ### BEGIN SOLUTION
-# It sagged by 21 mm. The load gives the torques J^T F; computed torque answers with M kp e, so at rest
-# e = M^-1 J^T F / kp: the inverse of M converts the torques to accelerations. So the stiffness is M kp, which
-# kp = 40 1/s² makes about 80 N m/rad at the shoulder and only 2 to 4 N m/rad at the wrist: kp in 1/s² fixes a
-# frequency, not a stiffness. Springs of 40 N m/rad in every joint would be at least ten times as stiff as this at the
-# wrist, but only half as stiff at the shoulder. This load pulls at s1 and e1, so with such springs the tip would
-# sag more, by 38 mm.
+# It sagged by 21 mm. The load's torques are J^T F, and computed torque answers with M kp e, so M^-1
+# converts torques to accelerations. The stiffness is M kp: with kp = 40 1/s² about 80 N m/rad at the shoulder, only
+# 2 to 4 at the wrist. So kp fixes a frequency, not a stiffness. Springs of 40 N m/rad in every joint are
+# half as stiff at the shoulder and sag more, by 38 mm.
 # ### END SOLUTION
 
 # %% [markdown]

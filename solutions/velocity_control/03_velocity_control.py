@@ -516,11 +516,10 @@ lk.replay.show(
 # damper lets you raise P: say what is different in an arm whose speed is commanded.
 #
 # ### BEGIN SOLUTION
-# With more D the error died more slowly: its rate is kp/(1 + kd). Where the speed itself is commanded,
-# D subtracts a share of the speed from the command, so it simply makes the command smaller. A mass needs D to
-# lose its kinetic energy; a joint that obeys its speed command at once cannot swing, so there is nothing to damp.
-# (A lag makes the loop one of second order, and there D does let you raise P. But with a lag of 50 ms the error
-# swings only from kp = 1/(4 · 0.05 s) = 5 1/s on; with kp = 3 the return is overdamped without any D.)
+# With more D the error died more slowly: its rate is kp/(1 + kd). Where the speed itself is commanded, D subtracts
+# a share of the speed from the command, so it only makes the command smaller. A mass needs D to lose its kinetic
+# energy; a joint that obeys its speed command at once cannot swing, so nothing needs damping. (A long lag makes the
+# loop one of second order, and there D does let you raise P.)
 # ### END SOLUTION
 
 # %% [markdown]

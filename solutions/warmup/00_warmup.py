@@ -367,10 +367,9 @@ lk.replay.show(turning) if farthest_off else None
 # then does.
 #
 # ### BEGIN SOLUTION
-# The hand turned away from its target instead of towards it. In these runs the gripper points down, and its x axis
-# points back, so the tool's x and z axes point against the world's, or nearly so. Those two components of the
-# error have the wrong sign: the feedback about x and z is positive, and the error grows, while y at first decays. (In
-# the prediction above the tool's x axis was the world's; there y and z have the wrong sign.)
+# The hand turned away from its target instead of towards it. In these runs the gripper points down and its x axis
+# points back, so the tool's x and z axes point against the world's, or nearly so. Those two components of the error
+# have the wrong sign: the feedback about x and z is positive, and the error grows, while y at first decays.
 # ### END SOLUTION
 
 # %% [markdown]

@@ -5,14 +5,24 @@ from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
+import pytest
 
 import labkit as lk
+from labkit.course.brief import WORDS, words_of
 from labkit.replay.hand import STRONGEST, Hand
 from solutions.torque_control.answers import computed_torque
 from solutions.velocity_control.answers import joint_velocity_pd
 
 TORQUE = Path("solutions/torque_control/04_torque_control.py")
 VELOCITY = Path("solutions/velocity_control/03_velocity_control.py")
+
+
+@pytest.mark.parametrize("path", sorted(Path("solutions").glob("*/*_*.py")), ids=lambda x: x.stem)
+def test_a_model_text_keeps_to_the_limits_that_students_have(path):
+    """It has as many words as a why must have, and no more than it may."""
+    for why in path.read_text(encoding="utf-8").split('# %% [markdown] why="')[1:]:
+        model = why.split("# ### BEGIN SOLUTION\n")[1].split("# ### END SOLUTION")[0]
+        assert WORDS[0] <= len(words_of(model.replace("\n# ", "\n")[2:])) <= WORDS[1]
 
 
 def _sag(plant: lk.Plant, controller: object) -> float:
