@@ -229,6 +229,13 @@ def test_an_import_of_everything_below_the_check_is_named(path, above):
         assert not pi.problems
 
 
+def test_an_import_of_everything_hides_what_a_module_without_a_list_has(path):
+    """Where a module has no list of its public names, those without an underscore are public."""
+    answer, every = CIRCLE.format("pow(s, 1), __name__"), code("from math import *")
+    (problem,) = handed_in(path, answer, every).problems
+    assert problem.startswith("circle uses pow, which")
+
+
 def test_an_answer_may_stand_above_a_value_that_it_needs_at_once(path):
     """A cell that lacks a name runs once more after all others, so this costs nothing."""
     answer = CIRCLE.format("1").replace("centre)", "centre, four=FOUR)")
