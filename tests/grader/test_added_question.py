@@ -104,6 +104,32 @@ def test_nbgrader_alone_refuses(marked):
     assert "Cannot add or remove cells" in f"{result['log']}{result.get('error')}"
 
 
+def test_a_mark_by_hand_waits_for_another_look_when_the_full_points_change(marked, monkeypatch):
+    """It was given on another scale; it stays, and is named until somebody has seen it."""
+    course, become = marked
+    with open_gradebook(course) as book:
+        book.find_grade("circle-check", NAME, NAME, "bob").needs_manual_grade = False
+        book.db.commit()
+    text, fewer = course.notebook_source(NAME), Course(ROOT).problems(NAME)
+    become(False)
+    release(course, NAME, SEED)  # with the same points nothing has to be seen again
+    with open_gradebook(course) as book:
+        assert not book.find_grade("circle-check", NAME, NAME, "bob").needs_manual_grade
+    fewer = tuple(replace(p, points=3) if p.name == "circle" else p for p in fewer)
+    monkeypatch.setattr(Course, "problems", lambda *_: tuple(p for p in fewer if p.name != LATER))
+    text.write_text(text.read_text().replace("20 points", "19 points"))
+    release(course, NAME, SEED)
+    with open_gradebook(course) as book:
+        assert book.find_grade("circle-check", NAME, NAME, "bob").needs_manual_grade
+        assert not book.find_grade("circle-check", NAME, NAME, "ada").needs_manual_grade
+    (said,) = record(course, NAME, graded(course))
+    assert said == (
+        "bob: circle was marked 1.5 by hand, and the answer, its full points or the grader's mark "
+        "has changed since; look at it again"
+    )
+    assert marks(course)["bob"]["circle-check"] == 1.5
+
+
 def test_a_diff_of_what_was_not_released_is_refused(marked, capsys):
     """Who corrected a test, and whose release was refused, reads no "no mark would change"."""
     course, _ = marked

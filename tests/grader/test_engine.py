@@ -295,6 +295,18 @@ def test_a_magic_that_keeps_names_to_itself_defines_nothing(marks, solved, magic
     assert circle.verdict.earned == 0
 
 
+def test_an_answer_that_uses_a_wrong_one_says_so(marks, solved):
+    """The cause is then perhaps in another function than the one that lost points."""
+    put(solved, "bang_bang", "def bang_bang(t, duration): return 0, 0, 0")
+    put(solved, "trapezoid", "def trapezoid(*_): return bang_bang(0, 1)")
+    found = {q.verdict.name: q.notes for q in marks(solved).questions if q.notes}
+    says = "it uses your bang_bang, which is not right either; correct it first"
+    assert found == {"trapezoid": (says,)}
+    put(solved, "circle", "def circle(*_): return bang_bang(0, 1), trapezoid(0, 1)")
+    (note,) = next(q.notes for q in marks(solved).questions if q.verdict.name == "circle")
+    assert note.startswith("it uses your bang_bang and trapezoid, which are not right either;")
+
+
 def test_a_mark_does_not_depend_on_what_cannot_be_shown(marks, solved):
     """Surrogates, marks of direction, escapes and old line ends cost nothing and are not kept."""
     for cell in solved["cells"]:

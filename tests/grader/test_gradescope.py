@@ -129,10 +129,12 @@ def test_a_notebook_of_another_assignment_is_named(course, bundle, sandbox, solv
     assert grade(raw(add(solved, "x = 1")), "bob", bundle, sandbox, QUICK).notes == ()
     hand_in(course, NAME, "ada", other)
     hand_in(course, NAME, "bob", solved)
+    hand_in(course, NAME, "eve", b"")
     assert main(["grade", NAME, "--course", str(course.root)]) == 1
     said = capsys.readouterr()
     assert said.err.endswith(f"ATTENTION: ada: {note}; ask for the right one\n")
-    assert (said.out + said.err).count("ATTENTION") == 1
+    assert "ATTENTION: handed in a file that cannot be graded: eve; ask for another," in said.out
+    assert (said.out + said.err).count("ATTENTION") == 2
 
 
 def test_a_file_that_cannot_be_graded_says_why(course):

@@ -13,6 +13,7 @@ from dataclasses import replace
 from typing import Any, cast
 
 from ...course.authoring.bundle import Bundle
+from ...course.gaps import listed
 from ...course.marking import PublicResult, all_alike, mark, not_counted, try_public
 from ...course.messages import why_not_counted
 from ...course.own_arm import opens_the_public_arm
@@ -107,7 +108,7 @@ def grade(
                 question,
                 verdicts.get(question.name) or _unasked_verdict(question, tools),
                 tried.get(question.name),
-                todo,
+                _with_dependencies(todo, question.name, verdicts),
             )
             for question in bundle.questions
         ),
@@ -225,6 +226,18 @@ def _unasked_verdict(question: Question, tools: Mapping[str, tuple[str, ...]]) -
 def _incomparable(question: Question) -> Verdict:
     """The verdict on a question whose answers cannot be compared."""
     return all_alike(question, Outcome.ERROR, Kind.OTHER)
+
+
+def _with_dependencies(todo: Plan, name: str, verdicts: Mapping[str, Verdict]) -> Plan:
+    """The plan with a note on an answer that is not right and uses others that are not."""
+    wrong = {k for k, v in verdicts.items() if v.outcome in (Outcome.WRONG, Outcome.ERROR)}
+    parts = [x for look in todo.looks for x in look["definitions"] if name in x["binds"]]
+    used = sorted(wrong.intersection(*(x["outside"] for x in parts[-1:])) - {name})
+    if name not in wrong or not (parts and used):
+        return todo
+    is_, it = ("are", "them") if used[1:] else ("is", "it")
+    note = f"it uses your {listed(used)}, which {is_} not right either; correct {it} first"
+    return replace(todo, notes={**todo.notes, name: (*todo.notes.get(name, ()), note)})
 
 
 def _answer(question: Question, verdict: Verdict, tried: PublicResult | None, todo: Plan) -> Answer:

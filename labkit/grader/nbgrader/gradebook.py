@@ -237,7 +237,7 @@ def _write_scores(
             elif score is not None and grade.auto_score not in {None, score}:
                 why = f"the grader gives {score:g} now"
             elif grade.needs_manual_grade:
-                why = "the answer or the grader's mark has changed since"
+                why = "the answer, its full points or the grader's mark has changed since"
             if why:
                 grade.needs_manual_grade = True
                 says = f"was marked {given:g} by hand, and {why}; look at it again"

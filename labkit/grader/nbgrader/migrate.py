@@ -17,7 +17,8 @@ def migrate(course: Course, assignment: str, source: Any) -> list[str]:
     nbgrader's ``SaveCells`` refuses such a release, "Cannot add or remove cells for notebook ...
     because there are submissions associated with it", rather than lose marks.  Here the cells that
     are new get their rows, empty ones in every submission, and those that are gone lose theirs; a
-    mark or a comment that somebody wrote by hand is never lost.
+    mark or a comment that somebody wrote by hand is never lost.  Where the full points change,
+    marks given by hand wait for another look.
 
     Args:
         course: The course.
@@ -53,6 +54,11 @@ def migrate(course: Course, assignment: str, source: Any) -> list[str]:
         for cell in notebook.source_cells:
             if cell.name not in cells:
                 book.db.delete(cell)
+        for cell in there:
+            _, known = graded.get(cell.name, (None, {}))
+            if known and float(known["points"]) != cell.max_score:
+                for grade in cell.grades:
+                    grade.needs_manual_grade |= grade.manual_score is not None
         new = sorted(set(graded) - {c.name for c in there})
         for name in new:
             cell, known = graded[name]
