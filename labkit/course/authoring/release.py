@@ -127,8 +127,11 @@ def _checks(made: Prepared) -> str:
     return text
 
 
-def same_but_for_rounding(a: object, b: object, rtol: float = 1e-9, atol: float = 1e-12) -> bool:
-    """Whether two JSON values differ only by what another machine rounds in another manner."""
+def same_but_for_rounding(a: object, b: object, rtol: float = 1e-9, atol: float = 1e-10) -> bool:
+    """Whether two JSON values differ only by what another machine rounds in another manner.
+
+    The default limits hold for derivatives by differences, too.
+    """
     same = partial(same_but_for_rounding, rtol=rtol, atol=atol)
     if isinstance(a, dict) and isinstance(b, dict):
         return a.keys() == b.keys() and all(same(a[k], b[k]) for k in a)
