@@ -85,8 +85,9 @@ def words(d: Difference) -> tuple[str, str, str, str]:
             return f"at {d.at[0]:g} rad/s ", _polar(d.expected), _polar(d.found), ""
         case Kind.MEASURE:
             what, unit = _MEASURES.get(d.part, (d.part.replace("_", " "), ""))
-            lost = str(d.found) == "inf"
-            found = "infinite, because an arm is lost" if lost else f"{_much(d.found)}{unit}"
+            found = f"{_much(d.found)}{unit}"
+            if str(d.found) == "inf":  # the arm was lost, or the gains are beyond the recorded ones
+                found = "infinite, because no error was recorded for gains as large as these"
             text = f"{what} is {found}; the limit is {_much(d.expected)}{unit}"
         case Kind.TYPE if not d.expected:
             text = f"{of}the answer should be plain numbers, not a {d.found}"
