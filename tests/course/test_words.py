@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 from questions import CALLS, DOUBLE, HIDDEN, double, square
 
-from labkit import Hold
+from labkit import Hold, JointVelocity, robot
 from labkit.course import Call, Close, Test
 from labkit.course.marking import mark, not_counted
 from labkit.course.messages import head, message, summary, worth
@@ -122,6 +122,17 @@ def test_a_run_that_fails_is_told_with_its_time():
     words = said(lambda state, target: [][0], question)
     assert "\n  The controller failed at t = 0.000 s, tick 0: IndexError: list" in words
     assert "raised" not in words and "raised IndexError" in said(lambda x: [][0])
+
+
+def test_a_run_over_its_limit_is_told_with_its_arm_and_its_controller():
+    """Of which run the number is, is in the sentence with the number, and not again below it."""
+    target = Hold(robot("left").ready + 0.1, 0.1)
+    loop = Loop(target, expected={"max_mm": 1.0})
+    question = replace(DOUBLE, tests=(Test("a run", (loop,)),), mistakes=())
+    words = " ".join(said(lambda state, target: JointVelocity(np.zeros(7)), question).split())
+    run = "a run of the left arm (ideal) with double as its controller"
+    assert f"mm; the limit is 1 mm. This was {run}. [failed]" in words
+    assert words.count("a run of") == 1 and "Where it fails" not in words
 
 
 def test_a_long_call_can_be_tried():
