@@ -71,7 +71,7 @@ def _index(at: Sequence[float]) -> str:
 
 def words(d: Difference) -> tuple[str, str, str, str]:
     """The place of a difference, what was expected, what was returned, and a likely cause."""
-    of = f"{d.part}: " if d.part else ""
+    of = f"{_quoted(d.part)}: " if d.part else ""
     text = ""
     match d.kind:
         case Kind.NUMBERS if d.expected is None:
@@ -111,6 +111,11 @@ def words(d: Difference) -> tuple[str, str, str, str]:
         case Kind.OTHER:
             text = "the answer cannot be compared with the expected one"
     return text, "", "", ""
+
+
+def _quoted(part: str) -> str:
+    """The name of a part, in quotation marks if it is a sentence, such as a claim."""
+    return f'"{part}"' if part.count(" ") > 1 else part
 
 
 def likely_cause(d: Difference) -> str:

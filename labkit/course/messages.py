@@ -291,7 +291,8 @@ def _is_value(call: str) -> bool:
     return call.endswith("()")
 
 
-def _printed(text: str, most: int = 6) -> list[str]:
-    lines = [line[:160] for line in text.splitlines() if line.strip()]
+def _printed(text: str, most: int = 6, longest: int = 160) -> list[str]:
+    lines = [line for line in text.splitlines() if line.strip()]
+    lines = [x if len(x) <= longest else f"{x[: longest - 3]}..." for x in lines]
     more = [f"... and {len(lines) - most} more lines"] if len(lines) > most else []
     return [*lines[:most], *more]

@@ -218,13 +218,13 @@ RMS_ERROR = Problem(
             "Say the unit of every number.",
         ),
         Wrong(
-            "all rows beside the first target",
+            "all rows compared with the first target",
             "The target moves: each row has its own target, log.target.pose[k].",
             mistakes.from_the_first_target,
             "Compare only what belongs to the same instant.",
         ),
         Wrong(
-            "all rows beside the last target",
+            "all rows compared with the last target",
             "The target moves: each row has its own target, log.target.pose[k].",
             mistakes.from_the_last_target,
             "Compare only what belongs to the same instant.",

@@ -73,6 +73,14 @@ def test_wrong_shows_the_call_and_both_numbers():
     ]
 
 
+def test_a_claim_is_quoted_and_a_name_is_not():
+    """A key that is a sentence would read as one's own words about the answer."""
+    for key, quoted in (("A is worse than B", '"A is worse than B"'), ("kp", "kp")):
+        tests = (Test("a table", (Call((), expected={key: "holds"}),)),)
+        words = said(lambda key=key: {key: True}, replace(DOUBLE, tests=tests, mistakes=()))
+        assert f"\n  {quoted}: it should be 'holds', not True.\n" in words
+
+
 @pytest.mark.parametrize("points", [4.0, 5.0, 1.0])
 def test_a_test_is_worth_what_it_earns_alone(points):
     """The points beside a test are those that it earns if it is the only one that passes."""
@@ -179,8 +187,9 @@ def test_a_withheld_tool_is_an_outcome_of_its_own():
 
 
 def test_prints_are_shown_in_part():
-    """What the code printed is shown, long lines and many lines cut."""
-    words = said(double, printed="\n".join(["x" * 500, *map(str, range(20))]))
+    """What the code printed is shown; where a long line or many lines are cut, three dots are."""
+    words = said(double, printed="\n".join(["x" * 500, "y" * 160, *map(str, range(19))]))
+    assert "x...\n" in words and "y\n" in words
     assert "your code printed" in words and "... and 15 more lines" in words
     assert max(map(len, words.splitlines())) < 200
 

@@ -285,7 +285,7 @@ REJECTED = [
     ("06 tag_pose", vector_for_a_matrix((3, 1)), "a rotation vector in the columns of the matrix"),
     ("06 blend", three_coordinates, "three coordinates, however many there are"),
     ("07 rms_error", rms_of_the_left_arm, "the left arm's model for every arm"),
-    ("07 rms_error", rms_of_the_last_target, "all rows beside the last target"),
+    ("07 rms_error", rms_of_the_last_target, "all rows compared with the last target"),
     ("07 rms_error", norm_of_the_mean, "the length of the mean error"),
     ("07 open_loop", plain_function, None),
     ("07 open_loop", loop(1), "a delay of first order"),
