@@ -71,7 +71,8 @@ class Trials:
         cases: Names of the cases, such as "line, seed 0".
         Kp: Proportional gains, ascending, m of them.
         Kd: Derivative gains, ascending, n of them.
-        rms_mm: For each case, m rows of n RMS errors in [mm], with None where the arm was lost.
+        rms_mm: For each case, m rows of n RMS errors in [mm], with None where there is none: the
+            arm was lost, or there was no run.
     """
 
     cases: tuple[str, ...]
@@ -85,11 +86,11 @@ class Trials:
         object.__setattr__(self, "rms_mm", rows)
 
     def array(self, case: int = 0) -> Array:
-        """The errors of a case, shape (m, n) in [mm], NaN where the arm was lost."""
+        """The errors of a case, shape (m, n) in [mm], NaN where there is none."""
         return np.array(self.rms_mm[case], dtype=float)
 
     def error(self, case: int, Kp: float, Kd: float) -> float:
-        """The error of one case, in [mm], infinite where the arm is lost.
+        """The error of one case, in [mm], infinite where none was recorded.
 
         Between the recorded gains, it is interpolated linearly in Kd and in the logarithm of Kp.
 
@@ -140,7 +141,10 @@ class Runner:
     _tried: list[tuple[float, float, int]] = field(default_factory=list, init=False, compare=False)
 
     def __call__(self, Kp: float, Kd: float, seed: int = 0) -> float:
-        """The RMS error of a run with these gains, in [mm]; infinite if the arm was lost.
+        """The RMS error of a run with these gains, in [mm]; infinite where none was recorded.
+
+        No error was recorded where the arm was lost.  In notebook 07, none was recorded of the slower
+        arm with a Kp above about 25.
 
         Args:
             Kp: Proportional gain, in [1/s].

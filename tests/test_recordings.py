@@ -94,7 +94,7 @@ TRIALS = Trials(("a", "b"), (1.0, 100.0), (0.0, 0.5), (((4.0, 2.0), (8.0, None))
 
 
 def test_between_recorded_gains_the_error_is_interpolated():
-    """Evenly in the logarithm of Kp and in Kd; infinite where the arm was lost."""
+    """Evenly in the logarithm of Kp and in Kd; infinite where none was recorded."""
     assert TRIALS.error(0, 1.0, 0.5) == 2.0
     assert TRIALS.error(0, 10.0, 0.0) == pytest.approx(6.0)
     assert TRIALS.error(0, 1.0, 0.25) == pytest.approx(3.0)

@@ -57,7 +57,8 @@ def card(
     parts = [f'<p><b aria-hidden="true">{sign}</b>{_inline(message.head)}</p>']
     parts += [f"<p>{_inline(line)}</p>" for line in message.helps]
     if message.tests:
-        says = f"{failures(failed, len(message.tests))}. Show them, with the numbers"
+        numbers = ", with the numbers" if message.numbers or picture else ""
+        says = f"{failures(failed, len(message.tests))}. Show them{numbers}"
         parts.append(f"<details><summary>{says}</summary>{''.join(folded)}</details>")
     if message.printed:
         parts.append(f"<p>{PRINTED}</p>{_block(message.printed)}")

@@ -71,7 +71,7 @@ def _index(at: Sequence[float]) -> str:
 
 def words(d: Difference) -> tuple[str, str, str, str]:
     """The place of a difference, what was expected, what was returned, and a likely cause."""
-    of = f"{d.part}: " if d.part else ""
+    of = f"{_quoted(d.part)}: " if d.part else ""
     text = ""
     match d.kind:
         case Kind.NUMBERS if d.expected is None:
@@ -85,8 +85,9 @@ def words(d: Difference) -> tuple[str, str, str, str]:
             return f"at {d.at[0]:g} rad/s ", _polar(d.expected), _polar(d.found), ""
         case Kind.MEASURE:
             what, unit = _MEASURES.get(d.part, (d.part.replace("_", " "), ""))
-            lost = str(d.found) == "inf"
-            found = "infinite, because an arm is lost" if lost else f"{_much(d.found)}{unit}"
+            found = f"{_much(d.found)}{unit}"
+            if str(d.found) == "inf":  # the arm was lost, or the gains are beyond the recorded ones
+                found = "infinite, because no error was recorded for gains as large as these"
             text = f"{what} is {found}; the limit is {_much(d.expected)}{unit}"
         case Kind.TYPE if not d.expected:
             text = f"{of}the answer should be plain numbers, not a {d.found}"
@@ -110,6 +111,11 @@ def words(d: Difference) -> tuple[str, str, str, str]:
         case Kind.OTHER:
             text = "the answer cannot be compared with the expected one"
     return text, "", "", ""
+
+
+def _quoted(part: str) -> str:
+    """The name of a part, in quotation marks if it is a sentence, such as a claim."""
+    return f'"{part}"' if part.count(" ") > 1 else part
 
 
 def likely_cause(d: Difference) -> str:

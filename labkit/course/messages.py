@@ -182,7 +182,8 @@ def _helps(verdict: Verdict) -> Iterator[str]:
         clear = len(test.call) <= 60 and not is_shortened(test.call)
         where = f"`{test.call}`" if clear else f'the test "{test.name}"'
         of_one_call = lead.kind is Kind.NUMBERS and not _is_value(test.call)  # others may differ
-        yield sentence(lead, f"In {where}, " if of_one_call else "")
+        run = f" This was {test.call}." if lead.kind is Kind.MEASURE else ""
+        yield f"{sentence(lead, f'In {where}, ' if of_one_call else '')}{run}"
 
 
 def _lead(verdict: Verdict) -> Difference | None:
@@ -275,7 +276,10 @@ def _parts(test: TestResult, led: bool) -> list[str]:
     """A call with its expected and its actual answer, on lines of their own if they are long."""
     start, expected, got, _ = words(test.difference) if test.difference else ("", "", "", "")
     if not got:  # a sentence
-        return [why(test)] if not led else [] if _is_value(test.call) else [test.call]
+        if not led:
+            return [why(test)]
+        said = test.difference and test.difference.kind is Kind.MEASURE  # with its call
+        return [] if said or _is_value(test.call) else [test.call]
     short = f"{test.call}: {start}expected {expected}, got {got}"
     if len(short) < WIDTH - 4:
         return [short]
@@ -287,7 +291,8 @@ def _is_value(call: str) -> bool:
     return call.endswith("()")
 
 
-def _printed(text: str, most: int = 6) -> list[str]:
-    lines = [line[:160] for line in text.splitlines() if line.strip()]
+def _printed(text: str, most: int = 6, longest: int = 160) -> list[str]:
+    lines = [line for line in text.splitlines() if line.strip()]
+    lines = [x if len(x) <= longest else f"{x[: longest - 3]}..." for x in lines]
     more = [f"... and {len(lines) - most} more lines"] if len(lines) > most else []
     return [*lines[:most], *more]

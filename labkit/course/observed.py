@@ -1,7 +1,8 @@
 """Observed causes of wrong answers that no known mistake explains.
 
 Each sentence states what holds in all public calls, so it is true by construction: every number has
-the other sign, the answer does not depend on an argument, or what an argument adds is there twice.
+the other sign, the answer does not depend on an argument, what an argument adds is there twice, or
+the same gains are chosen for arms that differ.
 """
 
 from __future__ import annotations
@@ -17,7 +18,7 @@ from .equivalence import accepts
 from .judges import factor
 from .marking import Function, PublicResult
 from .probes import exchanges, numeric_parts, try_call, variations
-from .question import Call, Case, Question
+from .question import Call, Case, Choice, Question
 from .relations import Parts, all_near, related, same_form
 from .verdict import Kind, Misconception, Outcome, Verdict
 
@@ -46,6 +47,8 @@ def diagnosed(
 
 def cause(question: Question, answers: Mapping[Case, Any], function: Function) -> str:
     """A sentence about what is observed of a wrong answer; "" if nothing explains it."""
+    if same := _same_gains(question, answers):
+        return same
     calls = [call for call in question.calls if isinstance(call, Call) and call in answers]
     if not calls or len(calls) < len(question.calls) or not question.arguments:
         return ""
@@ -57,6 +60,27 @@ def cause(question: Question, answers: Mapping[Case, Any], function: Function) -
     found = related(question, calls, given, expected) if alike else ""
     found = found or _exchanged(question, calls, function)
     return found or (_probed(question, calls, given, function) if alike else "")
+
+
+def _same_gains(question: Question, answers: Mapping[Case, Any]) -> str:
+    """That the gains which were chosen for arms that differ are the same; else ""."""
+    choices = [case for case in question.calls if isinstance(case, Choice)]
+    alike = all(case.trials == choices[0].trials for case in choices)
+    if alike or len(choices) < len(question.calls):
+        return ""
+    try:
+        for case in choices:
+            case.measured(answers[case])  # gains that cannot be tried have a message of their own
+        pairs = {tuple(map(float, answers[case])) for case in choices}
+    except Exception:  # an odd answer may raise anything
+        return ""
+    if len(pairs) > 1:
+        return ""
+    Kp, Kd = pairs.pop()
+    return (
+        f"Your function returns the same gains, ({Kp:g}, {Kd:g}), for arms that differ. Let it find "
+        "the gains of each arm with the runner that it is given."
+    )
 
 
 def _exchanged(question: Question, calls: Sequence[Call], function: Function) -> str:

@@ -34,14 +34,15 @@ def stiffer(trials: Trials, factor: float) -> Trials:
     """The same trials where each Kp does what ``factor`` times Kp did.
 
     Gains per second have this effect on an arm that takes `factor` times as long for everything,
-    its path included.  Trials beyond the recorded gains are lost.
+    its path included.  Beyond the recorded gains there are no trials, so the error counts as
+    infinite there.
     """
     if factor == 1.0:
         return trials
     Kp = tuple(x / factor for x in trials.Kp)
-    lost = [None] * len(trials.Kd)
+    none = [None] * len(trials.Kd)
     return replace(
-        trials, Kp=(*Kp, trials.Kp[-1]), rms_mm=tuple((*rows, lost) for rows in trials.rms_mm)
+        trials, Kp=(*Kp, trials.Kp[-1]), rms_mm=tuple((*rows, none) for rows in trials.rms_mm)
     )
 
 

@@ -218,13 +218,13 @@ RMS_ERROR = Problem(
             "Say the unit of every number.",
         ),
         Wrong(
-            "all rows beside the first target",
+            "all rows compared with the first target",
             "The target moves: each row has its own target, log.target.pose[k].",
             mistakes.from_the_first_target,
             "Compare only what belongs to the same instant.",
         ),
         Wrong(
-            "all rows beside the last target",
+            "all rows compared with the last target",
             "The target moves: each row has its own target, log.target.pose[k].",
             mistakes.from_the_last_target,
             "Compare only what belongs to the same instant.",
@@ -578,7 +578,9 @@ CHOOSE_GAINS = Problem(
     "then tried where you could not try them, once as they are and once with a margin, "
     f"{hidden.RESERVE:g} times your Kp: there the error of the worst seed may be at most "
     f"{hidden.UNSEEN_LIMIT:g} mm. Your function is called for two arms, with 20 runs each time: the second "
-    "arm is about a quarter as fast as the first, so other gains are right for it.",
+    "arm is about a quarter as fast as the first, so other gains are right for it. Runs were recorded only up "
+    "to Kp = 100, on the second arm up to about a quarter of that. Beyond this the error counts as infinite, and on "
+    "the second arm `runner` returns infinity.",
     answer=answers.choose_gains,
     trials=(
         Trial(
@@ -603,7 +605,8 @@ CHOOSE_GAINS = Problem(
     ),
     hints=(
         "The error falls as Kp grows, until the arm gets out of control; at which Kp this happens "
-        "depends on the seed. The best place on the map is close to this edge.",
+        "depends on the seed. The lowest point of the map is close to this edge, so do not take the "
+        "gain there: it leaves too little margin.",
         "Raise Kp in steps and try more than one seed. As soon as the error jumps on one of them, "
         "you have found the edge.",
         "Find the largest Kp that was safe on more than one seed, and ask how much of it an older "

@@ -543,9 +543,10 @@ lk.plotting.show(
 # Your own arm carries something, and there is a wall somewhere in front of it. (Open the arm with the name that your
 # instructor gave you, as in notebook 03; `"demo"` is a public arm to practise on.) Find out both with experiments of
 # your own; the cell below is only a beginning. The torque sensors were set to zero with the load in the gripper, so
-# they feel the wall and not the load. Move slowly: a fast tip bounces off the wall and blurs the reading. And
-# do not look for the wall with springs of only 300 N/m: your arm's joints have dry friction, which holds soft
-# springs back before the tip arrives.
+# they feel the wall and not the load. While you weigh the load, the tip must not touch the wall, whose force would
+# spoil the result: do not let it move more than 3 cm forwards from the ready pose. When you look for the wall, move
+# slowly: a fast tip bounces off it and blurs the reading. And do not look for it with springs of only 300 N/m: your
+# arm's joints have dry friction, which holds soft springs back before the tip arrives.
 
 # %%
 HANDLE = "demo"  # in a course: the name that your instructor gave you

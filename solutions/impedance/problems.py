@@ -522,7 +522,7 @@ WORKSPACE_IMPEDANCE = Problem(
             "ẍ = J q̈ + J̇ q̇ has two terms.",
         ),
         Wrong(
-            "a weight that nobody carries",
+            "the weight left out",
             "The weight is missing, and in this question the arm does not carry it. Add g(q) to "
             "the torque.",
             mistakes.weightless,
@@ -884,8 +884,8 @@ SHAPED_IMPEDANCE = Problem(
             "Which part of the force comes from whom?",
         ),
         Wrong(
-            "the wrench outside the braces alone",
-            "The wrench must also accelerate the tip. Add M_d⁻¹ F inside the braces.",
+            "the wrench subtracted, and no more",
+            "The wrench must also accelerate the tip: add M_d⁻¹ F to the acceleration.",
             mistakes.ShapedLaw(inside=0.0),
             "Follow one push through the law, sign by sign.",
         ),
@@ -904,7 +904,7 @@ SHAPED_IMPEDANCE = Problem(
             "ẍ = J q̈ + J̇ q̇ has two terms.",
         ),
         Wrong(
-            "a weight that nobody carries",
+            "the weight left out",
             "The weight is missing, and in this question the arm does not carry it. Add g(q) to "
             "the torque.",
             mistakes.ShapedLaw(weight=0.0),

@@ -131,7 +131,7 @@ AUGMENTED_PD = Problem(
             "On Baxter the right factor for gravity is 0.",
         ),
         Wrong(
-            "a weight that nobody carries",
+            "the weight left out",
             "Where arm_compensates is False, nothing carries the weight: the arm sags until the "
             "springs are stretched far enough. Add g(q) there.",
             mistakes.never_carries,
@@ -453,7 +453,7 @@ COMPUTED_TORQUE = Problem(
             "Know what a library call contains.",
         ),
         Wrong(
-            "a weight that nobody carries",
+            "the weight left out",
             "Where arm_compensates is False, nothing carries the weight. Add g(q) there.",
             mistakes.weightless,
             "Without g an error e = M⁻¹ g / kp remains.",

@@ -1,6 +1,7 @@
 """A message as a card: the same words, folded, and never markup of a student's."""
 
 import re
+from dataclasses import replace
 from html import unescape
 from html.parser import HTMLParser
 
@@ -43,6 +44,10 @@ def test_tests_and_numbers_are_folded():
     folded = page[page.index("<details>") : page.index("</details>")]
     assert "That is the square." in page and "That is the square." not in folded
     assert "<summary>2 of 3 tests failed. Show" in folded and "double(3.0): expected 6" in folded
+    assert "Show them, with the numbers</summary>" in page
+    verdict = mark(DOUBLE, square)
+    bare = replace(message(DOUBLE, verdict), numbers=())
+    assert "Show them</summary>" in card(bare, verdict.outcome)["text/html"]
     assert "<details>" not in shown(stub)["text/html"] + shown(double)["text/html"]
 
 

@@ -142,7 +142,8 @@ def test_at_most():
         "the largest error of the tip is 2 mm; the limit is 1.5 mm"
     )
     assert says(judge({"worst_mm": float("inf")}, {"worst_mm": 3.5})) == (
-        "the worst error is infinite, because an arm is lost; the limit is 3.5 mm"
+        "the worst error is infinite, because no error was recorded for gains as large as these; "
+        "the limit is 3.5 mm"
     )
     assert judge({"max_mm": float("nan")}, {"max_mm": 1.5}) is not None
 

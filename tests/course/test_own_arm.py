@@ -25,7 +25,7 @@ from labkit.course.authoring.layout import Course
 from labkit.course.bugs import CAUSES, MOVES, Bug, tells_apart
 from labkit.course.differences import sentence
 from labkit.course.gaps import calculated_from_runs
-from labkit.course.identification import personalised
+from labkit.course.identification import on_the_public_arm, personalised
 from labkit.course.messages import message
 from labkit.course.own_arm import APART, DEMO, FILE, RANGES, Arms, draw
 from labkit.course.reply import LocalFunction
@@ -120,12 +120,11 @@ def test_a_number_is_judged_against_ones_own_arm():
     assert mark(asked.public(), LocalFunction(other.payload, ())).outcome is Outcome.RIGHT
 
 
-def test_two_joints_agree_about_the_load_where_they_really_swing(monkeypatch):
-    """The springs give way under it: with the levers of the ready pose each joint finds less."""
-    heavy = replace(draw(7, "kestrel"), payload=0.8)
-    monkeypatch.setattr(own_arm, "_own", lambda handle: heavy)
-    ready, joints = lk.robot("left").ready, [1, 3]
-    way = 0.12 * (np.eye(7)[1] - np.eye(7)[3])
+def swung(monkeypatch, arm, s1, e1, duration, stiffness=50.0):
+    """A run of an arm whose joints s1 and e1 swing by these angles, and how far its tip went."""
+    monkeypatch.setattr(own_arm, "_own", lambda handle: arm)
+    ready = lk.robot("left").ready
+    way = s1 * np.eye(7)[1] + e1 * np.eye(7)[3]
 
     def swing(t):
         w = 0.5 * np.pi
@@ -134,13 +133,42 @@ def test_two_joints_agree_about_the_load_where_they_really_swing(monkeypatch):
 
     with my_arm("kestrel") as mine:
         inertia = np.diag(mine.model.mass_matrix(ready))
-        law = lk.control.springs(50.0 * inertia, 14.0 * inertia)
-        log = lk.run(mine, swing, law, duration=12.0)
-        swings = log.t >= 4.0
-        held = log.command[swings].mean(axis=0)[joints]
-        for q, least, most in ((log.q[swings].mean(axis=0), 0.78, 0.82), (ready, 0.6, 0.76)):
-            one_kilogram = mine.model.tip_jacobian(q)[2, joints] * 9.81
-            assert (least < held / one_kilogram).all() and (held / one_kilogram < most).all()
+        law = lk.control.springs(stiffness * inertia, 2.0 * np.sqrt(stiffness) * inertia)
+        log = lk.run(mine, swing, law, duration=duration)
+        tip = [mine.model.pose(q)[0, 3] for q in (ready, *log.q[::5])]
+    return log, max(tip) - tip[0]
+
+
+def loads(log, q):
+    """What s1 and e1 seem to carry, in [kg], with the levers at joint angles q."""
+    held = log.command[log.t >= 4.0].mean(axis=0)[[1, 3]]
+    return held / (lk.Model("left").tip_jacobian(q)[2, [1, 3]] * 9.81)
+
+
+def test_two_joints_agree_about_the_load_where_they_really_swing(monkeypatch):
+    """The springs give way under it: with the levers of the ready pose each joint finds less."""
+    heavy = replace(draw(7, "kestrel"), payload=0.8)
+    log, _ = swung(monkeypatch, heavy, 0.12, -0.12, 12.0)
+    middle = log.q[log.t >= 4.0].mean(axis=0)
+    for q, least, most in ((middle, 0.78, 0.82), (lk.robot("left").ready, 0.6, 0.76)):
+        assert (least < loads(log, q)).all() and (loads(log, q) < most).all()
+
+
+@pytest.mark.parametrize("payload", RANGES["payload"])
+@pytest.mark.parametrize("stiction", RANGES["stiction"])
+def test_the_swing_of_the_hint_reaches_no_wall(monkeypatch, payload, stiction):
+    """With stiff springs, too, the tip moves forwards by less than 3 cm; no wall is so near."""
+    arm = replace(draw(7, "kestrel"), payload=payload, stiction=stiction, wall=1.0)
+    assert swung(monkeypatch, arm, 0.12, -0.12, 5.0, 400.0)[1] < 0.03 < RANGES["wall"][0]
+
+
+def test_a_tip_that_presses_against_the_wall_spoils_the_load(monkeypatch):
+    """Joints that swing forwards together by 0.2 rad press it there, and e1 carries too much."""
+    public = draw(2019, DEMO)
+    for wall, least, most in ((public.wall, 0.12, 0.3), (1.0, -0.06, 0.06)):
+        log, far = swung(monkeypatch, replace(public, wall=wall), 0.2, 0.2, 8.0)
+        found = loads(log, log.q[log.t >= 4.0].mean(axis=0))
+        assert far > public.wall and least < found[1] - public.payload < most
 
 
 def test_an_arm_at_rest_does_not_feel_its_load(monkeypatch):
@@ -228,3 +256,13 @@ def test_a_measurement_of_the_public_arm_is_right_or_wrong_at_once(monkeypatch):
     assert "Where it fails" not in wrong and "0.03" not in wrong
     assert "a possible answer" in right and "Your answer is right for the public arm" in right
     assert "a possible answer" in waiting and "public arm" not in waiting
+
+
+def test_a_wrong_load_of_the_public_arm_is_asked_about_the_wall():
+    """The wall spoils the load alone; a wrong lag has nothing to do with it."""
+    for of, asks in (("payload", True), ("lag", False)):
+        judge = Measured(of, "x", 0.0, 3.0, 0.001)
+        question = Identification("m", "?", judge, 0.3, "a number", 3.0).question().public()
+        verdict, _ = on_the_public_arm(question, mark(question, LocalFunction(2.5, ())), 2.5)
+        words = " ".join(str(message(question, verdict)).split())
+        assert ("arm, 'demo'; did its tip touch the wall in your run?" in words) == asks

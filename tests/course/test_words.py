@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 from questions import CALLS, DOUBLE, HIDDEN, double, square
 
-from labkit import Hold
+from labkit import Hold, JointVelocity, robot
 from labkit.course import Call, Close, Test
 from labkit.course.marking import mark, not_counted
 from labkit.course.messages import head, message, summary, worth
@@ -73,6 +73,14 @@ def test_wrong_shows_the_call_and_both_numbers():
     ]
 
 
+def test_a_claim_is_quoted_and_a_name_is_not():
+    """A key that is a sentence would read as one's own words about the answer."""
+    for key, quoted in (("A is worse than B", '"A is worse than B"'), ("kp", "kp")):
+        tests = (Test("a table", (Call((), expected={key: "holds"}),)),)
+        words = said(lambda key=key: {key: True}, replace(DOUBLE, tests=tests, mistakes=()))
+        assert f"\n  {quoted}: it should be 'holds', not True.\n" in words
+
+
 @pytest.mark.parametrize("points", [4.0, 5.0, 1.0])
 def test_a_test_is_worth_what_it_earns_alone(points):
     """The points beside a test are those that it earns if it is the only one that passes."""
@@ -124,6 +132,17 @@ def test_a_run_that_fails_is_told_with_its_time():
     assert "raised" not in words and "raised IndexError" in said(lambda x: [][0])
 
 
+def test_a_run_over_its_limit_is_told_with_its_arm_and_its_controller():
+    """Of which run the number is, is in the sentence with the number, and not again below it."""
+    target = Hold(robot("left").ready + 0.1, 0.1)
+    loop = Loop(target, expected={"max_mm": 1.0})
+    question = replace(DOUBLE, tests=(Test("a run", (loop,)),), mistakes=())
+    words = " ".join(said(lambda state, target: JointVelocity(np.zeros(7)), question).split())
+    run = "a run of the left arm (ideal) with double as its controller"
+    assert f"mm; the limit is 1 mm. This was {run}. [failed]" in words
+    assert words.count("a run of") == 1 and "Where it fails" not in words
+
+
 def test_a_long_call_can_be_tried():
     """A call that nobody could type comes with the line that fetches it."""
     question = replace(DOUBLE, tests=(Test("a long one", (Call((np.eye(3),), expected=1.0),)),))
@@ -168,8 +187,9 @@ def test_a_withheld_tool_is_an_outcome_of_its_own():
 
 
 def test_prints_are_shown_in_part():
-    """What the code printed is shown, long lines and many lines cut."""
-    words = said(double, printed="\n".join(["x" * 500, *map(str, range(20))]))
+    """What the code printed is shown; where a long line or many lines are cut, three dots are."""
+    words = said(double, printed="\n".join(["x" * 500, "y" * 160, *map(str, range(19))]))
+    assert "x...\n" in words and "y\n" in words
     assert "your code printed" in words and "... and 15 more lines" in words
     assert max(map(len, words.splitlines())) < 200
 

@@ -152,6 +152,28 @@ def test_no_box_of_a_dial_is_cut_at_the_edge_of_a_notebook_on_a_phone(page):
         assert place["x"] + place["width"] <= edge - 1, box.inner_html()
 
 
+@pytest.mark.parametrize("width", [740, 800, 880, 940])
+def test_no_unit_is_cut_in_the_column_beside_the_picture(chromium, width):
+    """A notebook of 1280 pixels leaves about 880; no part of a dial is wider than its column."""
+    robot = lk.robot("left")
+
+    def soft(state, target, stiffness):
+        return lk.JointVelocity(robot.zeros)
+
+    with lk.Arm(robot, q0=robot.ready) as arm:
+        dial = {"stiffness": (50.0, 1500.0, 300.0, "N/m")}
+        view = lk.live(arm, {"soft": soft}, lk.Hold(robot.ready, 5.0), **dial)
+        page = opened(chromium, view.data)
+    page.wait_for_selector("[data-ready]")
+    page.set_viewport_size({"width": width, "height": 800})
+    page.wait_for_timeout(100)
+    edge = page.locator(".lk-dial").evaluate("(dial) => dial.getBoundingClientRect().right")
+    for part in page.locator(".lk-dial > *").all():
+        place = part.bounding_box()
+        assert place["x"] + place["width"] <= edge + 1
+    page.close()
+
+
 def test_the_path_of_the_target_is_drawn_and_goes_where_it_is_dragged(page, data):
     """Each point that the kernel told, moved with the target."""
     path = json.loads(data)["path"]

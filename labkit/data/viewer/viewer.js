@@ -4692,6 +4692,7 @@ html[data-theme="dark"] .cell_output .text_html:has(.lk-embed) { /* the theme ma
 .lk-player:has(> .lk-beside) { container-type: inline-size; }
 @container (min-width: 44rem) { .lk-beside { display: grid; grid-template-columns: 3fr 2fr; } } /* the curve beside the picture */
 .lk-beside > div { min-width: 0; }
+.lk-beside > div:has(> .lk-livedials) { container-type: inline-size; } /* the dials fit into their column, not into the view */
 .lk-livedials { padding: 0.1rem 0.75rem 0.4rem; }
 .lk-live .lk-choice label { flex-basis: auto; }
 .lk-live button[aria-pressed="true"] { background: var(--lk-accent); color: var(--lk-face); }
