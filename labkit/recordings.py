@@ -143,8 +143,7 @@ class Runner:
     def __call__(self, Kp: float, Kd: float, seed: int = 0) -> float:
         """The RMS error of a run with these gains, in [mm]; infinite where none was recorded.
 
-        No error was recorded where the arm was lost.  In notebook 07, none was recorded of the slower
-        arm with a Kp above about 25.
+        None was recorded where the arm was lost, or where no run was made.
 
         Args:
             Kp: Proportional gain, in [1/s].
