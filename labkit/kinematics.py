@@ -29,6 +29,7 @@ NEAR_SINGULAR = 0.03
 
 _ITERATIONS = 200
 _SLACK = 1e-9
+_MEASURED = 0.1  # [rad]; a measured start may be beyond a limit, by noise or by a soft stop
 
 
 class _WorkSpace(threading.local):
@@ -184,12 +185,13 @@ class Kinematics:
 
     # Inverse kinematics
 
-    def within_limits(self, q: Any, name: str = "q") -> Array:
+    def within_limits(self, q: Any, name: str = "q", slack: float = _SLACK) -> Array:
         """Read joint angles and check that they are within the joints' range.
 
         Args:
             q: Joint angles, shape (n,) in [rad].
             name: What to call them in the message if they are out of range.
+            slack: Tolerance beyond either limit, in [rad].
 
         Returns:
             The same angles.
@@ -198,7 +200,7 @@ class Kinematics:
             JointLimitExceeded: A joint is outside its range.
         """
         angles: Array = as_array(q, self._joints, name)
-        self.robot.check_range(angles, name, _SLACK)
+        self.robot.check_range(angles, name, slack)
         return angles
 
     def inverse_kinematics(self, T_wt: Any, q0: Any, *, posture: Any = None) -> Array:
@@ -210,7 +212,8 @@ class Kinematics:
 
         Args:
             T_wt: Desired pose, shape (4, 4).
-            q0: Start of the search, shape (n,) in [rad].
+            q0: Start of the search, shape (n,) in [rad]; measured angles may be 0.1 rad beyond the
+                limits.
             posture: Joint angles to stay close to, shape (n,) in [rad]; None means ``q0``.
 
         Returns:
@@ -219,6 +222,7 @@ class Kinematics:
         Raises:
             Unreachable: No such angles were found.  The message says how near the search came, and
                 "cannot be reached" only where no start can help.
+            JointLimitExceeded: ``q0`` or ``posture`` is more than 0.1 rad outside its range.
         """
         if self.robot.n < 6:
             raise Unreachable(
@@ -226,8 +230,8 @@ class Kinematics:
                 "which takes six; give a target of joint angles"
             )
         T_wt = se3.as_pose(T_wt, "T_wt")
-        q = np.clip(as_array(q0, self._joints, "q0"), self.robot.lower, self.robot.upper)
-        near = q if posture is None else as_array(posture, self._joints, "posture")
+        q = np.clip(self.within_limits(q0, "q0", _MEASURED), self.robot.lower, self.robot.upper)
+        near = q if posture is None else self.within_limits(posture, "posture", _MEASURED)
         nearest, least = q, np.inf
         for _ in range(_ITERATIONS):
             e = self.pose_error(T_wt, q)

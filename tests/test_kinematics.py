@@ -240,6 +240,18 @@ def test_the_error_says_how_near_the_search_came_not_where_it_ended():
         assert float(re.search(r"nearest found: (\S+) mm", str(got.value))[1]) <= 10.0
 
 
+def test_angles_in_degrees_are_no_start_and_no_posture(model):
+    """A measured start 0.05 rad beyond a limit is one."""
+    ready, T = model.robot.ready, model.pose(model.robot.ready)
+    with pytest.raises(JointLimitExceeded, match=r"^q0: joint .* in degrees\?"):
+        model.inverse_kinematics(T, np.degrees(ready))
+    with pytest.raises(JointLimitExceeded, match=r"^posture: joint .* in degrees\?"):
+        model.inverse_kinematics(T, ready, posture=np.degrees(ready))
+    q0 = np.array(ready)
+    q0[6] = model.robot.upper[6] + 0.05
+    assert_allclose(model.inverse_kinematics(T, q0, posture=ready), ready, rtol=0, atol=1e-8)
+
+
 def test_degrees_are_suspected(model):
     """The error for the neutral pose in degrees names the joint and asks about degrees."""
     q = np.degrees(model.robot.neutral)
