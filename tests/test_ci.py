@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import ast
+import re
+import shlex
 import shutil
 import subprocess
 import sys
@@ -41,6 +43,15 @@ def machine(tmp_path):
     put("apt-get", f'echo "$*" >> {tmp_path}/apt')
     run.put, run.calls = put, tmp_path / "apt"
     return run
+
+
+def test_make_quick_says_at_the_end_what_it_left_out():
+    """The folders of its own line in the Makefile, and the command that runs them."""
+    words = re.search(r"pytest -n 2 (--quick .*)", (ROOT / "Makefile").read_text())[1]
+    one = [sys.executable, "-m", "pytest", "tests/test_shapes.py", *shlex.split(words)]
+    done = subprocess.run(one, cwd=ROOT, capture_output=True, text=True, check=True)
+    folders = r"tests/grader, tests/book, tests/replay, tests/soak\b"
+    assert re.search(rf"left out {folders}.* all slow tests; make test runs them", done.stdout)
 
 
 def test_a_newer_python_is_said_before_anything_is_installed(machine):
