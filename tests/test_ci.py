@@ -54,6 +54,17 @@ def test_make_quick_says_at_the_end_what_it_left_out():
     assert re.search(rf"left out {folders}.* all slow tests; make test runs them", done.stdout)
 
 
+def test_make_format_formats_despite_a_fault_that_only_a_person_can_correct(tmp_path):
+    """It fails nevertheless, after both."""
+    ruff = tmp_path / "ruff"
+    ruff.write_text(f'#!/bin/sh\necho $1 >> {tmp_path}/asked\n[ "$1" = format ]\n')
+    ruff.chmod(0o755)
+    words = ["make", "format", f"BIN={tmp_path}", "--old-file=.venv/.dev"]
+    done = subprocess.run(words, cwd=ROOT, capture_output=True, check=False)
+    assert done.returncode != 0
+    assert (tmp_path / "asked").read_text().split() == ["check", "format"]
+
+
 def test_a_newer_python_is_said_before_anything_is_installed(machine):
     """Without a Python 3.11 the ways to get one are said, once, and nothing is installed."""
     done = machine("need.sh", "ensurepip.py:python3.11-venv", "bwrap:bubblewrap")
