@@ -73,6 +73,8 @@ def test_a_newer_python_is_said_before_anything_is_installed(machine):
     assert done.stderr.count("Python 3.11 is needed") == 1
     for way in ("python3.11-venv", "uv python install 3.11", "pyenv install 3.11", "PYTHON="):
         assert way in done.stderr
+    (packaged,) = re.findall(r"^.*apt-get.*$", done.stderr, re.M)
+    assert packaged.split()[:3] == ["Debian", "12", "(3.11),"]  # Ubuntu 24.04 has 3.12 alone
 
 
 def test_a_python_that_uv_brought_is_found(machine):
