@@ -108,7 +108,7 @@ types: .venv/.dev ## check the types, and nothing else
 	@$(BIN)/mypy --no-error-summary
 
 format: .venv/.dev ## correct the style of the code
-	@$(BIN)/ruff check --fix . && $(BIN)/ruff format .
+	@$(BIN)/ruff check --fix .; fault=$$?; $(BIN)/ruff format . && exit $$fault
 
 clean: ## delete generated files; students' work, marks and hidden cases are kept
 	rm -rf .venv .venv-313 dist book/_build book/generated build/[!c]* build/campaign*

@@ -18,8 +18,8 @@ if command -v uv >/dev/null 2>&1 && uv python install --quiet "$version" >&2; th
 fi
 cat >&2 <<END
 Python $version is needed and was not found. Get it with one of these, then try again:
-  Debian, Ubuntu                sudo apt-get install -y python$version-venv   (Debian 12 has 3.11, 13 has 3.13)
-  anywhere                      uv python install $version           (uv comes with: pipx install uv)
+  Debian 12 (3.11), 13 (3.13)   sudo apt-get install -y python$version-venv
+  Ubuntu, and anywhere else     uv python install $version           (uv comes with: pipx install uv)
   with pyenv                    pyenv install $version
   one that you have already     export PYTHON=/path/to/python$version
 END

@@ -29,6 +29,7 @@ NEAR_SINGULAR = 0.03
 
 _ITERATIONS = 200
 _SLACK = 1e-9
+_MEASURED = 0.1  # [rad]; a measured start may be beyond a limit, by noise or by a soft stop
 
 
 class _WorkSpace(threading.local):
@@ -184,12 +185,13 @@ class Kinematics:
 
     # Inverse kinematics
 
-    def within_limits(self, q: Any, name: str = "q") -> Array:
+    def within_limits(self, q: Any, name: str = "q", slack: float = _SLACK) -> Array:
         """Read joint angles and check that they are within the joints' range.
 
         Args:
             q: Joint angles, shape (n,) in [rad].
             name: What to call them in the message if they are out of range.
+            slack: Tolerance beyond either limit, in [rad].
 
         Returns:
             The same angles.
@@ -198,7 +200,7 @@ class Kinematics:
             JointLimitExceeded: A joint is outside its range.
         """
         angles: Array = as_array(q, self._joints, name)
-        self.robot.check_range(angles, name, _SLACK)
+        self.robot.check_range(angles, name, slack)
         return angles
 
     def inverse_kinematics(self, T_wt: Any, q0: Any, *, posture: Any = None) -> Array:
@@ -210,14 +212,17 @@ class Kinematics:
 
         Args:
             T_wt: Desired pose, shape (4, 4).
-            q0: Start of the search, shape (n,) in [rad].
+            q0: Start of the search, shape (n,) in [rad]; measured angles may be 0.1 rad beyond the
+                limits.
             posture: Joint angles to stay close to, shape (n,) in [rad]; None means ``q0``.
 
         Returns:
             Shape (n,) in [rad], within the joint limits, exact to 1e-9 m and rad.
 
         Raises:
-            Unreachable: No such angles were found; the message says how close it came and why.
+            Unreachable: No such angles were found.  The message says how near the search came, and
+                "cannot be reached" only where no start can help.
+            JointLimitExceeded: ``q0`` or ``posture`` is more than 0.1 rad outside its range.
         """
         if self.robot.n < 6:
             raise Unreachable(
@@ -225,10 +230,13 @@ class Kinematics:
                 "which takes six; give a target of joint angles"
             )
         T_wt = se3.as_pose(T_wt, "T_wt")
-        q = np.clip(as_array(q0, self._joints, "q0"), self.robot.lower, self.robot.upper)
-        near = q if posture is None else as_array(posture, self._joints, "posture")
+        q = np.clip(self.within_limits(q0, "q0", _MEASURED), self.robot.lower, self.robot.upper)
+        near = q if posture is None else self.within_limits(posture, "posture", _MEASURED)
+        nearest, least = q, np.inf
         for _ in range(_ITERATIONS):
             e = self.pose_error(T_wt, q)
+            if e @ e < least:
+                nearest, least = q, float(e @ e)
             J = self.tip_jacobian(q)
             damping = 1e-4 * min(1.0, float(e @ e))  # vanishes at the solution
             J_inv = J.T @ np.linalg.inv(J @ J.T + damping * np.eye(6))
@@ -246,7 +254,7 @@ class Kinematics:
         if e @ e < 1e-18:
             return q
         place = ", ".join(f"{x:.3f}" for x in T_wt[:3, 3])
-        raise Unreachable(f"the pose at ({place}) m {self._reason(T_wt, q, e)}")
+        raise Unreachable(f"the pose at ({place}) m {self._reason(T_wt, q, nearest)}")
 
     def pose_error(self, T_wd: Any, q: Any) -> Array:
         """Target minus actual: how far the tip at ``q`` is from a pose.
@@ -276,7 +284,8 @@ class Kinematics:
             A target of the same type whose samples are joint angles, shape (n,) in [rad].
 
         Raises:
-            Unreachable: A pose along the path cannot be reached; gives s, the pose and the reason.
+            Unreachable: No joint angles were found for a pose of the path; gives s, the pose and
+                the reason.
             TypeMismatch: ``target`` is something else, such as a target of joint angles.
 
         Warns:
@@ -327,31 +336,37 @@ class Kinematics:
         _warn_of_speed(joints, self.robot)
         return joints
 
-    def _reason(self, T_wt: Array, q: Array, e: Array) -> str:
-        """Why a search failed at q with error e: too far away, a joint at its limit, or stuck."""
-        off = f"(nearest found: {1e3 * np.linalg.norm(e[:3]):.3g} mm and " + (
-            f"{np.degrees(np.linalg.norm(e[3:])):.3g} degrees off)"
-        )
-        T = self.pose(q)
+    def _reason(self, T_wt: Array, q: Array, nearest: Array) -> str:
+        """Why a search that ended at q failed: too far away, a joint at its limit, or stuck.
+
+        Only the first is a proof.  The second joint's origin turns about the first axis, so it is
+        always on one circle, and the wrist is always within the arm's span of this circle.
+        """
+        e, T = self.pose_error(T_wt, nearest), self.pose(q)
+        mm, degrees = 1e3 * np.linalg.norm(e[:3]), np.degrees(np.linalg.norm(e[3:]))
+        off = f"(nearest found: {mm:.3g} mm and {degrees:.3g} degrees off)"
         places = [M.translation.copy() for M in self._data.oMi[1:]]
         axis = self._data.oMi[self.robot.n].rotation[:, 2]
         if np.linalg.norm(np.cross(axis, places[-1] - places[-2])) < 1e-9:
             places.pop()  # the last joint turns about a line through the one before
-        shoulder, wrist = places[1], places[-1]
+        wrist = places[-1]
         reach = sum(float(np.linalg.norm(b - a)) for a, b in pairwise(places[1:]))
         hand = T[:3, :3].T @ (T[:3, 3] - wrist)  # from the wrist to the tip, constant
-        distance = np.linalg.norm(T_wt[:3, 3] - T_wt[:3, :3] @ hand - shoulder)
-        if distance > reach:
+        base = self._data.oMi[1]
+        x, y, z = base.actInv(T_wt[:3, 3] - T_wt[:3, :3] @ hand)  # seen from the first joint
+        a, b, c = base.actInv(places[1])
+        distance = np.hypot(np.hypot(x, y) - np.hypot(a, b), z - c)  # from the circle
+        if distance > reach + 1e-6:  # rounding must not make a proof
             return (
-                f"cannot be reached: it puts the wrist {distance:.3f} m from the shoulder and the "
-                f"arm spans {reach:.3f} m {off}; bring it nearer"
+                f"cannot be reached: it puts the wrist at least {distance:.3f} m from the shoulder "
+                f"and the arm spans {reach:.3f} m {off}; bring it nearer"
             )
         at_limit = np.flatnonzero((q - self.robot.lower < 1e-6) | (self.robot.upper - q < 1e-6))
         if at_limit.size:
             i = at_limit[0]
             return (
-                f"cannot be reached: joint {self.robot.joint_names[i]} is at its limit of "
-                f"{q[i]:.4g} rad {off}; change the orientation, or start from another q0"
+                f"was not found from this q0 {off}: joint {self.robot.joint_names[i]} ended at its "
+                f"limit of {q[i]:.4g} rad; start from another q0, or change the orientation"
             )
         return f"was not found from this q0 {off}; start from another q0"
 

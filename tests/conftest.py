@@ -45,6 +45,17 @@ def pytest_report_header(config):
     return ["Chromium is missing, so its tests are left out"] if _without_chromium(config) else []
 
 
+def pytest_terminal_summary(terminalreporter, config):
+    """Say at the end of `make quick` what it left out, so that nobody takes it for `make test`."""
+    if config.getoption("quick") and config.getoption("ignore"):
+        browser = ", what needs Chromium" if _without_chromium(config) else ""
+        folders = ", ".join(config.getoption("ignore"))
+        terminalreporter.write_line(
+            f"make quick left out {folders}{browser} and all slow tests; make test runs them, "
+            "and make soak what is marked soak"
+        )
+
+
 def _turn(item):
     """The order of a test: one worker builds the book first; other tests of the book come last."""
     return ("book" in item.fixturenames) * (1 if item.name != FIRST else -1)

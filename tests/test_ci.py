@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import ast
+import re
+import shlex
 import shutil
 import subprocess
 import sys
@@ -43,6 +45,26 @@ def machine(tmp_path):
     return run
 
 
+def test_make_quick_says_at_the_end_what_it_left_out():
+    """The folders of its own line in the Makefile, and the command that runs them."""
+    words = re.search(r"pytest -n 2 (--quick .*)", (ROOT / "Makefile").read_text())[1]
+    one = [sys.executable, "-m", "pytest", "tests/test_shapes.py", *shlex.split(words)]
+    done = subprocess.run(one, cwd=ROOT, capture_output=True, text=True, check=True)
+    folders = r"tests/grader, tests/book, tests/replay, tests/soak\b"
+    assert re.search(rf"left out {folders}.* all slow tests; make test runs them", done.stdout)
+
+
+def test_make_format_formats_despite_a_fault_that_only_a_person_can_correct(tmp_path):
+    """It fails nevertheless, after both."""
+    ruff = tmp_path / "ruff"
+    ruff.write_text(f'#!/bin/sh\necho $1 >> {tmp_path}/asked\n[ "$1" = format ]\n')
+    ruff.chmod(0o755)
+    words = ["make", "format", f"BIN={tmp_path}", "--old-file=.venv/.dev"]
+    done = subprocess.run(words, cwd=ROOT, capture_output=True, check=False)
+    assert done.returncode != 0
+    assert (tmp_path / "asked").read_text().split() == ["check", "format"]
+
+
 def test_a_newer_python_is_said_before_anything_is_installed(machine):
     """Without a Python 3.11 the ways to get one are said, once, and nothing is installed."""
     done = machine("need.sh", "ensurepip.py:python3.11-venv", "bwrap:bubblewrap")
@@ -51,6 +73,8 @@ def test_a_newer_python_is_said_before_anything_is_installed(machine):
     assert done.stderr.count("Python 3.11 is needed") == 1
     for way in ("python3.11-venv", "uv python install 3.11", "pyenv install 3.11", "PYTHON="):
         assert way in done.stderr
+    (packaged,) = re.findall(r"^.*apt-get.*$", done.stderr, re.M)
+    assert packaged.split()[:3] == ["Debian", "12", "(3.11),"]  # Ubuntu 24.04 has 3.12 alone
 
 
 def test_a_python_that_uv_brought_is_found(machine):

@@ -8,6 +8,7 @@ import sys
 from pathlib import Path
 
 import pytest
+from count import LARGE, lines
 
 ROOT = Path(__file__).parents[1]
 LABKIT = ROOT / "labkit"
@@ -225,6 +226,19 @@ def test_the_graders_folders_import_one_way(path):
 def test_the_order_names_modules_that_exist():
     """A module that has gone leaves the order too."""
     assert set(LEVEL) == {module(path) for path in BELOW}
+
+
+def test_labkit_offers_at_most_45_names():
+    """The list after ``lk.`` and Tab can be read; for a new name another may have to leave."""
+    import labkit as lk
+
+    assert len(lk.__all__) <= 45
+
+
+@pytest.mark.parametrize("path", FILES, ids=lambda p: str(p.relative_to(LABKIT)))
+def test_no_file_of_labkit_has_more_than_200_lines_of_code(path):
+    """As `make count` counts them, without comments and docstrings."""
+    assert lines(path.read_text()) <= LARGE == 200
 
 
 def test_every_name_in_all_exists():

@@ -1,8 +1,11 @@
 """Kinematics: Jacobians are slopes, and inverse kinematics comes back."""
 
+import re
+
 import numpy as np
 import pinocchio as pin
 import pytest
+from arms import FILES, arm
 from curves import assert_slopes, slope_along
 from numpy.testing import assert_allclose
 
@@ -174,22 +177,79 @@ def test_an_unreachable_point_on_the_way_is_named_with_s_the_pose_and_the_limit(
     q0 = model.robot.ready
     p = model.pose(q0)[:3, 3]
     far = lk.Trajectory(lk.Line(p, p + [1.0, 0.0, 0.0]), lk.Quintic(2.0))
-    words = r"at s = 0\.\d\d the pose at \(.*\) m cannot be reached: .*(spans|limit of).*(mm|off)"
+    words = r"at s = 0\.\d\d the pose at \(.*\) m cannot be reached: .* spans .*mm and .* off"
     with pytest.raises(Unreachable, match=words):
         model.joint_trajectory(far, q0)
 
 
 def test_a_joint_at_its_limit_is_named_with_the_limit(model):
-    """The gripper turned about its own axis further than the last joint can."""
+    """It is where the search ended, not a proof: another q0 may do."""
     q0 = model.robot.ready
     down = np.array(q0)
     down[6] = model.robot.upper[6] - 0.05
     T = model.pose(down)
     over = T[:3, :3] @ se3.rotation([0.0, 0.0, 1.2])
     path = lk.PosePath(lk.Line(T[:3, 3], T[:3, 3]), T[:3, :3], over)
-    name = model.robot.joint_names
-    with pytest.raises(Unreachable, match=rf"joint ({'|'.join(name)}) is at its limit of"):
+    name = "|".join(model.robot.joint_names)
+    words = rf"not found from this q0 .* joint ({name}) ended at its limit of .* another q0"
+    with pytest.raises(Unreachable, match=words):
         model.joint_trajectory(lk.Trajectory(path, lk.Quintic(2.0)), down)
+
+
+def test_a_pose_that_another_start_reaches_is_not_called_out_of_reach():
+    """A search from the ready pose fails, one from the pose's own angles does not."""
+    model, q = lk.Model("left"), np.array([0.13, -0.73, 2.63, 0.06, 1.42, 0.68, -2.89])
+    with pytest.raises(Unreachable, match="was not found from this q0") as got:
+        model.inverse_kinematics(model.pose(q), model.robot.ready)
+    assert "cannot" not in str(got.value)
+    assert_allclose(model.inverse_kinematics(model.pose(q), q), q, rtol=0, atol=1e-8)
+
+
+@pytest.mark.parametrize("name", ["left", *FILES])
+def test_no_pose_that_the_arm_has_is_called_out_of_reach(name, random, monkeypatch):
+    """Of three robots, 500 angles each within the limits; one step is too short a search."""
+    monkeypatch.setattr("labkit.kinematics._ITERATIONS", 1)
+    model = lk.Model(arm(name) if name in FILES else name)
+    robot = model.robot
+    for q in random.uniform(robot.lower, robot.upper, (500, robot.n)):
+        with pytest.raises(Unreachable, match="was not found from this q0"):
+            model.inverse_kinematics(model.pose(q), robot.ready)
+
+
+@pytest.mark.parametrize("name", ["left", *FILES])
+def test_a_pose_two_metres_above_the_ready_one_is_called_out_of_reach(name):
+    """On each of three robots, from a start that has the first joint elsewhere too."""
+    model = lk.Model(arm(name) if name in FILES else name)
+    T = model.pose(model.robot.ready)
+    T[2, 3] += 2.0
+    for turn in (0.0, 1.0):
+        q0 = model.robot.ready + turn * np.eye(model.robot.n)[0]
+        with pytest.raises(Unreachable, match=r"cannot be reached: .* bring it nearer"):
+            model.inverse_kinematics(T, q0)
+
+
+def test_the_error_says_how_near_the_search_came_not_where_it_ended():
+    """Of a line that goes 1 cm from pose to pose, no error is larger than 1 cm."""
+    model = lk.Model("left")
+    q0 = model.robot.ready
+    p = model.pose(q0)[:3, 3]
+    for way in ([1.0, 0.0, 0.0], [0.0, -1.0, 0.0], [0.7, 0.7, 0.0], [0.0, 0.0, -1.0]):
+        line = lk.Trajectory(lk.Line(p, p + way), lk.Quintic(2.0))
+        with pytest.raises(Unreachable) as got:
+            model.joint_trajectory(line, q0)
+        assert float(re.search(r"nearest found: (\S+) mm", str(got.value))[1]) <= 10.0
+
+
+def test_angles_in_degrees_are_no_start_and_no_posture(model):
+    """A measured start 0.05 rad beyond a limit is one."""
+    ready, T = model.robot.ready, model.pose(model.robot.ready)
+    with pytest.raises(JointLimitExceeded, match=r"^q0: joint .* in degrees\?"):
+        model.inverse_kinematics(T, np.degrees(ready))
+    with pytest.raises(JointLimitExceeded, match=r"^posture: joint .* in degrees\?"):
+        model.inverse_kinematics(T, ready, posture=np.degrees(ready))
+    q0 = np.array(ready)
+    q0[6] = model.robot.upper[6] + 0.05
+    assert_allclose(model.inverse_kinematics(T, q0, posture=ready), ready, rtol=0, atol=1e-8)
 
 
 def test_degrees_are_suspected(model):

@@ -66,7 +66,8 @@ def test_the_reference_has_every_module():
     for folder in folders:
         if folder.name not in whole:
             there |= {f"{folder.name}.{p.stem}" for p in folder.glob("*.py")}
-    assert {x for x in there - described if not x.endswith("__init__")} == {"__main__"}
+    missing = {x for x in there - described if not x.endswith("__init__")} - {"__main__"}
+    assert not missing, f"enter {missing} as automodule on a page of book/reference"
 
 
 def test_the_picture_of_the_modules_has_the_order_that_imports_keep():
@@ -76,8 +77,18 @@ def test_the_picture_of_the_modules_has_the_order_that_imports_keep():
     level = {name: k for k, names in enumerate(order) for name in names}
     rows = [[level.get(name, len(order)) for name in names] for _, names in architecture.LAYERS]
     drawn = {name for _, names in architecture.LAYERS for name in names}
-    assert {name for name in level if "." not in name} - {"labkit"} <= drawn
+    missing = {name for name in level if "." not in name} - {"labkit"} - drawn
+    assert not missing, f"enter {missing} in LAYERS of book/figures/architecture.py"
     assert [max(row) for row in rows] == sorted(max(row) for row in rows)
+
+
+def test_a_module_without_a_place_in_the_picture_is_named_with_the_file_to_enter_it_in(monkeypatch):
+    """Of one that has gone and one that is new, both are named."""
+    first, (title, _), *rest = architecture.LAYERS
+    monkeypatch.setattr(architecture, "LAYERS", (first, (title, ("trajectory", "gone")), *rest))
+    words = r"LAYERS of book/figures/architecture\.py .* enter there, or take out: gone, paths;"
+    with pytest.raises(ConclusionFails, match=words):
+        architecture.picture()
 
 
 def test_a_quiz_marks_one_answer_right():

@@ -6,6 +6,7 @@ from dataclasses import replace
 from pathlib import Path
 
 import nbformat
+import numpy as np
 import pytest
 from courses import copied
 
@@ -277,7 +278,7 @@ def test_known_mistakes_must_be_told_apart():
 
 
 def test_a_known_mistake_must_give_an_answer():
-    """A slip in a mistake's own function would name every answer with such a slip."""
+    """One that only raises, or only returns NaN, would name every answer that does so too."""
 
     def slips(*args):
         return undefined_here(args)  # noqa: F821
@@ -286,6 +287,9 @@ def test_a_known_mistake_must_give_an_answer():
     broken = replace(problem.wrong[0], name="no turn", function=slips)
     (sentence,) = refused(PROBLEMS | {problem.name: replace(problem, wrong=(broken,))})
     assert "its known mistake 'no turn' raises NameError on each public call" in sentence
+    divides = replace(broken, function=lambda *args: np.full(7, np.nan))
+    (sentence,) = refused(PROBLEMS | {problem.name: replace(problem, wrong=(divides,))})
+    assert "its known mistake 'no turn' returns NaN on each public call" in sentence
 
 
 def test_a_solved_cell_brings_only_what_it_needs():

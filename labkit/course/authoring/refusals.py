@@ -13,9 +13,12 @@ from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import replace
 from typing import Any
 
+import numpy as np
+
 from ...control import JointTorque
+from ...errors import LabkitError
 from ..equivalence import Judge, TipTorque
-from ..judges import Within
+from ..judges import Within, numbers
 from ..marking import fingerprint, mark, recognise
 from ..notebook import Notebook
 from ..question import Call, Question, Raised
@@ -77,11 +80,12 @@ def _reasons(problem: Problem, question: Question, text: str | None) -> Iterator
 def _alike(question: Question, problem: Problem) -> Iterator[str]:
     """Reasons why a known mistake cannot be told from another one, or from a right answer."""
     for mistake in question.mistakes:
-        if mistake.answers and all(isinstance(x, Raised) for x in mistake.answers):
-            kinds = ", ".join(sorted({x.kind for x in mistake.answers}))
+        failures = {_failure(x) for x in mistake.answers}
+        if failures and "" not in failures:
             yield (
-                f"its known mistake {mistake.name!r} raises {kinds} on each public call, so that "
-                "any answer that does so would be taken for it; correct the mistake's function"
+                f"its known mistake {mistake.name!r} {' or '.join(sorted(failures))} on each "
+                "public call, so that any answer that does so would be taken for it; correct the "
+                "mistake's function"
             )
         other = recognise(question, list(mistake.answers))
         if other is not mistake:
@@ -96,6 +100,17 @@ def _alike(question: Question, problem: Problem) -> Iterator[str]:
             f"its known mistake {right.name!r} gives the right answers on all public calls; "
             "change a number, or add a call that shows it"
         )
+
+
+def _failure(answer: Any) -> str:
+    """What a known mistake does where it gives no answer, such as "raises NameError"; else ""."""
+    if isinstance(answer, Raised):
+        return f"raises {answer.kind}"
+    try:
+        given = numbers(answer)
+    except (LabkitError, TypeError, ValueError):
+        return ""
+    return "returns NaN" if given.size and np.isnan(given).all() else ""
 
 
 def memorised(question: Question) -> Callable[..., Any]:
