@@ -64,6 +64,7 @@ ORDER = [
     {"labkit"},
     {
         "course.verdict",
+        "course.scopes",
         "course.source",
         "course.advice",
         "course.calling",

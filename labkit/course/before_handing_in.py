@@ -31,9 +31,9 @@ from .gaps import (
     undefined_names,
     unreadable,
 )
+from .identification import where_it_was_measured
 from .messages import head
 from .notebook import check_id, defines, grade_id, last_verdict, read_cells
-from .own_arm import FILE, arms_for, opens_the_public_arm
 from .serialize import decode
 from .source import Analysis, analyse
 from .verdict import Outcome, Verdict
@@ -151,7 +151,7 @@ def examine(path: Path) -> HandIn:
         for verdict in verdicts.values()
         if verdict is not None and verdict.withheld
     ]
-    for lost, told in left_behind(folder, cells), _on_the_public_arm(folder, code, verdicts):
+    for lost, told in left_behind(folder, cells), where_it_was_measured(folder, code, verdicts):
         problems += lost
         notes += told
     problems += [
@@ -186,29 +186,6 @@ def examine(path: Path) -> HandIn:
         if names:
             notes.append(says.format(", ".join(names)))
     return HandIn(name, tuple(problems), tuple(notes), verdicts, predictions, texts, old)
-
-
-def _on_the_public_arm(
-    folder: Path, code: list[str], verdicts: Mapping[str, Verdict | None]
-) -> tuple[list[str], list[str]]:
-    """Problems and notes if students measured the public arm in place of their own."""
-    measured = [
-        name
-        for name, verdict in verdicts.items()
-        if verdict and verdict.right and any(test.name == OWN_ARM for test in verdict.tests)
-    ]
-    if not (measured and opens_the_public_arm(code)):
-        return [], []
-    begins, names = 'HANDLE is "demo", the public arm', ", ".join(measured)
-    if arms_for(folder):
-        return [
-            f"{begins}, but {names} will be judged by an arm of your own; set HANDLE to the name "
-            "that your instructor gave you, and measure again"
-        ], []
-    return [], [
-        f"{begins}, and {FILE} is not beside the notebook: {names} will earn nothing if your "
-        "course gave you an arm of your own. If it did, ask your instructor for this file"
-    ]
 
 
 def _lacks_prediction(code: list[str], name: str) -> bool:

@@ -78,8 +78,8 @@ def _same_gains(question: Question, answers: Mapping[Case, Any]) -> str:
         return ""
     Kp, Kd = pairs.pop()
     return (
-        f"Your function returns the same gains, ({Kp:g}, {Kd:g}), for arms that differ. Let it find "
-        "the gains of each arm with the runner that it is given."
+        f"Your function returns the same gains, ({Kp:g}, {Kd:g}), for arms that differ. Let it "
+        "find the gains of each arm with the runner that it is given."
     )
 
 

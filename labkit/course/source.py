@@ -7,15 +7,14 @@ the same answers, and the same tools in them.
 from __future__ import annotations
 
 import ast
-import copy
 import hashlib
 import re
-import symtable
-import sys
 import warnings
 from collections.abc import Collection, Iterator, Mapping
 from functools import lru_cache
 from typing import Any
+
+from .scopes import functions_in, outside_names, own_names, scope_of
 
 Analysis = Mapping[str, Any]
 """What `analyse` returns for a cell, as JSON data."""
@@ -161,12 +160,12 @@ def needed(source: str, name: str, given: Collection[str] = ()) -> list[str]:
     lines = source.split("\n")
     parts = _parts(ast.parse(source).body)
     texts = [_text(part, lines) for part in parts]
-    scopes = [_scope(*pair) for pair in zip(parts, texts, strict=True)]
+    scopes = [scope_of(*pair) for pair in zip(parts, texts, strict=True)]
     wanted, found, before = {name}, set[int](), -1
     while before < len(found):
         before = len(found)
-        found = {k for k, scope in enumerate(scopes) if not wanted.isdisjoint(_own_names(scope))}
-        wanted.update(*(_outside_names(scopes[k]) for k in found))
+        found = {k for k, scope in enumerate(scopes) if not wanted.isdisjoint(own_names(scope))}
+        wanted.update(*(outside_names(scopes[k]) for k in found))
         wanted.difference_update(given)
     return [texts[k] for k in sorted(found)]
 
@@ -188,31 +187,6 @@ def _text(part: list[ast.stmt], lines: list[str]) -> str:
     return "\n".join(lines[first - 1 : part[-1].end_lineno])
 
 
-class _Generators(ast.NodeTransformer):
-    """Makes a generator of each comprehension."""
-
-    def visit_ListComp(self, node: ast.ListComp | ast.SetComp) -> ast.GeneratorExp:
-        """A generator of the same elements."""
-        self.generic_visit(node)
-        return ast.GeneratorExp(node.elt, node.generators)
-
-    visit_SetComp = visit_ListComp
-
-    def visit_DictComp(self, node: ast.DictComp) -> ast.GeneratorExp:
-        """A generator of the keys and values."""
-        self.generic_visit(node)
-        return ast.GeneratorExp(ast.Tuple([node.key, node.value], ast.Load()), node.generators)
-
-
-def _scope(part: list[ast.stmt], text: str) -> symtable.SymbolTable:
-    """The names of statements, written as ``text``, and of the scopes in them."""
-    if sys.version_info >= (3, 12):
-        # There the variables of a comprehension are among the names of the scope around it.
-        tree = _Generators().visit(ast.Module(copy.deepcopy(part), []))
-        text = ast.unparse(tree)
-    return symtable.symtable(text, "", "exec")
-
-
 def _definition(part: list[ast.stmt], lines: list[str]) -> dict[str, Any]:
     """What a statement at a cell's top level defines, and on what it depends.
 
@@ -225,9 +199,9 @@ def _definition(part: list[ast.stmt], lines: list[str]) -> dict[str, Any]:
         lines and spaces at the end of lines.
     """
     text = _text(part, lines)
-    scope = _scope(part, text)
+    scope = scope_of(part, text)
     written = "\n".join(line.rstrip() for line in text.split("\n") if line.strip())
-    binds, outside = _own_names(scope), set(_outside_names(scope))
+    binds, outside = own_names(scope), set(outside_names(scope))
     mean: dict[str, str] = {}
     chains, fills, sets, asks = set[str](), set[str](), set[str](), set[str]()
     changes = set[str]()
@@ -253,7 +227,7 @@ def _definition(part: list[ast.stmt], lines: list[str]) -> dict[str, Any]:
     return {
         "binds": sorted(binds | (mean.keys() & {"*"})),
         "outside": sorted(outside),
-        "later": sorted({name for inner in _functions(scope) for name in _outside_names(inner)}),
+        "later": sorted({name for inner in functions_in(scope) for name in outside_names(inner)}),
         "uses": sorted(uses),
         "fills": sorted((fills - sets) & (binds | outside)),
         "changes": [] if isinstance(part[0], _DEFINITIONS) else sorted(changes),
@@ -286,29 +260,3 @@ def _root(node: Any) -> str:
 
 def _is_text(node: ast.stmt) -> bool:
     return isinstance(node, ast.Expr) and isinstance(node.value, ast.Constant)
-
-
-def _own_names(scope: symtable.SymbolTable) -> set[str]:
-    """Names that a scope binds itself."""
-    return {x.get_name() for x in scope.get_symbols() if x.is_assigned() or x.is_imported()}
-
-
-def _functions(scope: symtable.SymbolTable) -> Iterator[symtable.SymbolTable]:
-    """The functions in a scope, those in classes included; comprehensions run at once."""
-    for inner in scope.get_children():
-        if inner.get_type() == "function" and ".0" not in inner.get_identifiers():
-            yield inner
-        else:
-            yield from _functions(inner)
-
-
-def _outside_names(scope: symtable.SymbolTable) -> Iterator[str]:
-    """Names that a scope takes from outside."""
-    top = scope.get_type() == "module"
-    own = _own_names(scope) if top else set()
-    for symbol in scope.get_symbols():
-        outside = symbol.is_referenced() and (top or symbol.is_global())
-        if outside and symbol.get_name() not in own:
-            yield symbol.get_name()
-    for inner in scope.get_children():
-        yield from (name for name in _outside_names(inner) if name not in own)

@@ -30,6 +30,7 @@ from labkit.course.messages import message
 from labkit.course.own_arm import APART, DEMO, FILE, RANGES, Arms, draw
 from labkit.course.reply import LocalFunction
 from labkit.errors import LabkitError
+from solutions.impedance.predictions import PREDICTIONS
 
 
 def test_the_secret_draws_the_same_arm_again_and_others_otherwise():
@@ -160,6 +161,8 @@ def test_the_swing_of_the_hint_reaches_no_wall(monkeypatch, payload, stiction):
     """With stiff springs, too, the tip moves forwards by less than 3 cm; no wall is so near."""
     arm = replace(draw(7, "kestrel"), payload=payload, stiction=stiction, wall=1.0)
     assert swung(monkeypatch, arm, 0.12, -0.12, 5.0, 400.0)[1] < 0.03 < RANGES["wall"][0]
+    asked = next(x for x in PREDICTIONS if x.name == "my_payload")
+    assert "by at most 0.12 rad and in opposite directions" in asked.hints[1]
 
 
 def test_a_tip_that_presses_against_the_wall_spoils_the_load(monkeypatch):

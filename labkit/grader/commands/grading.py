@@ -15,7 +15,7 @@ import click
 from ...course.authoring.layout import Course
 from ...course.cli import verb
 from ...errors import LabkitError
-from ..clean import few, how_many
+from ..clean import how_many
 from ..each import Failure, Failures
 from .course import of_assignment, of_course
 from .pages import one_student, tell
@@ -62,7 +62,7 @@ def grade(course: Course, assignment: str, student: str | None, as_json: bool, *
     a question has other points since, its share of them is compared.
     A notebook of another assignment that was handed in is named at the end, with exit code 1.
     """
-    from ..grading.batch import GradeOptions, common_failures, grade_class, watch
+    from ..grading.batch import GradeOptions, cannot_be_graded, common_failures, grade_class, watch
     from ..grading.changes import changes, summary
     from ..grading.results import Results
     from ..lock import exclusive_run
@@ -110,7 +110,7 @@ def grade(course: Course, assignment: str, student: str | None, as_json: bool, *
         tell(failures.sift(record(course, assignment, graded), "not in the gradebook"), said)
         everybody = graded if student else list(Results(course, assignment))
         tell((f"ATTENTION: {says}" for says in common_failures(everybody)), said)
-        tell(_unreadable(graded), said)
+        tell(cannot_be_graded(graded), said)
         failures.add("ATTENTION", _other_notebooks(graded))
         if graded and not as_json:
             tell(_on_top(course, assignment), sys.stdout)
@@ -137,15 +137,6 @@ def _settled(
                 ):
                     then = "" if change else f"; to grade it, type: labkit grade {assignment}"
                     yield f"{one}: {says}{then}"
-
-
-def _unreadable(results: Iterable[Result]) -> Iterator[str]:
-    """A sentence that names who handed in a file that cannot be graded, if anybody did."""
-    if names := sorted(result.student for result in results if result.rejected):
-        yield (
-            f"ATTENTION: handed in a file that cannot be graded: {few(names)}; ask for another, "
-            "and give an extension if it would come late"
-        )
 
 
 def _other_notebooks(results: Iterable[Result]) -> Iterator[Failure]:

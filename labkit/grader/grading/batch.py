@@ -14,6 +14,7 @@ from ...course.authoring.bundle import Bundle
 from ...course.authoring.layout import Course
 from ...course.verdict import Outcome
 from ...errors import LabkitError
+from ..clean import few
 from ..each import Failure, for_student
 from ..lock import exclusive_run
 from ..sandbox.limits import Limits
@@ -233,6 +234,15 @@ def _refuse_to_lower(result: Result, recorded: Mapping[str, float]) -> None:
             f"the previous result cannot be read, and the gradebook has {had:g} for what now earns "
             f"{has:g}; if {has:g} is to count, "
             f"{how_to_grade(result.assignment, result.student)} --lower"
+        )
+
+
+def cannot_be_graded(results: Iterable[Result]) -> Iterator[str]:
+    """A sentence that names who handed in a file that cannot be graded, if anybody did."""
+    if names := sorted(result.student for result in results if result.rejected):
+        yield (
+            f"ATTENTION: handed in a file that cannot be graded: {few(names)}; ask for another, "
+            "and give an extension if it would come late"
         )
 
 
