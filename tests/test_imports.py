@@ -65,11 +65,11 @@ ORDER = [
     {
         "course.verdict",
         "course.scopes",
-        "course.source",
         "course.advice",
         "course.calling",
         "course.seed",
     },
+    {"course.source"},
     {"course.forms"},
     {"course.judges", "course.withheld", "course.unfinished", "course.stand_ins"},
     {"course.baxter_cup", "course.bugs"},
