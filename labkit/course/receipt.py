@@ -35,10 +35,10 @@ def hand_in(name: str) -> None:
     """
     path = Path.cwd() / f"{name}.ipynb"
     if other := _open_as(path):
-        first = f"move {path.name}, which is another file, out of this folder, and then "
+        first = f"move the other file called {path.name} out of this folder, "
         raise LabkitError(
             f"you are working in {other}, but what you hand in must be called {path.name}; save "
-            f"your notebook, {first if path.is_file() else ''}rename it to {path.name}, and run "
+            f"your notebook, {first if path.is_file() else ''}rename yours to {path.name}, and run "
             "this cell again"
         )
     found = examine(path)
