@@ -109,13 +109,15 @@ def _last_parts(cells: Iterable[Analysis]) -> dict[str, dict[str, _Part]]:
     """
     last: dict[str, dict[str, _Part]] = {}
     for part in (part for cell in cells for part in cell["definitions"]):
-        changes = {x.partition(".")[0] for x in part["changes"]}  # `x[k] = 1`
-        changes |= {*part["binds"]} & {*part["fills"]}  # `x += 1`
-        for name in {*part["binds"]} - changes:
-            if not part["stub"] or name not in last:
+        binds = {*part["binds"]}
+        roots = {x.partition(".")[0] for x in part["changes"]}  # `x[k] = 1`
+        changes = {x for x in roots if not any(x in y["mean"] for y in last.get(x, {}).values())}
+        changes |= binds & {*part["fills"]}  # `x += 1`
+        for name in binds | changes:
+            if name in changes and name in last:
+                last[name][part["text"]] = part
+            elif name in binds and (not part["stub"] or name not in last):
                 last[name] = {part["text"]: part}
-        for name in changes & last.keys():
-            last[name][part["text"]] = part
     return last
 
 

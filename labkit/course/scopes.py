@@ -7,6 +7,7 @@ import copy
 import symtable
 import sys
 from collections.abc import Iterator
+from contextlib import suppress
 
 
 class _Generators(ast.NodeTransformer):
@@ -27,8 +28,8 @@ def scope_of(part: list[ast.stmt], text: str) -> symtable.SymbolTable:
     """The names of statements, written as ``text``, and of the scopes in them."""
     if sys.version_info >= (3, 12):
         # There the variables of a comprehension are among the names of the scope around it.
-        tree = _Generators().visit(ast.Module(copy.deepcopy(part), []))
-        text = ast.unparse(tree)
+        with suppress(RecursionError):  # a sum of hundreds of terms
+            text = ast.unparse(_Generators().visit(ast.Module(copy.deepcopy(part), [])))
     return symtable.symtable(text, "", "exec")
 
 

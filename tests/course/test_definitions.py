@@ -292,6 +292,8 @@ RIGHT, OTHER, HALF, PI = map(CIRCLE.format, ("1", "2", "half", "math.pi"))
         ([STUB, RIGHT], [], STUB, [OTHER]),
         (["half = [2]\nhalf[0] = 3", HALF], ["half = [2]\nhalf[0] = 4"], HALF, []),
         (["half = [2]\nhalf[0] = 3", HALF], ["half = [2]"], HALF, []),
+        (["half = [0]; half[0] = 3", HALF], ["half = [0]; half[0] = 4"], HALF, []),
+        ([f"{RIGHT}\ncircle.last = 1"], [], f"{OTHER}\ncircle.last = 1", []),
         (["half = 2\nhalf *= 2", HALF], ["half = 3\nhalf *= 2"], HALF, []),
         (["half = [2]\nhalf.append(a)", "a = 1", HALF], ["half = [2]\nhalf.append(a)"], HALF, []),
     ],
@@ -316,6 +318,12 @@ def test_an_answer_that_was_edited_after_its_check_is_not_called_right(
         ([STUB, RIGHT], [], STUB, [RIGHT]),
         ([HALF], [], HALF, ["half = 2"]),
         (["half = [2]\nhalf[0] = 3"] * 2 + [HALF], ["half = [2]\nhalf[0] = 3"], HALF, []),
+        (
+            ["import os\na = os.sort(1)", HALF + " + os.x"],
+            ["import os\na = os.sort(2)"],
+            HALF + " + os.x",
+            [],
+        ),
         (["half = [2]", "half[0] = 3", "half = [2]", HALF], ["half = [2]"], HALF, []),
     ],
 )
