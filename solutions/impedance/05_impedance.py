@@ -664,7 +664,7 @@ else:
 # alone sets the force with which the tip rests against a wall.
 #
 # ### BEGIN SOLUTION
-# After 0.1 s the tip of 20 kg had moved 5 mm that of 1 kg 18 mm; after two seconds both were 33 mm away. At
+# After 0.1 s the tip of 20 kg had moved 5 mm, that of 1 kg 18 mm; after two seconds both were 33 mm away. At
 # first acceleration is all there is, so the inertia decides. On the way the damping decides how quickly the tip
 # arrives, and whether it swings. At rest, speed and acceleration are zero, and only the spring balances the
 # hand. Against a wall the tip rests too, so the stiffness alone sets that force.

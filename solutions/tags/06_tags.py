@@ -474,7 +474,7 @@ lk.replay.show(lk.replay.motion_of(log, "The arm in the same run", label="the ha
 # Where the circle turned by two radians during the picture's age, the prediction was farther off than the old
 # place. With the arm the tag turned by a third of a radian, and it helped: 6 mm off, without it 40 mm. It assumes
 # constant velocity; its error grows with the square of the age. A conveyor keeps its velocity and gains
-# all. A waving hand moves nearly straight within a tenth of a second, but not within two.
+# all. A waving hand moves nearly straight within a tenth of a second, but not within two seconds.
 # ### END SOLUTION
 
 # %% [markdown]

@@ -709,7 +709,7 @@ lk.replay.show(
 # It sagged by 21 mm. The load's torques are J^T F, and computed torque answers with M kp e, so M^-1
 # converts torques to accelerations. The stiffness is M kp: with kp = 40 1/s² about 80 N m/rad at the shoulder, only
 # 2 to 4 at the wrist. So kp fixes a frequency, not a stiffness. Springs of 40 N m/rad in every joint are
-# half as stiff at the shoulder and sag more, by 38 mm.
+# half as stiff at the shoulder and sag more: 38 mm.
 # ### END SOLUTION
 
 # %% [markdown]
