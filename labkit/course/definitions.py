@@ -257,14 +257,14 @@ def _parts(code: Mapping[int, Analysis]) -> list[tuple[int, _Part]]:
 
 
 def _with_all(part: _Part) -> _Part:
-    """A statement; an import of everything binds each name of a module that is loaded."""
+    """A statement; an import of everything from a loaded module binds each name, and not "*"."""
     module = part["mean"].get("*", "").removesuffix(".*")
     if module not in sys.modules:
         return part
     found = vars(sys.modules[module])
     names = found.get("__all__") or [x for x in found if x[0] != "_"]
     mean = part["mean"] | {x: _full_name(module, x, found.get(x)) for x in names}
-    return {**part, "binds": [*part["binds"], *names], "mean": mean}
+    return {**part, "binds": [*{*part["binds"]} - {"*"}, *names], "mean": mean}
 
 
 def _full_name(module: str, name: str, thing: object) -> str:

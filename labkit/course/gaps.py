@@ -58,9 +58,8 @@ def undefined_names(cells: list[dict[str, Any]], asked: Collection[str]) -> Iter
     for cell in code:
         found = analyse(source := cell["source"])
         parts, uses = found["definitions"], {*found["uses"]}
-        others = [
-            part for part in parts if not {*part["binds"]} & {*asked}
-        ]  # run again when marked
+        # An answer's cell may run once more after all others, so only the rest must find its names.
+        others = [part for part in parts if not {*part["binds"]} & {*asked}]
         at_once = {name for part in others for name in {*part["outside"]} - {*part["later"]}}
         early = at_once & uses & written - above
         above |= early | defined_in(source)
@@ -143,7 +142,8 @@ def first_error(cells: list[dict[str, Any]]) -> str:
 
 def listed(names: Sequence[str]) -> str:
     """Names as a sentence lists them: "a", "a and b" or "a, b and c"."""
-    return " and ".join(filter(None, (", ".join(names[:-1]), *names[-1:])))
+    *first, last = names
+    return f"{', '.join(first)} and {last}" if first else last
 
 
 def the_cell(source: str) -> str:

@@ -36,10 +36,10 @@ def hand_in(name: str) -> None:
     path = Path.cwd() / f"{name}.ipynb"
     if other := _open_as(path):
         first = f"move the other file called {path.name} out of this folder, "
+        rename = f"{first}rename yours" if path.is_file() else "rename it"
         raise LabkitError(
             f"you are working in {other}, but what you hand in must be called {path.name}; save "
-            f"your notebook, {first if path.is_file() else ''}rename yours to {path.name}, and run "
-            "this cell again"
+            f"your notebook, {rename} to {path.name}, and run this cell again"
         )
     found = examine(path)
     found = replace(found, problems=(*found.problems, *_no_longer_right(found)))
@@ -68,8 +68,8 @@ def _open_as(path: Path) -> str:
 def _no_longer_right(found: HandIn) -> Iterator[str]:
     """A sentence for each answer that its check found right, and that is not right any more.
 
-    All cells have run by now, as when the notebook is marked, so this finds every change that a
-    cell below a check makes, also those that the text of the cells does not show.
+    After Run All, all cells have run, as when the notebook is marked, so this finds every change
+    that a cell below a check makes, also those that the text of the cells does not show.
     """
     notebook = shell()
     for name, verdict in found.verdicts.items() if notebook is not None else ():
@@ -80,9 +80,9 @@ def _no_longer_right(found: HandIn) -> Iterator[str]:
         if not now.right:
             yield (
                 f"{name} was right when it was checked and is not right now; restart the kernel "
-                f"and run all cells. If you see this line again, a cell below the check of {name} "
-                f"changes what {name} uses: check {name} once more in a new cell at the end to see "
-                "what is different"
+                f"and run all cells. If you see this line again, something that runs after the "
+                f"check of {name} changes what {name} uses, or {name} remembers its earlier calls: "
+                f"check {name} once more in a new cell at the end to see what is different"
             )
 
 

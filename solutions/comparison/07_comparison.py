@@ -242,8 +242,8 @@ lk.plotting.show(measured.describe())
 # in the hand, with a state that is a few milliseconds older. Then 1.3 times your `Kp` is tried as well, so leave
 # at least this much margin; the check tries 1.8 times your `Kp` on the line. Your function is called for this arm
 # and for one that takes about four times as long for everything, its path included. Each time it may make twenty
-# runs. (On the slower arm, no runs were recorded with a `Kp` above about 25, where `runner` returns infinity.) No
-# pair of gains serves both arms, so let the function look for them.
+# runs. (On the slower arm, no runs were recorded with a `Kp` above about 25: there `runner` returns infinity. Above
+# 100 it stops with an error on either arm.) No pair of gains serves both arms, so let the function look for them.
 
 # %% question="choose_gains"
 def choose_gains(runner):

@@ -579,8 +579,9 @@ CHOOSE_GAINS = Problem(
     f"{hidden.RESERVE:g} times your Kp: there the error of the worst seed may be at most "
     f"{hidden.UNSEEN_LIMIT:g} mm. Your function is called for two arms, with 20 runs each time: the second "
     "arm is about a quarter as fast as the first, so other gains are right for it. Runs were recorded only up "
-    "to Kp = 100, on the second arm up to about a quarter of that. Beyond this the error counts as infinite, and on "
-    "the second arm `runner` returns infinity.",
+    "to Kp = 100, on the second arm up to about a quarter of that: beyond this, `runner` returns infinity. A Kp "
+    f"above 100 stops it with an error. Where {hidden.RESERVE:g} or {hidden.FAR:g} times your Kp was not recorded, "
+    "the error counts as infinite.",
     answer=answers.choose_gains,
     trials=(
         Trial(

@@ -43,7 +43,7 @@ PREDICTIONS = (
             "(`lk.control.springs`), and average the commanded torque over whole swings. Swing them "
             "by at most 0.12 rad and in opposite directions, so that one moves the tip forwards "
             "while the other moves it back: if both move it forwards, it may press against the "
-            "wall, and your average contains the wall's force.",
+            "wall, and your average then contains the wall's force.",
             "Compare the averages of s1 and e1 with J^T (0, 0, 9.81), for one kilogram, by least "
             "squares. Take J where the arm really swings, at the mean of `log.q`: the springs give "
             "way under the load, and with the levers of the ready pose s1 and e1 disagree. A second "

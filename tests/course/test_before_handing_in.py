@@ -597,7 +597,7 @@ def test_the_file_that_is_handed_in_is_the_open_one(folder, monkeypatch):
     with pytest.raises(LabkitError, match=r"in 01_paths-Copy1.*move the other file called"):
         hand_in("01_paths")
     (folder / "01_paths.ipynb").unlink()
-    with pytest.raises(LabkitError, match=r"save your notebook, rename yours to 01_paths"):
+    with pytest.raises(LabkitError, match=r"save your notebook, rename it to 01_paths"):
         hand_in("01_paths")
 
 

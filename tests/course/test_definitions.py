@@ -350,6 +350,9 @@ def test_what_only_a_cell_below_the_check_defines_is_named(path):
     for above, below in (([code("half = 3")], []), ([], [check]), ([every], [])):
         notes = handed_in(path, HALF, code("half = 2"), *below, above=above).notes
         assert not any("below the check" in note for note in notes)
+    # A module that is loaded and has no such name does not define it.
+    misspelt = handed_in(path, CIRCLE.format("haif"), code("from math import *"))
+    assert not any("haif" in note for note in misspelt.notes)
     both = handed_in(path, HALF, every, code("half = 2")).notes  # the first need not define it
     assert note.format("half = 2", "half, which circle uses") in both
 

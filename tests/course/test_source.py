@@ -136,3 +136,10 @@ def test_a_name_needs_what_its_definition_takes_from_outside():
     assert "# as it is written" in parts[1]
     assert needed(MODULE, "mass")[0] == "from pathlib import (\n    Path,\n)"
     assert needed(MODULE, "nothing") == []
+
+
+def test_a_long_sum_is_readable():
+    """Its names are found, also where Python cannot rewrite its hundreds of terms."""
+    cell = analyse("total = " + " + ".join(f"a{k}" for k in range(600)))
+    assert not cell["broken"]
+    assert len(cell["uses"]) == 600

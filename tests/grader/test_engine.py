@@ -302,6 +302,8 @@ def test_an_answer_that_uses_a_wrong_one_says_so(marks, solved):
     found = {q.verdict.name: q.notes for q in marks(solved).questions if q.notes}
     says = "it uses your bang_bang, which is not right either; correct it first"
     assert found == {"trapezoid": (says,)}
+    add(solved, "half = 2\ndef trapezoid(*_): raise NotImplementedError", at=99)  # replaces nothing
+    assert says in next(q.notes for q in marks(solved).questions if q.verdict.name == "trapezoid")
     put(solved, "circle", "def circle(*_): return bang_bang(0, 1), trapezoid(0, 1)")
     (note,) = next(q.notes for q in marks(solved).questions if q.verdict.name == "circle")
     assert note.startswith("it uses your bang_bang and trapezoid, which are not right either;")

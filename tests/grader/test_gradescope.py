@@ -133,7 +133,7 @@ def test_a_notebook_of_another_assignment_is_named(course, bundle, sandbox, solv
     assert main(["grade", NAME, "--course", str(course.root)]) == 1
     said = capsys.readouterr()
     assert said.err.endswith(f"ATTENTION: ada: {note}; ask for the right one\n")
-    assert "ATTENTION: handed in a file that cannot be graded: eve; ask for another," in said.out
+    assert "these students handed in a file that cannot be graded: eve; ask each for" in said.out
     assert (said.out + said.err).count("ATTENTION") == 2
 
 

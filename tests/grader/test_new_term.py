@@ -67,7 +67,7 @@ def test_a_public_seed_is_said_to_be_public(course, capsys):
 def test_another_seed_than_the_terms_is_said_to_be_another(course, capsys):
     """In a term, whoever names a seed reads that it is not the term's, and how to use that one."""
     arguments = ["release", "00_warmup", "--course", str(course.root)]
-    said = "which is not the term's; to use the term's, type: labkit release 00_warmup"
+    said = "seed 41, which is not the term's; to use the term's, type: labkit release 00_warmup"
     for seed, more, says in ((None, ["--seed", "41"], False), (43, ["--seed", "41"], True),
                              (43, ["--seed", "43"], False), (43, [], False)):  # fmt: skip
         if seed:

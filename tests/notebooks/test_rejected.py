@@ -394,7 +394,7 @@ def test_no_gains_that_hold_elsewhere_fail_on_the_line():
 
 
 @pytest.mark.parametrize(("Kp", "Kd"), [(37.5, 0.0), (45.0, 0.5)])
-def test_gains_without_a_reserve_may_fail_the_check_alone(Kp, Kd):
+def test_gains_without_a_reserve_hold_elsewhere_but_fail_the_check(Kp, Kd):
     """They hold elsewhere as they are, but on the line they fail with 1.8 times their Kp.
 
     They fail the instructor's cases with a reserve, too.

@@ -14,7 +14,6 @@ from ...course.authoring.bundle import Bundle
 from ...course.authoring.layout import Course
 from ...course.verdict import Outcome
 from ...errors import LabkitError
-from ..clean import few
 from ..each import Failure, for_student
 from ..lock import exclusive_run
 from ..sandbox.limits import Limits
@@ -241,8 +240,8 @@ def cannot_be_graded(results: Iterable[Result]) -> Iterator[str]:
     """A sentence that names who handed in a file that cannot be graded, if anybody did."""
     if names := sorted(result.student for result in results if result.rejected):
         yield (
-            f"ATTENTION: handed in a file that cannot be graded: {few(names)}; ask for another, "
-            "and give an extension if it would come late"
+            "ATTENTION: these students handed in a file that cannot be graded: "
+            f"{', '.join(names)}; ask each for a new one, and give an extension if it would be late"
         )
 
 

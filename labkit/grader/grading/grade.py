@@ -231,7 +231,8 @@ def _incomparable(question: Question) -> Verdict:
 def _with_dependencies(todo: Plan, name: str, verdicts: Mapping[str, Verdict]) -> Plan:
     """The plan with a note on an answer that is not right and uses others that are not."""
     wrong = {k for k, v in verdicts.items() if v.outcome in (Outcome.WRONG, Outcome.ERROR)}
-    parts = [x for look in todo.looks for x in look["definitions"] if name in x["binds"]]
+    found = (x for look in todo.looks for x in look["definitions"] if name in x["binds"])
+    parts = [x for x in found if not x["stub"]]
     used = sorted(wrong.intersection(*(x["outside"] for x in parts[-1:])) - {name})
     if name not in wrong or not (parts and used):
         return todo
