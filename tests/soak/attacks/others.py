@@ -117,11 +117,13 @@ LEFT = {
         "    for folder, names, files in os.walk(top):\n        for name in (*names, *files):\n"
         "            try: os.utime(os.path.join(folder, name), None)\n            except OSError: pass\n"
         "open('{loot}/touched', 'w')",
-        "import os, time\nfound = []\nfor top in ('/dev', '/etc', '/lab', '/run', '/var', '/srv', '/opt', '{loot}'):\n"
+        # Folders around what the sandbox shows are as new as the sandbox, and its root, too.
+        "import os, time\nfound, start = [], os.stat('/').st_mtime\n"
+        "for top in ('/dev', '/etc', '/lab', '/run', '/var', '/srv', '/opt', '{loot}'):\n"
         "    for folder, names, files in os.walk(top):\n        for name in (*names, *files):\n"
-        "            path = os.path.join(folder, name)\n            try: age = abs(time.time() - os.lstat(path).st_mtime)\n"
+        "            path = os.path.join(folder, name)\n            try: touched = os.lstat(path).st_mtime\n"
         "            except OSError: continue\n"
-        "            if age < 20 and not path.startswith(('/dev/shm', '/dev/pts/')) and path != '/dev/pts': found.append(path)\n"
+        "            if touched > max(start + 1, time.time() - 20) and not path.startswith(('/dev/shm', '/dev/pts/')) and path != '/dev/pts': found.append(path)\n"
         f"if found: {_GOT}"),
     "an attribute of a device": left(
         "import os\nos.chmod('/dev/full', 0o664)\nos.setxattr('{loot}', 'user.left', b'x')",
