@@ -123,7 +123,7 @@ class Trials:
             f"RMS error of {self.cases[0]} for Kp from {Kp[0]:g} to {Kp[-1]:g} and Kd from "
             f"{Kd[0]:g} to {Kd[-1]:g}: least {e[i, j]:.3g} mm at Kp = {Kp[i]:.3g}, Kd = "
             f"{Kd[j]:.3g}; largest {np.nanmax(e):.3g} mm; {np.isnan(e).sum()} of {e.size} pairs "
-            "lost the arm."
+            "have no error."
         )
 
 

@@ -77,11 +77,11 @@ def test_an_unknown_recording_is_a_sentence_with_the_known_ones():
 
 
 def test_a_map_says_itself_in_words():
-    """Its sentence has the least error with its gains, and how many pairs lost the arm."""
+    """Its sentence has the least error with its gains, and how many pairs have no error."""
     found = Trials(("a test",), (1.0, 2.0), (0.0, 0.1), (((3.0, 2.0), (1.0, None)),))
     assert "RMS error of a test" in found.describe()
     assert "least 1 mm at Kp = 2, Kd = 0" in found.describe()
-    assert "1 of 4 pairs lost the arm" in found.describe()
+    assert "1 of 4 pairs have no error" in found.describe()
 
 
 def test_an_unknown_map_is_a_sentence():

@@ -25,7 +25,6 @@ from .gaps import (
     first_error,
     how_to_restore,
     left_behind,
-    listed,
     misnamed,
     review_texts,
     undefined_names,
@@ -34,6 +33,7 @@ from .gaps import (
 from .identification import where_it_was_measured
 from .messages import head
 from .notebook import check_id, defines, grade_id, last_verdict, read_cells
+from .question import listed
 from .serialize import decode
 from .source import Analysis, analyse
 from .verdict import Outcome, Verdict
@@ -161,8 +161,8 @@ def examine(path: Path) -> HandIn:
         if (said := verdicts[name]) and said.right and _lacks_prediction(code, name)
     ]
     notes += chain(*(defined_late(cells, name, asked) for name in asked))
-    old = [name for name in tests if not again[name] and changed_since(cells, name)]
-    old = [name for name in old if name not in predictions]  # the mouse writes after the cell ran
+    # The mouse writes a prediction after its cell ran.
+    old = [x for x in tests if x not in predictions and not again[x] and changed_since(cells, x)]
     if old:
         notes.append(
             f"changed since the last check: {', '.join(old)}; run the notebook from the top and "

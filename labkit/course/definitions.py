@@ -14,8 +14,9 @@ from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from types import ModuleType
 from typing import Any
 
-from .gaps import listed, the_cell
+from .gaps import the_cell
 from .notebook import grade_id, is_edited, kind, last_judged
+from .question import listed
 from .source import Analysis, analyse, dotted, parsed
 
 Cells = Sequence[dict[str, Any]]
@@ -109,10 +110,10 @@ def _last_parts(cells: Iterable[Analysis]) -> dict[str, dict[str, _Part]]:
     """
     last: dict[str, dict[str, _Part]] = {}
     for part in (part for cell in cells for part in cell["definitions"]):
-        binds = {*part["binds"]}
-        roots = {x.partition(".")[0] for x in part["changes"]}  # `x[k] = 1`
+        binds, fills = {*part["binds"]}, {*part["fills"]}
+        roots = {x.partition(".")[0] for x in part["changes"]} & fills  # `x[k] = 1`
         changes = {x for x in roots if not any(x in y["mean"] for y in last.get(x, {}).values())}
-        changes |= binds & {*part["fills"]}  # `x += 1`
+        changes |= binds & fills - {*part["later"]}  # `x += 1`, but not `def f(): f.calls += 1`
         for name in binds | changes:
             if name in changes and name in last:
                 last[name][part["text"]] = part

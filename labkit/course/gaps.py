@@ -21,6 +21,7 @@ from .brief import WORDS, words_in_all, words_of
 from .checks_file import FILE as CHECKS
 from .notebook import cells_made_for, grade_id, is_edited, kind, released
 from .own_arm import FILE as ARMS
+from .question import listed
 from .source import analyse, plain
 from .unfinished import defined_in
 
@@ -138,12 +139,6 @@ def first_error(cells: list[dict[str, Any]]) -> str:
                     f"stops there; {todo or 'correct or delete it'}"
                 )
     return ""
-
-
-def listed(names: Sequence[str]) -> str:
-    """Names as a sentence lists them: "a", "a and b" or "a, b and c"."""
-    *first, last = names
-    return f"{', '.join(first)} and {last}" if first else last
 
 
 def the_cell(source: str) -> str:

@@ -10,7 +10,7 @@ from fractions import Fraction
 from ..errors import ControllerError
 from .differences import likely_cause, sentence, words
 from .forms import COMMITTED, OWN_ARM
-from .question import Loop, Question, Test, Tuned, in_points, is_shortened
+from .question import Loop, Question, Test, Tuned, in_points, is_shortened, listed
 from .verdict import Difference, Kind, Misconception, Outcome, TestResult, Verdict
 from .withheld import name_in_notebook
 
@@ -71,7 +71,7 @@ def why_not_counted(withheld: Iterable[str]) -> str:
     # a whole package is never what the student should write
     own = all("." in name for name in names)
     why = "this question asks you to write" if own else "may not be used in this answer"
-    return f"uses {' and '.join(names)}, which {why}"
+    return f"uses {listed(names)}, which {why}"
 
 
 @dataclass(frozen=True)
@@ -130,7 +130,7 @@ def message(
         if depends_on:
             was, it = ("was", "it") if len(depends_on) == 1 else ("were", "them")
             helps.append(
-                f"It uses your {' and '.join(depends_on)}, which {was} not right when you last "
+                f"It uses your {listed(depends_on)}, which {was} not right when you last "
                 f"checked {it}; correct {it} and check {it} again first."
             )
     tests, numbers = list[str](), list[str]()

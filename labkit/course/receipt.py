@@ -35,18 +35,23 @@ def hand_in(name: str) -> None:
     """
     path = Path.cwd() / f"{name}.ipynb"
     if other := _open_as(path):
-        first = f"move the other file called {path.name} out of this folder, "
-        rename = f"{first}rename yours" if path.is_file() else "rename it"
+        todo = f"save it, rename it to {path.name}, and run this cell again"
+        if path.is_file():
+            todo = (
+                f"if you have saved it as {path.name} since then, shut down its kernel, open "
+                f"{path.name} and run all cells; if not, move the file called {path.name} out of "
+                f"this folder first, then {todo}"
+            )
         raise LabkitError(
-            f"you are working in {other}, but what you hand in must be called {path.name}; save "
-            f"your notebook, {rename} to {path.name}, and run this cell again"
+            f"this notebook was opened as {other}, but what you hand in must be called "
+            f"{path.name}; {todo}"
         )
     found = examine(path)
-    found = replace(found, problems=(*found.problems, *_no_longer_right(found)))
     sources = [cell["source"] for cell in read_cells(path)]
+    unsaved = _unsaved(found, sources)
+    found = replace(found, problems=(*found.problems, *_no_longer_right(found, unsaved)))
     saved = datetime.fromtimestamp(path.stat().st_mtime, UTC).astimezone()
     age = max(datetime.now(UTC) - saved, timedelta())
-    unsaved = _unsaved(found, sources)
     lines = [
         *_findings(found, unsaved),
         f"receipt: {receipt(sources)} of {path.name}, saved {saved:%Y-%m-%d %H:%M %Z}",
@@ -65,16 +70,19 @@ def _open_as(path: Path) -> str:
     return opened.name if opened.name != path.name and (Path.cwd() / opened.name).is_file() else ""
 
 
-def _no_longer_right(found: HandIn) -> Iterator[str]:
+def _no_longer_right(found: HandIn, unsaved: Collection[str]) -> Iterator[str]:
     """A sentence for each answer that its check found right, and that is not right any more.
 
     After Run All, all cells have run, as when the notebook is marked, so this finds every change
-    that a cell below a check makes, also those that the text of the cells does not show.
+    that a cell below a check makes, also those that the text of the cells does not show.  An
+    answer that is not in the file yet is another one than its verdict there is about.
     """
     notebook = shell()
     for name, verdict in found.verdicts.items() if notebook is not None else ():
         known = any(re.search(rf"\b{name}\b", text) for text in found.problems)
-        if not verdict or not verdict.right or known or name not in notebook.user_ns:
+        if not verdict or not verdict.right or known or name in unsaved:
+            continue
+        if name not in notebook.user_ns:
             continue
         now, *_ = desk().verdict(name, notebook.user_ns[name])
         if not now.right:

@@ -11,6 +11,7 @@ import numpy as np
 from ..errors import LabkitError
 from .forms import Choose, Curve, Form, Number, Rank
 from .messages import wrapped
+from .question import listed
 from .student import desk, shell
 
 
@@ -74,21 +75,18 @@ def _reveal(name: str, form: Form, truth: Any) -> None:
     """Show the prediction beside the truth, but not the truth without a prediction."""
     place = desk()
     said, wrong = place.committed.get(name), place.stand_ins.wrong()
-    once = "it is" if len(wrong) == 1 else "they are"
-    text = (
-        f"the experiment uses your wrong {' and '.join(wrong)}; the truth is shown here once "
-        f"{once} right"
-    )
     if said is None:
-        text = "commit to a prediction above, then run the cells from there to here again"
-    if said is None or wrong:
-        print(wrapped(f"{name}: {text}."))
-        return
-    if isinstance(form, Curve):
-        _overlay(form, said, truth)
+        again = "commit to a prediction above, then run the cells from there to here again"
+        print(wrapped(f"{name}: {again}."))
+    elif wrong:
+        once = f"the truth is shown here once {'they are' if wrong[1:] else 'it is'} right"
+        print(wrapped(f"{name}: the experiment uses your wrong {listed(wrong)}; {once}."))
     else:
-        _compare(form, said, truth)
-    place.revealed.add(name)
+        place.revealed.add(name)
+        if isinstance(form, Curve):
+            _overlay(form, said, truth)
+        else:
+            _compare(form, said, truth)
 
 
 def _compare(form: Form, said: Any, truth: Any) -> None:

@@ -24,7 +24,7 @@ RUNS_HERE = ("time", "capture", "prun")
 
 Any other, such as ``%%timeit`` or ``%%bash``, defines no name in the notebook.
 """
-_TIMED = re.compile(r"^%time[ \t]+(?=\S)", re.MULTILINE)
+_TIMED = re.compile(r"^%time[ \t]+(?=[^\s-])", re.MULTILINE)
 _MAGIC = re.compile(r"\s*%%(\S+)[^\n]*\n?")
 _CHAINS = {ast.Name, ast.Attribute, ast.Call}
 _CHANGE = {
@@ -160,7 +160,7 @@ def needed(source: str, name: str, given: Collection[str] = ()) -> list[str]:
     lines = source.split("\n")
     parts = _parts(ast.parse(source).body)
     texts = [_text(part, lines) for part in parts]
-    scopes = [scope_of(*pair) for pair in zip(parts, texts, strict=True)]
+    scopes = [*map(scope_of, parts, texts)]
     wanted, found, before = {name}, set[int](), -1
     while before < len(found):
         before = len(found)

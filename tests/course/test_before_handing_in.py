@@ -594,10 +594,12 @@ def test_the_file_that_is_handed_in_is_the_open_one(folder, monkeypatch):
     monkeypatch.setenv("JPY_SESSION_NAME", str(opened))
     hand_in("01_paths")  # the open file has been renamed since the kernel started
     opened.write_text((folder / "01_paths.ipynb").read_text())
-    with pytest.raises(LabkitError, match=r"in 01_paths-Copy1.*move the other file called"):
+    with pytest.raises(
+        LabkitError, match=r"opened as 01_paths-Copy1.*; if not, move the file called"
+    ):
         hand_in("01_paths")
     (folder / "01_paths.ipynb").unlink()
-    with pytest.raises(LabkitError, match=r"save your notebook, rename it to 01_paths"):
+    with pytest.raises(LabkitError, match=r"ipynb; save it, rename it to 01_paths"):
         hand_in("01_paths")
 
 
@@ -629,3 +631,7 @@ def test_an_answer_that_is_not_right_any_more_is_named(folder, monkeypatch, caps
         hand_in("01_paths")
         said = " ".join(capsys.readouterr().out.split())
         assert ("circle was right when it was checked and is not right now" in said) == (factor > 1)
+    shell.history_manager.input_hist_raw.append(RING.replace("2.0", "4.0"))
+    hand_in("01_paths")
+    said = " ".join(capsys.readouterr().out.split())
+    assert "does not hold the circle that you ran last" in said and "is not right now" not in said

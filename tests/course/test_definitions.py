@@ -202,6 +202,8 @@ def test_a_timed_statement_defines_its_name(path):
     """IPython's %time runs one statement as it is."""
     timed = [code("%time half = 4.0"), code("%time import math")]
     assert not handed_in(path, CIRCLE.format("half * math.pi"), above=timed).problems
+    # With an option, its name is not seen, but the cell is read.
+    assert not analyse("%time --no-raise-error two = 2")["broken"]
 
 
 def test_a_module_that_an_import_of_everything_brings_is_the_same(path):
@@ -280,6 +282,7 @@ def test_what_the_answer_does_not_meet_is_not_named(path, above, below):
 
 
 LOOP = "def circle(s, start, centre):\n    for k in s:\n        k\n    return 0"
+COUNT = "def circle(s, start, centre):\n    circle.calls += 1\n    return {}"
 RIGHT, OTHER, HALF, PI = map(CIRCLE.format, ("1", "2", "half", "math.pi"))
 
 
@@ -317,6 +320,13 @@ def test_an_answer_that_was_edited_after_its_check_is_not_called_right(
         (["two = 2", "half = two", "two = 3", HALF], ["two = 2", "half = two"], HALF, ["two = 3"]),
         ([STUB, RIGHT], [], STUB, [RIGHT]),
         ([HALF], [], HALF, ["half = 2"]),
+        ([COUNT.format(1), COUNT.format(2)], [], COUNT.format(2), []),
+        (
+            ["half = [0]; half[0] = 2", "half = [0]; half[0] = 3", HALF],
+            ["half = [0]; half[0] = 3"],
+            HALF,
+            [],
+        ),
         (["half = [2]\nhalf[0] = 3"] * 2 + [HALF], ["half = [2]\nhalf[0] = 3"], HALF, []),
         (
             ["import os\na = os.sort(1)", HALF + " + os.x"],

@@ -109,8 +109,8 @@ def grade(course: Course, assignment: str, student: str | None, as_json: bool, *
             print(_line(one, as_json, f"[{number}/{len(who)}] "), flush=True)
         tell(failures.sift(record(course, assignment, graded), "not in the gradebook"), said)
         everybody = graded if student else list(Results(course, assignment))
-        tell((f"ATTENTION: {says}" for says in common_failures(everybody)), said)
-        tell(cannot_be_graded(graded), said)
+        doubts = (*common_failures(everybody), *cannot_be_graded(graded))
+        tell((f"ATTENTION: {says}" for says in doubts), said)
         failures.add("ATTENTION", _other_notebooks(graded))
         if graded and not as_json:
             tell(_on_top(course, assignment), sys.stdout)

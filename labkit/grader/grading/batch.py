@@ -240,8 +240,8 @@ def cannot_be_graded(results: Iterable[Result]) -> Iterator[str]:
     """A sentence that names who handed in a file that cannot be graded, if anybody did."""
     if names := sorted(result.student for result in results if result.rejected):
         yield (
-            "ATTENTION: these students handed in a file that cannot be graded: "
-            f"{', '.join(names)}; ask each for a new one, and give an extension if it would be late"
+            f"these students handed in a file that cannot be graded: {', '.join(names)}; ask each "
+            "for a new one, and give an extension if it would be late"
         )
 
 

@@ -7,17 +7,16 @@ as plain data, which is read with limits.
 from __future__ import annotations
 
 import time
-from collections.abc import Callable, Collection, Mapping
+from collections.abc import Callable, Collection, Iterable, Iterator, Mapping
 from contextlib import closing, suppress
 from dataclasses import replace
 from typing import Any, cast
 
 from ...course.authoring.bundle import Bundle
-from ...course.gaps import listed
 from ...course.marking import PublicResult, all_alike, mark, not_counted, try_public
 from ...course.messages import why_not_counted
 from ...course.own_arm import opens_the_public_arm
-from ...course.question import Question
+from ...course.question import Question, listed
 from ...course.receipt import receipt
 from ...course.serialize import read_record, record_data
 from ...course.verdict import Kind, Outcome, Verdict
@@ -108,7 +107,8 @@ def grade(
                 question,
                 verdicts.get(question.name) or _unasked_verdict(question, tools),
                 tried.get(question.name),
-                _with_dependencies(todo, question.name, verdicts),
+                todo,
+                _uses_wrong(todo, question.name, verdicts),
             )
             for question in bundle.questions
         ),
@@ -228,22 +228,26 @@ def _incomparable(question: Question) -> Verdict:
     return all_alike(question, Outcome.ERROR, Kind.OTHER)
 
 
-def _with_dependencies(todo: Plan, name: str, verdicts: Mapping[str, Verdict]) -> Plan:
-    """The plan with a note on an answer that is not right and uses others that are not."""
+def _uses_wrong(todo: Plan, name: str, verdicts: Mapping[str, Verdict]) -> Iterator[str]:
+    """A note on an answer that is not right and uses others that are not."""
     wrong = {k for k, v in verdicts.items() if v.outcome in (Outcome.WRONG, Outcome.ERROR)}
     found = (x for look in todo.looks for x in look["definitions"] if name in x["binds"])
-    parts = [x for x in found if not x["stub"]]
-    used = sorted(wrong.intersection(*(x["outside"] for x in parts[-1:])) - {name})
-    if name not in wrong or not (parts and used):
-        return todo
-    is_, it = ("are", "them") if used[1:] else ("is", "it")
-    note = f"it uses your {listed(used)}, which {is_} not right either; correct {it} first"
-    return replace(todo, notes={**todo.notes, name: (*todo.notes.get(name, ()), note)})
+    outside = [x["outside"] for x in found if not x["stub"]][-1:]
+    used = sorted(wrong.intersection(*outside) - {name}) if outside and name in wrong else []
+    if used:
+        is_, it = ("are", "them") if used[1:] else ("is", "it")
+        yield f"it uses your {listed(used)}, which {is_} not right either; correct {it} first"
 
 
-def _answer(question: Question, verdict: Verdict, tried: PublicResult | None, todo: Plan) -> Answer:
+def _answer(
+    question: Question,
+    verdict: Verdict,
+    tried: PublicResult | None,
+    todo: Plan,
+    more: Iterable[str],
+) -> Answer:
     why = (f"it {why_not_counted(verdict.withheld)}",) if verdict.withheld else ()
-    notes = tuple(map(clean_line, (*why, *todo.notes.get(verdict.name, ()))))
+    notes = tuple(map(clean_line, (*why, *todo.notes.get(verdict.name, ()), *more)))
     answer = Answer(verdict, notes, todo.source(verdict.name))
     if tried is None:
         return answer

@@ -55,8 +55,7 @@ def migrate(course: Course, assignment: str, source: Any) -> list[str]:
             if cell.name not in cells:
                 book.db.delete(cell)
         for cell in there:
-            _, known = graded.get(cell.name, (None, {}))
-            if known and float(known["points"]) != cell.max_score:
+            if cell.name in graded and float(graded[cell.name][1]["points"]) != cell.max_score:
                 for grade in cell.grades:
                     grade.needs_manual_grade |= grade.manual_score is not None
         new = sorted(set(graded) - {c.name for c in there})
