@@ -90,14 +90,16 @@ def say_where_to_look(seconds: float) -> None:
         ("the book", ROOT / "book/_build/html/index.html"),
         ("the students' notebooks", DEMO / "assignments"),
         ("the solved notebooks, for after the deadline", DEMO / "build/course/solution"),
-        ("the marks with their reasons", DEMO / "results" / ASSIGNMENT),
+        ("the marks with their reasons, as data", DEMO / "results" / ASSIGNMENT),
         ("the feedback for each student", DEMO / "feedback"),
         ("what the class misunderstood", REPORT),
         ("the guide for instructors", ROOT / "book/_build/html/instructor_guide.html"),
     ):
         if where.exists():
             print(f"  {what}: {where.relative_to(ROOT)}")
-    print("Next: `make lab` opens the notebooks, `make help` lists the rest.")
+    explain = ".venv/bin/labkit explain student-001 trapezoid --course build/demo"
+    print(f"Next: `{explain}` says why a mark is what it is,")
+    print("`make lab` opens the notebooks, and `make help` lists the rest.")
 
 
 if __name__ == "__main__":
