@@ -127,15 +127,16 @@ def calculated_from_runs(sources: Iterable[str], question: str) -> str:
 def first_error(cells: list[dict[str, Any]]) -> str:
     """A sentence about the first cell that ended with an error, or ""."""
     for cell in _code(cells):
-        outputs = cell.get("outputs")
+        source, outputs = cell["source"], cell.get("outputs")
+        if "hand_in(" in source or analyse(source)["broken"]:  # it runs now; see `unreadable`
+            continue
         for output in outputs if isinstance(outputs, list) else ():
-            failed = isinstance(output, dict) and output.get("output_type") == "error"
-            if failed and not analyse(cell["source"])["broken"]:  # those are `unreadable`
+            if isinstance(output, dict) and output.get("output_type") == "error":
                 told = filter(None, (output.get("ename"), output.get("evalue")))
                 says = _shown(": ".join(map(str, told)), 120)
                 todo = "" if is_edited(cell) else _STOPPED.get(kind(cell))
                 return (
-                    f"{the_cell(cell['source'])} ended with an error ({says}), and Run All Cells "
+                    f"{the_cell(source)} ended with an error ({says}), and Run All Cells "
                     f"stops there; {todo or 'correct or delete it'}"
                 )
     return ""

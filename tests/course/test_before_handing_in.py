@@ -216,12 +216,24 @@ def test_a_given_cell_that_is_gone_and_an_error_are_named(folder):
 
     def change(cells):
         kept = [c for c in cells if "import labkit as lk" not in "".join(c["source"])]
-        kept[-1]["outputs"] = [{"output_type": "error", "ename": "NameError", "evalue": "no lk"}]
+        error = {"output_type": "error", "ename": "NameError", "evalue": "no lk"}
+        [c for c in kept if c["cell_type"] == "code"][-2]["outputs"] = [error]
         return kept
 
     problems = examine(edited(folder / "01_paths.ipynb", change)).problems
     assert any(text.startswith("no cell defines") and "lk" in text for text in problems)
     assert any("ended with an error (NameError: no lk)" in text for text in problems)
+
+
+def test_an_error_of_the_last_cell_is_not_to_be_corrected(folder):
+    """The cell inspects the file, so its error is of an earlier run, such as under another name."""
+
+    def change(cells):
+        error = {"output_type": "error", "ename": "LabkitError", "evalue": "opened as mine.ipynb"}
+        cells[-1]["outputs"] = [error]
+        return cells
+
+    assert not examine(edited(folder / "01_paths.ipynb", change)).problems
 
 
 @pytest.mark.parametrize(
