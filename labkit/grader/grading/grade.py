@@ -244,7 +244,7 @@ def _answer(
     verdict: Verdict,
     tried: PublicResult | None,
     todo: Plan,
-    more: Iterable[str],
+    more: Iterable[str] = (),
 ) -> Answer:
     why = (f"it {why_not_counted(verdict.withheld)}",) if verdict.withheld else ()
     notes = tuple(map(clean_line, (*why, *todo.notes.get(verdict.name, ()), *more)))
