@@ -35,7 +35,7 @@ def hand_in(name: str) -> None:
     """
     path = Path.cwd() / f"{name}.ipynb"
     if other := _open_as(path):
-        todo = f"save it, rename it to {path.name}, and run this cell again"
+        todo = f"save this notebook, rename it to {path.name}, and run this cell again"
         if path.is_file():
             todo = (
                 f"if you have saved it as {path.name} since then, shut down its kernel, open "

@@ -611,7 +611,7 @@ def test_the_file_that_is_handed_in_is_the_open_one(folder, monkeypatch):
     ):
         hand_in("01_paths")
     (folder / "01_paths.ipynb").unlink()
-    with pytest.raises(LabkitError, match=r"ipynb; save it, rename it to 01_paths"):
+    with pytest.raises(LabkitError, match=r"ipynb; save this notebook, rename it to 01_paths"):
         hand_in("01_paths")
 
 
