@@ -119,3 +119,9 @@ class NothingKept(LabkitError, LookupError):
 
 class Closed(LabkitError, RuntimeError):
     """The simulated world was closed and can no longer be used."""
+
+
+def listed(names: Iterable[str]) -> str:
+    """One name or more as a sentence lists them: "a", "a and b" or "a, b and c"."""
+    *first, last = names
+    return f"{', '.join(first)} and {last}" if first else last

@@ -15,6 +15,7 @@ from itertools import chain
 from pathlib import Path
 from typing import Any
 
+from ..errors import listed
 from ..sim import chosen
 from .brief import words_in_all
 from .checks_file import read_checks
@@ -33,7 +34,6 @@ from .gaps import (
 from .identification import where_it_was_measured
 from .messages import head
 from .notebook import check_id, defines, grade_id, last_verdict, read_cells
-from .question import listed
 from .serialize import decode
 from .source import Analysis, analyse
 from .verdict import Outcome, Verdict

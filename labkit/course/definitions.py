@@ -14,9 +14,9 @@ from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from types import ModuleType
 from typing import Any
 
+from ..errors import listed
 from .gaps import the_cell
 from .notebook import grade_id, is_edited, kind, last_judged
-from .question import listed
 from .source import Analysis, analyse, dotted, parsed
 
 Cells = Sequence[dict[str, Any]]

@@ -16,12 +16,12 @@ from typing import Any
 
 import numpy as np
 
+from ..errors import listed
 from .advice import IMPORTS
 from .brief import WORDS, words_in_all, words_of
 from .checks_file import FILE as CHECKS
 from .notebook import cells_made_for, grade_id, is_edited, kind, released
 from .own_arm import FILE as ARMS
-from .question import listed
 from .source import analyse, plain
 from .unfinished import defined_in
 

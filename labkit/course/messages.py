@@ -7,10 +7,10 @@ from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 
-from ..errors import ControllerError
+from ..errors import ControllerError, listed
 from .differences import likely_cause, sentence, words
 from .forms import COMMITTED, OWN_ARM
-from .question import Loop, Question, Test, Tuned, in_points, is_shortened, listed
+from .question import Loop, Question, Test, Tuned, in_points, is_shortened
 from .verdict import Difference, Kind, Misconception, Outcome, TestResult, Verdict
 from .withheld import name_in_notebook
 

@@ -6,7 +6,7 @@ the grader.  A case calls the student's function and does not judge what is retu
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Mapping
 from dataclasses import asdict, dataclass, field, is_dataclass, replace
 from inspect import isroutine
 from typing import Any
@@ -304,12 +304,6 @@ class Question:
 def in_points(points: float) -> str:
     """Points with their unit, such as "1 point" or "2.5 points"."""
     return f"{points:g} point{'' if points == 1 else 's'}"
-
-
-def listed(names: Sequence[str]) -> str:
-    """Names as a sentence lists them: "a", "a and b" or "a, b and c"."""
-    *first, last = names
-    return f"{', '.join(first)} and {last}" if first else last
 
 
 def in_brief(x: Any, digits: int = 5) -> str:

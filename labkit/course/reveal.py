@@ -8,10 +8,9 @@ from typing import Any
 
 import numpy as np
 
-from ..errors import LabkitError
+from ..errors import LabkitError, listed
 from .forms import Choose, Curve, Form, Number, Rank
 from .messages import wrapped
-from .question import listed
 from .student import desk, shell
 
 

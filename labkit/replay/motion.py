@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 
 from ..baxter import as_robot
-from ..errors import OutOfRange
+from ..errors import OutOfRange, listed
 from ..robot import SIDES, Robot
 from ..shapes import Array, as_array
 from .figure import compact
@@ -127,9 +127,9 @@ class Motion:
             rms = float(np.sqrt(np.mean(self.error**2)))
             words += f"; tip error {_mm(rms)} RMS, {_mm(np.abs(self.error).max())} at most"
         if self.ghosts:
-            words += f"; compared with {_listed(list(self.ghosts))}, drawn as see-through arms"
+            words += f"; compared with {listed(self.ghosts)}, drawn as see-through arms"
         if self.things:
-            words += f"; beside it {_listed(list(self.things))}"
+            words += f"; beside it {listed(self.things)}"
         if self.force is not None:
             words += f"; up to {np.linalg.norm(self.force, axis=1).max():.0f} N act on the tip"
         return words + "."
@@ -244,7 +244,3 @@ def _turns(R: Array) -> Array:
 
 def _mm(metres: float) -> str:
     return f"{1000 * metres:.1f} mm"
-
-
-def _listed(names: list[str]) -> str:
-    return names[0] if len(names) == 1 else f"{', '.join(names[:-1])} and {names[-1]}"

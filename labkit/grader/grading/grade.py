@@ -16,11 +16,12 @@ from ...course.authoring.bundle import Bundle
 from ...course.marking import PublicResult, all_alike, mark, not_counted, try_public
 from ...course.messages import why_not_counted
 from ...course.own_arm import opens_the_public_arm
-from ...course.question import Question, listed
+from ...course.question import Question
 from ...course.receipt import receipt
 from ...course.serialize import read_record, record_data
 from ...course.verdict import Kind, Outcome, Verdict
 from ...course.withheld import withheld_tools
+from ...errors import listed
 from ..clean import clean_data, clean_line, how_many
 from ..sandbox.launch import Sandbox
 from ..sandbox.limits import MAX_TEXT, MAX_TRICKS, Limits, TextBudget
