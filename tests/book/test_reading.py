@@ -95,7 +95,7 @@ def test_without_webgl_words_and_plots_remain(visit, blind_chromium):
     page.wait_for_selector("[data-ready]")
     assert page.is_visible(".lk-embed img.lk-poster")
     assert "left arm" in page.get_attribute(".lk-embed img.lk-poster", "alt")
-    assert page.locator(".lk-line").count() >= 1
+    page.wait_for_selector(".lk-line", state="attached")  # drawn when the page is laid out
 
 
 def test_every_notebook_is_saved_from_the_disk(visit):

@@ -228,7 +228,7 @@ def test_without_webgl_words_plots_and_slider_remain(blind_chromium, visit):
     seen.get_by_role("slider", name="Time").focus()
     seen.keyboard.press("PageUp")
     assert "t = 1.00 s" in seen.inner_text(".lk-readout")
-    assert seen.locator(".lk-line").count() > 7
+    seen.wait_for_function("document.querySelectorAll('.lk-line').length > 7")
 
 
 @pytest.mark.parametrize(
