@@ -188,7 +188,9 @@ def apply_lateness(course: Course, book: Any, assignment: str) -> None:
     for submission in book.assignment_submissions(assignment):
         if due is not None:
             submission.assignment.duedate = due.replace(tzinfo=None)
-        if submission.assignment.duedate is not None and (course.root / FILE).exists():
+        if submission.assignment.duedate is None:
+            submission.extension = None  # nbgrader would add it to no date, which raises TypeError
+        elif (course.root / FILE).exists():
             submission.extension = rules.longer(submission.student.id, assignment)
         seconds = submission.total_seconds_late
         for notebook in submission.notebooks:

@@ -6,6 +6,7 @@ import copy
 import errno
 import json
 import os
+import re
 import shutil
 import signal
 import subprocess
@@ -221,6 +222,8 @@ def test_loud_when_many_fail(graded):
         "one a question"
     )
     assert not list(common_failures([r for r in results if r.score == r.points] * 5))
+    for few, named in zip(common_failures(results * 2, fewest=99), said, strict=True):
+        assert few == re.sub(r"^\d+", "<99", named), "no count of a small group"
 
 
 def test_manual_grades_and_comments_survive(graded):

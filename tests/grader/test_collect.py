@@ -771,6 +771,31 @@ def test_what_a_mac_puts_beside_files_is_passed_over(bare, tmp_path):
     assert said == ["bob: x.ipynb: taken, as 01_paths.ipynb"]
 
 
+def test_what_a_folder_has_for_a_student_and_is_no_notebook_is_named(bare, tmp_path):
+    """As in a zip: a name in capitals is a notebook, and what a student handed in instead is named.
+
+    Other files of a clone are passed over where the pattern asks for notebooks.
+    """
+    names = (f"cap/{NAME}.IPYNB", f"txt/{NAME}.ipynb.txt", f"jsn/{NAME}.json", "cap/README.md")
+    for name in names:
+        (tmp_path / "in" / name).parent.mkdir(parents=True, exist_ok=True)
+        (tmp_path / "in" / name).write_text(name)
+    source = zipped(tmp_path / "1.zip", [(name, name) for name in names])
+    told = [
+        "cap: README.md: not taken; it is not a notebook",
+        f"cap: {NAME}.IPYNB: taken, as {NAME}.ipynb",
+        f"jsn: {NAME}.json: not taken; it is not a notebook",
+        f"txt: {NAME}.ipynb.txt: not taken; it is not a notebook",
+    ]
+    assert sorted(take(bare, tmp_path / "in", named="{student}/*")) == sorted(told)
+    again = [x.replace(f"taken, as {NAME}.ipynb", "there already") for x in told]
+    assert sorted(take(bare, source, named="{student}/*")) == sorted(again)
+    assert sorted(take(bare, tmp_path / "in", named="{student}/*.ipynb")) == [
+        f"cap: {NAME}.IPYNB: there already",
+        f"txt/{NAME}.ipynb.txt: not taken; its name does not say who handed it in",
+    ]
+
+
 def test_a_file_with_the_name_of_two_students_is_named_with_a_cure_that_helps(bare, tmp_path):
     """The roster is right, so the file needs another name: that of a student's folder, say."""
     roster(bare, "kim1,Kim,Lee,,,,", "kim2,Kim,Lee,,,,")

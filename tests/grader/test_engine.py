@@ -309,6 +309,15 @@ def test_an_answer_that_uses_a_wrong_one_says_so(marks, solved):
     assert note.startswith("it uses your bang_bang and trapezoid, which are not right either;")
 
 
+def test_an_answer_that_uses_a_stand_in_says_so(marks, solved):
+    """The notebook has its own name for a wrong answer, which then leads to another function."""
+    put(solved, "bang_bang", "def bang_bang(t, duration): return 0, 0, 0")
+    put(solved, "trapezoid", "def trapezoid(*_): return my_bang_bang(0, 1)")
+    found = {q.verdict.name: q.notes for q in marks(solved).questions if q.notes}
+    says = "it uses a stand-in for your bang_bang, which is not right either; correct it first"
+    assert found == {"trapezoid": (says,)}
+
+
 def test_a_mark_does_not_depend_on_what_cannot_be_shown(marks, solved):
     """Surrogates, marks of direction, escapes and old line ends cost nothing and are not kept."""
     for cell in solved["cells"]:

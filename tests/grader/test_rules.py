@@ -93,6 +93,24 @@ def test_a_rule_that_changes_changes_marks_that_are_there(late, capsys):
                                                   "cleo": "14.4"}  # fmt: skip
 
 
+def test_a_due_date_that_is_no_longer_in_the_file_is_named(late, capsys):
+    """It stays in the gradebook and still costs points, so who loses them is named at each export.
+
+    Nothing is said without the file, or where nobody loses points.
+    """
+    due, line = "2026-11-02T23:59:00", "due = 2026-11-02T23:59:00\n"
+    assert due in RULES and "has no due date" not in verb(late, capsys, "export", NAME)[2]
+    (late.root / "course.toml").write_text(RULES.replace(line, ""))
+    code, out, err = verb(late, capsys, "export", NAME)
+    says = f"course.toml has no due date for {NAME}, but late work loses points: ben. The date is"
+    assert code == 0 and ",19.2," in out and says in err
+    assert says in verb(late, capsys, "export")[2]
+    with open_gradebook(late) as book:  # as formgrader does where a person deletes the date
+        book.update_or_create_assignment(NAME, duedate=None)
+    code, out, err = verb(late, capsys, "export", NAME)
+    assert code == 0 and ",19.2," not in out and "has no due date" not in err
+
+
 def test_a_time_that_becomes_known_after_grading_counts_at_once(late, capsys):
     """For the file that was graded; one that was put in its place since changes no time."""
     places = {who: late.submitted / who / NAME for who in ("ada", "ben", "cleo")}

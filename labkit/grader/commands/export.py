@@ -74,7 +74,7 @@ def export(
     was graded, and the total with the weights of course.toml.
     """
     from ..marks.export import LAYOUTS, as_csv, of_term, remarks, unmatched
-    from ..marks.table import idle_extensions, marks_of
+    from ..marks.table import idle_extensions, marks_of, other_due_date
     from ..rules import read_rules
     from ..students.list_remarks import about_extensions
 
@@ -101,6 +101,7 @@ def export(
             course.notebook_source(name)
         found = list(marks_of(course, name))
         doubts.extend(idle_extensions(course, name, found))
+        tell(other_due_date(course, name, found), sys.stderr)
         return [] if all(mark.absent for mark in found) else found
 
     def filled(name: str, marks: list[Mark]) -> list[Mark]:

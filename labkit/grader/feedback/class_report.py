@@ -85,7 +85,7 @@ def report(
         mistakes=list(_mistake_rows(graded, problems)),
         count=lambda n: f"<{fewest}" if 0 < n < fewest else n,
         tools=list(_tool_lines(graded, who)),
-        doubtful=list(common_failures(graded)),
+        doubtful=list(common_failures(graded, fewest)),
         slow_limit=f"{SLOW:g}",
         slow=[f"{name}: {seconds:.0f} s" for seconds, name in times if seconds > SLOW],
         same_text=list(same_text(graded, who)),

@@ -245,8 +245,12 @@ def cannot_be_graded(results: Iterable[Result]) -> Iterator[str]:
         )
 
 
-def common_failures(results: Sequence[Result]) -> Iterator[str]:
+def common_failures(results: Sequence[Result], fewest: int = 1) -> Iterator[str]:
     """Name the questions with a test that many students fail, as the test may be to blame.
+
+    Args:
+        results: The results of the class.
+        fewest: Counts of fewer students are not given.
 
     Yields:
         A sentence for each such question, about the test that most students fail.
@@ -268,8 +272,9 @@ def common_failures(results: Sequence[Result]) -> Iterator[str]:
             doubtful.setdefault(name, []).append((count, test))
     for name, ((count, test), *others) in doubtful.items():
         more = f", and many fail {len(others)} more of its tests" if others else ""
+        students = f"<{fewest}" if count < fewest else count
         yield (
-            f"{count} of {tried[name]} who tried {name} fail the test {test!r}{more}: "
+            f"{students} of {tried[name]} who tried {name} fail the test {test!r}{more}: "
             "is the cause the test, the text or the lecture?"
         )
 

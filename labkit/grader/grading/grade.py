@@ -230,14 +230,14 @@ def _incomparable(question: Question) -> Verdict:
 
 
 def _uses_wrong(todo: Plan, name: str, verdicts: Mapping[str, Verdict]) -> Iterator[str]:
-    """A note on an answer that is not right and uses others that are not."""
+    """Notes on an answer that is not right and uses others that are not, or their stand-ins."""
     wrong = {k for k, v in verdicts.items() if v.outcome in (Outcome.WRONG, Outcome.ERROR)}
-    found = (x for look in todo.looks for x in look["definitions"] if name in x["binds"])
-    outside = [x["outside"] for x in found if not x["stub"]][-1:]
-    used = sorted(wrong.intersection(*outside) - {name}) if outside and name in wrong else []
-    if used:
-        is_, it = ("are", "them") if used[1:] else ("is", "it")
-        yield f"it uses your {listed(used)}, which {is_} not right either; correct {it} first"
+    if name not in wrong:
+        return
+    for what, names in zip(("your", "a stand-in for your"), todo.used_by(name), strict=True):
+        if used := sorted(names & wrong - {name}):
+            is_, it = ("are", "them") if used[1:] else ("is", "it")
+            yield f"it uses {what} {listed(used)}, which {is_} not right either; correct {it} first"
 
 
 def _answer(

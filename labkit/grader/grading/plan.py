@@ -49,6 +49,13 @@ class Plan:
         place, unread = self.places.get(question), self.unread.get(question, "")
         return next((step.source for step in self.steps if step.number == place), unread)
 
+    def used_by(self, question: str) -> tuple[set[str], set[str]]:
+        """The names that an answer uses, and the answers that `use` gives it under such a name."""
+        parts = [part for cell in self.looks for part in cell["definitions"]]
+        mine = [x["outside"] for x in parts if question in x["binds"] and not x["stub"]]
+        names = {*mine[-1]} if mine else set()
+        return names, {x for part in parts if names & {*part["binds"]} for x in part["asks"]}
+
     def emptied(self) -> set[str]:
         """The questions that no cell answers, and in whose own cell are at most comments."""
         lines = {name: text.split("\n") for name, text in self.unread.items()}

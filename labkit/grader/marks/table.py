@@ -16,14 +16,14 @@ from typing import Any
 from ...course.authoring.bundle import Bundle
 from ...course.authoring.layout import DEFENCE, Course
 from ...course.notebook import question_of
-from ..clean import clean_line, clean_text, span
+from ..clean import clean_line, clean_text, few, span
 from ..each import Failure
 from ..grading.current_results import current_results, full_marks, how_to_grade
 from ..grading.results import Result
 from ..nbgrader.gradebook import apply_rules, open_gradebook
 from ..rules import FILE as RULES
 from ..rules import read_rules
-from ..students.attempts import perhaps_late
+from ..students.attempts import or_another, perhaps_late
 from ..students.class_list import Student
 from ..students.identity import lms_users
 from ..students.installed import date_put_back
@@ -101,17 +101,18 @@ def _own_marks(
             continue
         row = _marked(row, submission, result, assignment)
         late = perhaps_late(course, student, assignment)
-        yield replace(row, remark=_remark(row, student in handed_in) or late)
+        other = or_another(course, student, assignment)
+        yield replace(row, remark=_remark(row, student in handed_in, other) or late)
 
 
-def _remark(row: Mark, handed_in: bool) -> str:
+def _remark(row: Mark, handed_in: bool, other: str) -> str:
     """Why the mark is as it is, if it was rejected, is empty, or outlived its submission."""
     if row.missing or row.result is None:
         return ""
     if row.result.unanswered:
         if row.result.rejected:
-            return f"rejected: {row.result.rejected}; ask for the file again"
-        return f"{row.result.unanswered}; ask for the right one"
+            return f"rejected: {row.result.rejected}; ask for the file again{other}"
+        return f"{row.result.unanswered}; ask for the right one{other}"
     return "" if handed_in else "nothing of theirs is in submitted/; the mark stays as it was"
 
 
@@ -126,6 +127,20 @@ def idle_extensions(course: Course, assignment: str, marks: Sequence[Mark]) -> I
                 f"on {assignment}, which {author} handed in for the team, {mark.late} late; in "
                 f"{RULES}, give it to {author} too"
             )
+
+
+def other_due_date(course: Course, assignment: str, marks: Sequence[Mark]) -> Iterator[str]:
+    """A sentence if late work is judged by a due date that is not in the file of rules."""
+    file = course.root / RULES
+    if not file.exists() or read_rules(course).due(assignment) is not None:
+        return
+    if late := [mark for mark in marks if mark.penalty]:
+        yield (
+            f"{RULES} has no due date for {assignment}, but late work loses points: "
+            f"{few([mark.student for mark in late])}. The date is in the gradebook, where "
+            f"formgrader or an earlier {RULES} put it. Write the right one into {RULES}, or delete "
+            f"it in formgrader (Manage Assignments, {assignment}) and export again"
+        )
 
 
 def mark_of(result: Result) -> Mark:

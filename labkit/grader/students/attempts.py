@@ -153,6 +153,13 @@ def counted_attempt(course: Course, student: str, assignment: str) -> Counted | 
     return Counted(next(one for one in theirs if one.file == found.attempt.file), found.first)
 
 
+def or_another(course: Course, student: str, assignment: str) -> str:
+    """What else to do about a file that cannot be graded; "" if the student has no other one."""
+    here = Path(FOLDER, student, assignment)
+    more = len(list((course.root / here).glob(f"*/{RECORD}"))) > 1
+    return f", or let another one of theirs count, in {here.as_posix()}" if more else ""
+
+
 def perhaps_late(course: Course, student: str, assignment: str) -> str:
     """A remark on work that may be late, as its time is not known exactly; "" if there is no doubt.
 

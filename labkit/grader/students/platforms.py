@@ -259,7 +259,7 @@ def reader(pattern: str) -> Reader:
             f"{pattern!r} needs {{student}} once, such as in 'paths-{{student}}/*.ipynb'"
         )
     parts = re.split(r"(\{student\}|\*\*|\*)", pattern)
-    whole = re.compile("".join(_PARTS.get(part, re.escape(part)) for part in parts))
+    whole = re.compile("".join(_PARTS.get(x, re.escape(x)) for x in parts), re.IGNORECASE)
 
     def read(name: str) -> tuple[Named, ...]:
         match = whole.fullmatch(name)
@@ -272,15 +272,17 @@ def reader(pattern: str) -> Reader:
 
 
 def in_folder(folder: Path, read: Reader) -> Iterator[File]:
-    """The notebooks in a folder and all folders in it; links are not followed.
+    """The files in a folder and all folders in it that a student may have handed in.
 
-    Their times are when they were written here, by a download or a clone.
+    These are the files that the reader knows, and others that are, or once were, called a notebook.
+    Links are not followed.  The times are when they were written here, by a download or a clone.
     """
     for top, folders, names in os.walk(folder):
         folders[:] = sorted(x for x in folders if not x.startswith("."))
-        for name in sorted(x for x in names if x.endswith(".ipynb") and not x.startswith(".")):
+        for name in sorted(x for x in names if not x.startswith(".")):
             path = Path(top, name)
             label = str(path.relative_to(folder))
-            when = datetime.fromtimestamp(int(path.lstat().st_mtime), UTC)
-            load = partial(read_file, path)
-            yield File(clean_line(label)[-120:], read(label), when, load)
+            who = read(label)
+            if who or ".ipynb" in name.lower():
+                when = datetime.fromtimestamp(int(path.lstat().st_mtime), UTC)
+                yield File(clean_line(label)[-120:], who, when, partial(read_file, path))
