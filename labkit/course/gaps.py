@@ -29,7 +29,10 @@ _KNOWN = {*vars(builtins), "get_ipython", "display", "In", "Out", "_", "__", "__
 """Names that every notebook defines."""
 _OWN_ARM = {"my_arm", "my_bug"}
 """Functions that the grader does not run."""
-_GIVEN = "you were given this cell as it is, so correct what it uses: your answers and cells above"
+_GIVEN = (
+    "you were given this cell as it is, so correct what it uses: your answers and cells, which "
+    "must be above it"
+)
 _SETUP = "leave it as you were given it, restart the kernel and run all cells"
 _STOPPED = {"walk": _GIVEN, "check": _GIVEN, "setup": _SETUP}
 """What to do about a given cell that stopped, by its kind."""

@@ -111,6 +111,7 @@ def message(
     verdict: Verdict,
     printed: str = "",
     depends_on: Sequence[str] = (),
+    replaced: Sequence[str] = (),
     lost: str = "",
 ) -> Message:
     """Everything that a student reads after a check.
@@ -120,6 +121,7 @@ def message(
         verdict: The verdict on the answer.
         printed: What the student's code printed while it was tried.
         depends_on: Names of the wrong answers that this one uses.
+        replaced: What it uses in place of others, such as "a stand-in for bang_bang".
         lost: Why the answer will be missing when it is marked.
     """
     helps, hint = [f"But {lost}."] if lost else [], ""
@@ -132,6 +134,11 @@ def message(
             helps.append(
                 f"It uses your {listed(depends_on)}, which {was} not right when you last "
                 f"checked {it}; correct {it} and check {it} again first."
+            )
+        if replaced:
+            helps.append(
+                f"It uses {listed(replaced)}; correct your own function, run the cell with "
+                "use(...) again, and then check this one."
             )
     tests, numbers = list[str](), list[str]()
     match verdict.outcome:

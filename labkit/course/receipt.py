@@ -127,17 +127,14 @@ def _advice(file: str, found: HandIn, age: timedelta, unsaved: Collection[str]) 
     if unsaved:
         lacks = f"but does not hold the {', '.join(unsaved)} that you ran last"
         return f"{says}, {lacks}: run all cells, {again}."
+    if found.problems:
+        return f"{says}: correct what is marked with [fix], run all cells, then {again}."
     if found.verdicts and not any(found.verdicts.values()):
         return f"{says}, before any check had run: {again}."
-    if found.problems:
-        return f"{says}: correct what is marked with [fix], then {again}."
     if found.old:
         return f"{says}: run all cells from the top, {again}."
-    if not recent:
-        return f"{says}. Hand it in if you have changed nothing since then; if you have, {again}."
-    if found.notes:
-        return f"{says}: hand it in now, or first look at what is marked with [note]."
-    return f"{says} and is complete: hand it in now."
+    says += ": first look at what is marked with [note]" if found.notes else " and is complete"
+    return f"{says}. Hand it in if you have changed nothing since then; if you have, {again}."
 
 
 def receipt(sources: Iterable[str]) -> str:

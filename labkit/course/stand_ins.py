@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Collection, Iterable
+from collections.abc import Callable, Collection, Iterable, Mapping
 from functools import wraps
 from typing import Any
 
@@ -18,6 +18,7 @@ class StandIns(dict[str, str]):
     """The answers that are not right; each has a `STAND_IN`, or is used although it is `WRONG`."""
 
     ran: Iterable[str] = ()
+    given: Mapping[str, Callable[..., Any]] = {}  # what was last returned, by its name in captions
 
     def give(
         self, name: str, kind: str, given: Callable[..., Any], shell: Any
@@ -31,12 +32,26 @@ class StandIns(dict[str, str]):
             shell: Shell of the notebook, or None outside a notebook.
         """
         self[name] = kind
+        self.given = {**self.given, f"{kind} {name}": given}
         if shell is not None:
             from .. import plotting  # slow to load
 
             self.ran = shell.history_manager.input_hist_raw
             plotting.drawn_by = lambda: [f"{self[x]} {x}" for x in drawn_with(self.ran, self)]
         return given
+
+    def used_by(self, function: Callable[..., Any]) -> list[str]:
+        """What a function calls of all that was returned, such as "a stand-in for bang_bang".
+
+        A wrong answer that it calls by the answer's own name is left out.
+        """
+        code, known = getattr(function, "__code__", None), getattr(function, "__globals__", {})
+        called = [(name, known.get(name)) for name in (code.co_names if code else ())]
+        return [
+            words
+            for words, given in self.given.items()
+            if any(x is given and not words.endswith(f" {name}") for name, x in called if x)
+        ]
 
     def wrong(self) -> list[str]:
         """The student's wrong answers on which a prediction's truth in the last cell depends."""

@@ -107,8 +107,7 @@ class Desk:
 
     def wrong_dependencies(self, name: str, function: Callable[..., Any]) -> tuple[str, ...]:
         """Other answers that a function calls by name and that were wrong when last checked."""
-        code = getattr(function, "__code__", None)
-        steps = dis.get_instructions(code) if code else ()
+        steps = dis.get_instructions(function) if hasattr(function, "__code__") else ()
         called = [step.argval for step in steps if step.opname == "LOAD_GLOBAL"]
         fine = (Outcome.RIGHT, Outcome.NOT_ATTEMPTED)  # to call a stub is an error of its own
         wrong = {other for other, (_, v) in self.checked.items() if v.outcome not in fine}
@@ -192,7 +191,8 @@ def check(name: str, function: Callable[..., Any]) -> float:
     if awaits_marking(verdict) and handle and normalised(handle) == DEMO:
         verdict, *more = on_the_public_arm(question, verdict, function)
     lost = calculated_from_runs(executed_cells(function), name) if awaits_marking(verdict) else ""
-    says = message(question, verdict, printed, desk().wrong_dependencies(name, function), lost)
+    wrong, replaced = desk().wrong_dependencies(name, function), desk().stand_ins.used_by(function)
+    says = message(question, verdict, printed, wrong, replaced, lost)
     says = replace(says, helps=[*filter(None, more), *says.helps])
     judged = answer_hash(executed_cells(function), name)
     _say(says, verdict, found if verdict.mistake else None, judged)

@@ -543,7 +543,7 @@ def test_an_empty_cell_leaves_the_receipt_as_it_is():
 
 
 def test_the_last_word_says_whether_to_hand_in(folder):
-    """A file saved just now is handed in; one that lacks what ran last is saved first."""
+    """A file is handed in unless it lacks what ran last, or a text was typed since it was saved."""
     blank = examine(folder / "01_paths.ipynb")
     found = replace(blank, verdicts=dict.fromkeys(blank.verdicts, object()))
     clean = replace(found, notes=())
@@ -554,12 +554,19 @@ def test_the_last_word_says_whether_to_hand_in(folder):
         _advice("f", clean, timedelta(seconds=5), ["circle"]),
         _advice("f", replace(clean, old=["circle"]), timedelta(seconds=5), []),
     ]
-    assert says[0] == "f was saved 5 s ago and is complete: hand it in now."
-    assert "[note]" in says[1] and "if you have changed nothing" in says[2]
+    last = "Hand it in if you have changed nothing since then; if you have, save it and run this"
+    for k, start in enumerate(
+        (" 5 s ago and is complete", " 5 s ago: first look at what is", " 5 min")
+    ):
+        assert says[k].startswith(f"f was saved{start}") and last in says[k]
     assert "but does not hold the circle that you ran last: run all cells, save it" in says[3]
     assert says[4].startswith("f was saved 5 s ago: run all cells from the top, save it")
     word = "f was saved 5 s ago, before any check had run: save it and run this cell again."
     assert _advice("f", blank, timedelta(seconds=5), []) == word
+    gap = replace(blank, problems=("a given cell stopped",))
+    assert "correct what is marked with [fix], run all cells, then" in _advice(
+        "f", gap, timedelta(seconds=5), []
+    )
 
 
 def test_a_file_that_lacks_what_ran_last_is_not_said_to_be_ready(folder, capsys, monkeypatch):

@@ -107,6 +107,26 @@ def test_an_answer_that_leans_on_a_wrong_one_is_told(capsys):
     assert notebook.desk().wrong_dependencies("again", answers["method"]) == ()
 
 
+def test_an_answer_that_calls_what_use_returned_is_told(capsys):
+    """The name that the notebook has for it leads to another function than the student wrote."""
+    answers = {"given": lambda x: 0.0}
+    exec("def double(x):\n    return x\ndef again(x):\n    return my_double(x)", answers)
+    exec("def mine(x):\n    return double(x) + 1", answers)
+    for anyway, said in ((False, "a stand-in for double"), (True, "your wrong double")):
+        use_ = use("double", answers["double"], answers["given"], anyway=anyway)
+        answers["my_double"] = use_
+        capsys.readouterr()
+        check("again", answers["again"])
+        says = f"It uses {said}; correct your own function, run the cell with use(...) again, and"
+        assert says in " ".join(capsys.readouterr().out.split())
+        check("again", answers["mine"])
+        words = " ".join(capsys.readouterr().out.split())
+        assert "It uses your double, which was not right" in words and "use(...)" not in words
+    answers["my_double"] = use("double", double, answers["given"])
+    check("again", answers["again"])
+    assert "It uses" not in capsys.readouterr().out
+
+
 def test_an_answer_that_calls_an_unwritten_one_is_told(capsys):
     """Who skipped an extension and calls it did attempt the answer, and reads what stopped it."""
     answers = {}
