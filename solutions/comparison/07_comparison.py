@@ -183,7 +183,7 @@ def kp_for_margin(lag, delay, margin_deg):
         margin_deg: Phase margin, in [degrees].
 
     Returns:
-        Kp in [1/s].
+        Kp in [1/s], correct to 1 in 10 000.
     """
     ### BEGIN SOLUTION
     from solutions.comparison.answers import kp_for_margin as answer
@@ -317,7 +317,8 @@ def paired_difference(errors_a, errors_b):
         errors_b: Those of the other method, on the same seeds.
 
     Returns:
-        (mean, half_width): of a - b, and half of its 95 % interval.
+        (mean, half_width): of a - b, and half of its 95 % interval; Student's t to three decimals
+        is enough.
     """
     ### BEGIN SOLUTION
     from solutions.comparison.answers import paired_difference as answer
