@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 import re
+import shutil
 import struct
 import subprocess
 import tempfile
@@ -794,6 +795,20 @@ def test_what_a_folder_has_for_a_student_and_is_no_notebook_is_named(bare, tmp_p
         f"cap: {NAME}.IPYNB: there already",
         f"txt/{NAME}.ipynb.txt: not taken; its name does not say who handed it in",
     ]
+
+
+def test_who_handed_in_another_assignment_alone_is_named(bare, tmp_path):
+    """In the clone of a whole term the other notebooks are passed over beside the right one."""
+    for name in (f"ada/{NAME}.ipynb", "ada/00_warmup.ipynb", "hal/00_warmup.ipynb"):
+        (tmp_path / "in" / name).parent.mkdir(parents=True, exist_ok=True)
+        (tmp_path / "in" / name).write_text(name)
+    assert take(bare, tmp_path / "in", named="{student}/*.ipynb") == [
+        "hal: not taken; named after another assignment: 00_warmup.ipynb",
+        f"ada: {NAME}.ipynb: taken",
+    ]
+    shutil.rmtree(tmp_path / "in/ada")
+    with pytest.raises(LabkitError, match=f"nothing in .*in is for {NAME} and fits '{{student}}/"):
+        take(bare, tmp_path / "in", named="{student}/*.ipynb")
 
 
 def test_a_file_with_the_name_of_two_students_is_named_with_a_cure_that_helps(bare, tmp_path):

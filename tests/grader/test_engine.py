@@ -314,8 +314,22 @@ def test_an_answer_that_uses_a_stand_in_says_so(marks, solved):
     put(solved, "bang_bang", "def bang_bang(t, duration): return 0, 0, 0")
     put(solved, "trapezoid", "def trapezoid(*_): return my_bang_bang(0, 1)")
     found = {q.verdict.name: q.notes for q in marks(solved).questions if q.notes}
-    says = "it uses a stand-in for your bang_bang, which is not right either; correct it first"
+    says = "it uses a stand-in for your bang_bang; correct it first"
     assert found == {"trapezoid": (says,)}
+    put(solved, "bang_bang", "def bang_bang(t, duration): raise NotImplementedError")
+    assert says in next(q.notes for q in marks(solved).questions if q.verdict.name == "trapezoid")
+
+
+def test_what_is_wrong_on_hidden_cases_alone_has_no_stand_in(marks, solved):
+    """The notebook then runs the student's own function, and the note says so."""
+    right = "".join(cell_of(solved, "bang_bang")["source"])
+    put(solved, "bang_bang", f"{right}\n_right = bang_bang\ndef bang_bang(t, duration):\n"
+        "    return _right(t, int(duration) or 1)")  # fmt: skip
+    put(solved, "trapezoid", "def trapezoid(*_): return my_bang_bang(0, 1)")
+    found = {q.verdict.name: q for q in marks(solved).questions}
+    assert found["bang_bang"].verdict.outcome is Outcome.WRONG
+    says = "it uses your bang_bang, which is not right either; correct it first"
+    assert found["trapezoid"].notes == (says,)
 
 
 def test_a_mark_does_not_depend_on_what_cannot_be_shown(marks, solved):

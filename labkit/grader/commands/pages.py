@@ -54,7 +54,7 @@ def feedback(
     waits. What readers said of a report is on its authors' page.
     """
     from ..feedback.page import moodle_zip, write_feedback
-    from ..marks.table import marks_of
+    from ..marks.table import marks_of, other_due_date
     from ..peers.readers import reviews
     from ..peers.sheet import hand_out
     from ..students.exchange import for_exchange
@@ -69,6 +69,7 @@ def feedback(
             raise nobody(assignment, student)
         if not unmarked:
             _wait_for_marks(marks)
+        tell(other_due_date(course, assignment, marks), sys.stderr)
         pages = write_feedback(course, assignment, marks)
         made = list(failures.sift(pages, "no page"))
         print(f"pages in {course.root / 'feedback'}: {len(made)}")

@@ -241,7 +241,8 @@ def cannot_be_graded(results: Iterable[Result]) -> Iterator[str]:
     if names := sorted(result.student for result in results if result.rejected):
         yield (
             f"these students handed in a file that cannot be graded: {', '.join(names)}; ask each "
-            "for a new one, and give an extension if it would be late"
+            "for a new one, unless attempts/ holds another of theirs that can count; give an "
+            "extension if it would be late"
         )
 
 

@@ -7,7 +7,7 @@ as plain data, which is read with limits.
 from __future__ import annotations
 
 import time
-from collections.abc import Callable, Collection, Iterable, Iterator, Mapping
+from collections.abc import Callable, Collection, Iterable, Mapping
 from contextlib import closing, suppress
 from dataclasses import replace
 from typing import Any, cast
@@ -21,7 +21,6 @@ from ...course.receipt import receipt
 from ...course.serialize import read_record, record_data
 from ...course.verdict import Kind, Outcome, Verdict
 from ...course.withheld import withheld_tools
-from ...errors import listed
 from ..clean import clean_data, clean_line, how_many
 from ..sandbox.launch import Sandbox
 from ..sandbox.limits import MAX_TEXT, MAX_TRICKS, Limits, TextBudget
@@ -99,7 +98,8 @@ def grade(
         for function, (name, before) in zip(functions, tried.items(), strict=True):
             verdicts[name] = _mark_safely(function, before)
             listener(verdicts[name])
-        spent = session.spent
+        spent, passed = session.spent, {*session.right}
+    wrong = {k for k, v in verdicts.items() if v.outcome in (Outcome.WRONG, Outcome.ERROR)}
     result = replace(
         _ungraded(student, bundle, sandbox.level, data),
         score=round(sum(v.earned for v in verdicts.values()), 2),
@@ -109,7 +109,7 @@ def grade(
                 verdicts.get(question.name) or _unasked_verdict(question, tools),
                 tried.get(question.name),
                 todo,
-                _uses_wrong(todo, question.name, verdicts),
+                todo.causes(question.name, wrong, passed),
             )
             for question in bundle.questions
         ),
@@ -227,17 +227,6 @@ def _unasked_verdict(question: Question, tools: Mapping[str, tuple[str, ...]]) -
 def _incomparable(question: Question) -> Verdict:
     """The verdict on a question whose answers cannot be compared."""
     return all_alike(question, Outcome.ERROR, Kind.OTHER)
-
-
-def _uses_wrong(todo: Plan, name: str, verdicts: Mapping[str, Verdict]) -> Iterator[str]:
-    """Notes on an answer that is not right and uses others that are not, or their stand-ins."""
-    wrong = {k for k, v in verdicts.items() if v.outcome in (Outcome.WRONG, Outcome.ERROR)}
-    if name not in wrong:
-        return
-    for what, names in zip(("your", "a stand-in for your"), todo.used_by(name), strict=True):
-        if used := sorted(names & wrong - {name}):
-            is_, it = ("are", "them") if used[1:] else ("is", "it")
-            yield f"it uses {what} {listed(used)}, which {is_} not right either; correct {it} first"
 
 
 def _answer(

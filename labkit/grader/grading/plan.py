@@ -14,6 +14,7 @@ from typing import Any
 
 from ...course.definitions import needed_cells, written_cells
 from ...course.source import analyse, plain
+from ...errors import listed
 from ..sandbox.session import Step
 
 Cell = Mapping[str, Any]
@@ -49,12 +50,26 @@ class Plan:
         place, unread = self.places.get(question), self.unread.get(question, "")
         return next((step.source for step in self.steps if step.number == place), unread)
 
-    def used_by(self, question: str) -> tuple[set[str], set[str]]:
-        """The names that an answer uses, and the answers that `use` gives it under such a name."""
+    def causes(self, question: str, wrong: set[str], passed: set[str]) -> Iterator[str]:
+        """Notes on an answer that is not right and uses others that are not, or their stand-ins.
+
+        Args:
+            question: The question that it answers.
+            wrong: The questions whose answers are not right.
+            passed: Those whose answers are right on all public cases, so that `use` returns them.
+        """
+        if question not in wrong:
+            return
         parts = [part for cell in self.looks for part in cell["definitions"]]
         mine = [x["outside"] for x in parts if question in x["binds"] and not x["stub"]]
-        names = {*mine[-1]} if mine else set()
-        return names, {x for part in parts if names & {*part["binds"]} for x in part["asks"]}
+        names = {*mine[-1]} if mine else set[str]()
+        asked = {x for part in parts if names & {*part["binds"]} for x in part["asks"]}
+        if own := sorted((names | asked & passed) & wrong - {question}):
+            is_, it = ("are", "them") if own[1:] else ("is", "it")
+            yield f"it uses your {listed(own)}, which {is_} not right either; correct {it} first"
+        if replaced := sorted(asked & self.places.keys() - passed):
+            it = "them" if replaced[1:] else "it"
+            yield f"it uses a stand-in for your {listed(replaced)}; correct {it} first"
 
     def emptied(self) -> set[str]:
         """The questions that no cell answers, and in whose own cell are at most comments."""

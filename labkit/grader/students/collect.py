@@ -11,7 +11,6 @@ from collections.abc import Iterator, Sequence
 from contextlib import ExitStack
 from dataclasses import dataclass, replace
 from datetime import UTC, datetime
-from functools import partial
 from pathlib import Path
 
 from ...course.authoring.layout import Course
@@ -111,8 +110,11 @@ def collect(
                 else:
                     files = list(in_zip(stack.enter_context(open_zip(source)), now, read))
                 mine = [
-                    x for x in files if not any(map(partial(named_for, Path(x.label).name), others))
+                    x for x in files if not any(named_for(Path(x.label).name, y) for y in others)
                 ]
+                yield from _with_nothing_else(files, mine)
+                if not mine:
+                    raise LabkitError(f"nothing in {source} is for {assignment} and fits {named!r}")
                 yield from _collect(course, assignment, source, [_made(x, at, True) for x in mine])
         elif source.is_dir():
             files = list(in_exchange(source, assignment, unverified=unverified))
@@ -125,6 +127,22 @@ def collect(
             with open_zip(source) as archive:
                 files = [_made(file, at, False) for file in in_zip(archive, now)]
                 yield from _collect(course, assignment, source, files)
+
+
+def _with_nothing_else(files: Sequence[File], mine: Sequence[File]) -> Iterator[Taken]:
+    """Name files of other assignments if a student handed in nothing else.
+
+    Args:
+        files: All files.
+        mine: Those that are not named after another assignment.
+    """
+    known = {x.readings[0].who for x in mine if x.readings}
+    left: dict[str, list[str]] = {}
+    for file in files:
+        if file.readings and file.readings[0].who not in known:
+            left.setdefault(file.readings[0].who.name, []).append(file.readings[0].file)
+    for who, names in left.items():
+        yield Taken(who, "", f"not taken; named after another assignment: {few(names)}")
 
 
 def _made(file: File, at: datetime | None, exact: bool) -> File:
