@@ -662,7 +662,7 @@ PAIRED = Problem(
     asks="Two controllers, a and b, were run on the same seeds. Give `(mean, half_width)`: the "
     "mean of a - b and half the width of its 95 % interval by Student's t.",
     answer=answers.paired_difference,
-    judge=Close(rtol=5e-4, atol=1e-9, parts=("mean", "half_width")),  # t to three decimals
+    judge=Close(rtol=1e-3, atol=1e-9, parts=("mean", "half_width")),  # t to three decimals
     trials=(
         Trial(
             "the mean of numbers that are shifted by about one millimetre",
