@@ -46,11 +46,11 @@ class StandIns(dict[str, str]):
         A wrong answer that it calls by the answer's own name is left out.
         """
         code, known = getattr(function, "__code__", None), getattr(function, "__globals__", {})
-        called = [(name, known.get(name)) for name in (code.co_names if code else ())]
+        called = [(name, known[name]) for name in (code.co_names if code else ()) if name in known]
         return [
             words
             for words, given in self.given.items()
-            if any(x is given and not words.endswith(f" {name}") for name, x in called if x)
+            if any(x is given and not words.endswith(f" {name}") for name, x in called)
         ]
 
     def wrong(self) -> list[str]:

@@ -9,6 +9,7 @@ import warnings
 from dataclasses import replace
 from pathlib import Path
 
+import numpy
 import pytest
 from questions import DOUBLE, double, square
 
@@ -109,9 +110,9 @@ def test_an_answer_that_leans_on_a_wrong_one_is_told(capsys):
 
 def test_an_answer_that_calls_what_use_returned_is_told(capsys):
     """The name that the notebook has for it leads to another function than the student wrote."""
-    answers = {"given": lambda x: 0.0}
+    answers = {"given": lambda x: 0.0, "array": numpy.ones(2), "none": 0.0}
     exec("def double(x):\n    return x\ndef again(x):\n    return my_double(x)", answers)
-    exec("def mine(x):\n    return double(x) + 1", answers)
+    exec("def mine(x):\n    return double(x) + len(array) + none", answers)
     for anyway, said in ((False, "a stand-in for double"), (True, "your wrong double")):
         use_ = use("double", answers["double"], answers["given"], anyway=anyway)
         answers["my_double"] = use_
