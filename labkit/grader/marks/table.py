@@ -139,7 +139,7 @@ def other_due_date(course: Course, assignment: str, marks: Sequence[Mark]) -> It
             f"{RULES} has no due date for {assignment}, but late work loses points: "
             f"{few([mark.student for mark in late])}. The date is in the gradebook, where "
             f"formgrader or an earlier {RULES} put it. Write the right one into {RULES}, or delete "
-            f"it in formgrader (Manage Assignments, {assignment}) and export again"
+            f"it in formgrader (Manage Assignments, {assignment}), and type this again"
         )
 
 
