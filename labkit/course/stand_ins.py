@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import dis
 from collections.abc import Callable, Collection, Iterable, Mapping
 from functools import wraps
 from typing import Any
@@ -45,8 +46,7 @@ class StandIns(dict[str, str]):
 
         A wrong answer that it calls by the answer's own name is left out.
         """
-        code, known = getattr(function, "__code__", None), getattr(function, "__globals__", {})
-        called = [(name, known[name]) for name in (code.co_names if code else ()) if name in known]
+        called = globals_of(function).items()
         return [
             words
             for words, given in self.given.items()
@@ -56,6 +56,14 @@ class StandIns(dict[str, str]):
     def wrong(self) -> list[str]:
         """The student's wrong answers on which a prediction's truth in the last cell depends."""
         return [x for x in drawn_with(self.ran, self, ("predict",)) if self[x] == WRONG]
+
+
+def globals_of(function: Callable[..., Any]) -> dict[str, Any]:
+    """The global names that a Python function reads, with their values; else nothing."""
+    steps = dis.get_instructions(function) if hasattr(function, "__code__") else ()
+    read = dict.fromkeys(step.argval for step in steps if step.opname == "LOAD_GLOBAL")
+    known = getattr(function, "__globals__", {})
+    return {name: known[name] for name in read if name in known}
 
 
 def in_form(function: Callable[..., Any], right: Any) -> Callable[..., Any]:

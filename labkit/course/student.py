@@ -5,7 +5,6 @@ The questions are in a file beside the notebook, see `checks_file`.
 
 from __future__ import annotations
 
-import dis
 import inspect
 import linecache
 import os
@@ -32,7 +31,7 @@ from .question import Call, Question
 from .reply import LocalFunction
 from .serialize import read_question
 from .source import analyse
-from .stand_ins import STAND_IN, WRONG, StandIns, in_form
+from .stand_ins import STAND_IN, WRONG, StandIns, globals_of, in_form
 from .unfinished import still_raises, watch
 from .verdict import Outcome, Verdict
 from .withheld import withheld_tools, withhold
@@ -107,11 +106,9 @@ class Desk:
 
     def wrong_dependencies(self, name: str, function: Callable[..., Any]) -> tuple[str, ...]:
         """Other answers that a function calls by name and that were wrong when last checked."""
-        steps = dis.get_instructions(function) if hasattr(function, "__code__") else ()
-        called = [step.argval for step in steps if step.opname == "LOAD_GLOBAL"]
         fine = (Outcome.RIGHT, Outcome.NOT_ATTEMPTED)  # to call a stub is an error of its own
         wrong = {other for other, (_, v) in self.checked.items() if v.outcome not in fine}
-        return tuple(other for other in dict.fromkeys(called) if other in wrong - {name})
+        return tuple(other for other in globals_of(function) if other in wrong - {name})
 
 
 def shell() -> Any:

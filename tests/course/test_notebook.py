@@ -123,6 +123,9 @@ def test_an_answer_that_calls_what_use_returned_is_told(capsys):
         check("again", answers["mine"])
         words = " ".join(capsys.readouterr().out.split())
         assert "It uses your double, which was not right" in words and "use(...)" not in words
+    exec("def attribute(x):\n    return len.my_double", answers)  # no global name
+    check("again", answers["attribute"])
+    assert "It uses" not in capsys.readouterr().out
     answers["my_double"] = use("double", double, answers["given"])
     check("again", answers["again"])
     assert "It uses" not in capsys.readouterr().out
