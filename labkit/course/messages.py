@@ -137,7 +137,7 @@ def message(
             )
         if replaced:
             helps.append(
-                f"It uses {listed(replaced)}; correct your own function, run the cell with "
+                f"It uses {listed(replaced)}; once your own function is right, run the cell with "
                 "use(...) again, and then check this one."
             )
     tests, numbers = list[str](), list[str]()

@@ -118,7 +118,7 @@ def test_an_answer_that_calls_what_use_returned_is_told(capsys):
         answers["my_double"] = use_
         capsys.readouterr()
         check("again", answers["again"])
-        says = f"It uses {said}; correct your own function, run the cell with use(...) again, and"
+        says = f"It uses {said}; once your own function is right, run the cell with use(...) again"
         assert says in " ".join(capsys.readouterr().out.split())
         check("again", answers["mine"])
         words = " ".join(capsys.readouterr().out.split())
