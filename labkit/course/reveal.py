@@ -45,7 +45,7 @@ def predict(name: str, said: Any = None, *more: Any, truth: Any = None) -> Any:
         return None
     first = place.committed.get(name)
     if name in place.revealed and first is not None and not form.same(first, said):
-        print(wrapped(f"The answer was shown, so your first prediction stays: {first!r}."))
+        print(wrapped(f"The answer was shown, so your prediction stays: {first!r}."))
         _write_down(name, first)
         return first
     if said is None:
