@@ -99,7 +99,7 @@ ORDER = [
 """Lab and course from the ground up; each module imports from sets before its own alone."""
 LEVEL = {name: i for i, names in enumerate(ORDER) for name in names}
 FOLDERS = [
-    *("sandbox", "", "grading", "nbgrader", "students", "marks", "peers", "feedback"),
+    *("sandbox", "", "grading", "nbgrader", "students", "marks", "feedback"),
     *("defence", "cup", "terms", "gradescope", "commands"),
 ]
 """The grader's folders from the ground up; "" is `labkit/grader` itself, which all others share."""

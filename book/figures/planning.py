@@ -150,7 +150,6 @@ def plan() -> HTML:
         what = what if rows else f"practice hand-in, then {what}"
         spent = " to ".join(dict.fromkeys(f"{x + read:.2g}" for x in (core, whole)))
         rows.append((what, spent, *map(_week, WEEKS[name[:2]]), by_hand))
-    rows.append(("reviews of two reports", "", "11", _week(None), _week(None), "done or not"))
     talks = f"{CLASS / TEAM:.0f} talks, {CLASS * MINUTES[TALK] / 60.0:.0f} h; or "
     defences = f"{CLASS} defences, {CLASS * DEFENCE / 60.0:.0f} h"
     rows.append(("talk or defence", "", "12", "6", "2, at its end", talks + defences))

@@ -15,9 +15,7 @@
 #
 # Before you begin, each of you marks the two exemplars below with the rubric, alone and in a copy of this notebook,
 # in ten minutes. The rows of the rubric are in the six sections at the end of this notebook; read them first. Our marks
-# appear once you have committed to yours. In the notebook that the team hands in, enter the levels of one of you. If
-# your course has a peer review, each of you reads two other teams' reports after the deadline, without names, and
-# marks them with the same rubric.
+# appear once you have committed to yours. In the notebook that the team hands in, enter the levels of one of you.
 
 # %% setup=true
 import labkit as lk

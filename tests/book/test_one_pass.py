@@ -5,8 +5,8 @@ import json
 from book_pages import ROOT
 
 OWN_ARM = {"my_lag", "my_payload", "my_wall", "bug_1", "bug_2", "bug_3", "experiment"}
-WEIGHTS = {"functions": 30.0, "predictions and whys": 10.0, "own arm": 10.0, "report": 25.0}
-"""In percent, as the guide recommends them; 5 more are for reviews and 20 for the defence."""
+WEIGHTS = {"functions": 30.0, "predictions and whys": 10.0, "own arm": 10.0, "report": 30.0}
+"""In percent, as the guide recommends them; 20 more are for the defence."""
 WHYS = 14.0, 16.0
 """Eight whys of two points: six are not drawn and count in full, two are half right (estimated)."""
 REPORT = 2.0, 20.0
@@ -37,7 +37,7 @@ def test_the_guide_says_what_a_program_earns():
     assert f"Of the {sums['own arm'][1]:.0f} points for the student's own arm" in guide
     assert f"guesses earned {sums['own arm'][0]:.0f} ({share['own arm']:.1f} of 10 %)" in guide
     assert f"earn {share['predictions and whys']:.1f} of 10 %" in guide
-    assert f"({share['report']:.1f} of 25 %)" in guide
+    assert f"({share['report']:.1f} of 30 %)" in guide
     assert sum(share.values()) <= 45.0
 
 

@@ -9,7 +9,6 @@ import pytest
 from downloaded import NAME, bare_course, counting, from_moodle
 
 from labkit.__main__ import main
-from labkit.grader.peers.readers import sheet_of
 from labkit.grader.students.attempts import counted_attempt, perhaps_late
 from labkit.grader.students.collect import collect
 from labkit.grader.students.identity import lms_users
@@ -211,27 +210,6 @@ def test_what_could_be_another_time_is_none(text):
 def test_what_can_be_one_time_alone_is_that_time(text):
     """As Moodle, a person and nbgrader's exchange write it, in the zone that it names."""
     assert read_time(text) == datetime(2026, 3, 1, 11, 30, tzinfo=UTC)
-
-
-def test_the_worksheet_of_the_reviews_tells_namesakes_apart(bare, tmp_path, capsys):
-    """By the command that collecting names; the numbers of the reports stay as they are."""
-    report, where = "08_report", ["--course", str(bare.root)]
-    path = tmp_path / "WORKSHEET.csv"
-    path.write_text("name,email\nKim Lee,1@x\nKim Lee,2@x\n")
-    assert main(["students", "import", str(path), *where]) == 0
-    for name, k, more in (report, 11, []), (sheet_of(report), 21, ["--peer-review"]):
-        files = [(("Kim Lee", x), f"{report}.ipynb", str(x)) for x in (k, k + 1)]
-        zip = from_moodle(tmp_path / "1.zip", files)
-        capsys.readouterr()
-        assert main(["collect", report, str(zip), *more, *where]) == 1
-        command = f"labkit students import WORKSHEET.csv --assignment {name}\n"
-        assert capsys.readouterr().err.count(command) == 2
-        path.write_text(f"{HEAD}\nParticipant {k + 1},Kim Lee,1@x\nParticipant {k},Kim Lee,2@x\n")
-        words = command.replace(path.name, str(path)).split()[1:]
-        assert main([*words, *where]) == 1 and "no hand-in time" in capsys.readouterr().err
-        assert counting(bare, name) == {"Kim-Lee-1": str(k + 1), "Kim-Lee-2": str(k)}
-    numbers = {folder: one.number for folder, one in lms_users(bare, report).items()}
-    assert numbers == {"Kim-Lee-1": "12", "Kim-Lee-2": "11"}
 
 
 @pytest.mark.parametrize("listed", [True, False])

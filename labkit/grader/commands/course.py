@@ -142,8 +142,7 @@ def student_bundle(
 @click.option(
     "--assignment",
     metavar="NAME",
-    help="FILE is Moodle's grading worksheet of this assignment: it has the students' numbers. For "
-    "peer reviews write 08_report_review.",
+    help="FILE is Moodle's grading worksheet of this assignment: it has the students' numbers.",
 )
 @of_course
 def students(course: Course, action: str, file: Path, assignment: str | None) -> int:
@@ -154,10 +153,9 @@ def students(course: Course, action: str, file: Path, assignment: str | None) ->
     Exit code: 0 if the list was imported, 1 if it was and somebody's row, work or hand-in time
     needs a look (named at the end), 2 if the list was not imported.
     """
-    from ..peers.readers import sheet_of
     from ..students.enrol import import_list
 
-    if assignment and assignment not in {CUP, *map(sheet_of, course.names())}:
+    if assignment and assignment != CUP:
         course.notebook_source(assignment)
     summary, left = import_list(course, file, assignment)
     print("\n".join(summary))
@@ -185,11 +183,6 @@ def students(course: Course, action: str, file: Path, assignment: str | None) ->
     metavar="TIME",
     help="Time of the download or clone: the hand-in time of files that come from no platform.",
 )
-@click.option(
-    "--peer-review",
-    is_flag=True,
-    help="Collect the sheets that students filled in, with their reviews of others' reports.",
-)
 def collect(
     course: Course,
     assignment: str,
@@ -197,7 +190,6 @@ def collect(
     unverified: bool,
     named: str | None,
     at: str | None,
-    peer_review: bool,
 ) -> int:
     """Collect what students handed in, from any platform.
 
@@ -209,14 +201,12 @@ def collect(
     certain (named at the end), 2 if nothing could be collected.
     """
     from ..cup.entries import tied
-    from ..peers.readers import sheet_of
     from ..rules import read_rules
     from ..students.collect import collect
     from ..timestamp import read_time
 
     if assignment != CUP:
         course.notebook_source(assignment)
-    assignment = sheet_of(assignment) if peer_review else assignment
     zone = ZoneInfo(read_rules(course).zone)
     when = read_time(at, zone) if at else None
     if at and when is None:

@@ -34,35 +34,24 @@ to_file = click.option(
 @click.option(
     "--unmarked", is_flag=True, help="Write the pages before all answers are marked by hand."
 )
-@click.option(
-    "--peer-review",
-    is_flag=True,
-    help="Instead of pages, write a sheet for each student with two reports of others to review.",
-)
 def feedback(
     course: Course,
     assignment: str,
     student: str | None,
     moodle: Path | None,
     unmarked: bool,
-    peer_review: bool,
 ) -> int:
     """Write a feedback page for each student.
 
     Some answers are marked by hand, in formgrader. No page is written until they are all marked;
     the page of one --student waits for the answers of that student alone. With --unmarked no page
-    waits. What readers said of a report is on its authors' page.
+    waits.
     """
     from ..feedback.page import moodle_zip, write_feedback
     from ..marks.table import marks_of, other_due_date
-    from ..peers.readers import reviews
-    from ..peers.sheet import hand_out
     from ..students.exchange import for_exchange
 
     with Failures() as failures:
-        if peer_review:
-            tell(failures.sift(hand_out(course, assignment), "no sheet"), sys.stdout)
-            return failures.code
         everybody = [mark for mark in marks_of(course, assignment) if not mark.absent]
         marks = [mark for mark in everybody if student in {None, mark.student}]
         if not marks:
@@ -82,7 +71,6 @@ def feedback(
             count = moodle_zip(course, assignment, made, moodle)
             size = moodle.stat().st_size / 1e6
             print(f"for Moodle, {count} of {len(made)}, {size:.1f} MB: {moodle}")
-        tell((f"review missing: {says}" for says in reviews(course, assignment)[1]), sys.stdout)
     return failures.code
 
 

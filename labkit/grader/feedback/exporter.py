@@ -10,7 +10,6 @@ from nbconvert import HTMLExporter
 from ...course.authoring.layout import Course
 from ...errors import LabkitError
 from ..marks.table import marks_of
-from ..peers.readers import reviews
 from ..rules import read_rules
 from .page import page
 
@@ -31,7 +30,6 @@ class StudentPage(HTMLExporter):
         for mark in marks_of(course, known["assignment"], known["student"]):
             if mark.result is not None and (mark.lines or not mark.missing):
                 about |= {"output_extension": ".html", "outputs": {}}
-                said = reviews(course, known["assignment"])[0].get(mark.student, ())
-                return page(mark.result, mark, read_rules(course).name, said), about
+                return page(mark.result, mark, read_rules(course).name), about
             raise LabkitError(f"{mark.student}: {mark.missing}")
         raise LabkitError(f"there is no mark of {known['student']}")

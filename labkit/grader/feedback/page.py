@@ -13,7 +13,7 @@ from __future__ import annotations
 
 import re
 import zipfile
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import replace
 from functools import partial
 from pathlib import Path
@@ -35,7 +35,6 @@ from ..marks.mark import Mark
 from ..marks.table import mark_of
 from ..nbgrader.markup import markdown
 from ..pages import render_page
-from ..peers.readers import Review, reviews
 from ..rules import read_rules
 from ..students.identity import lms_users
 from .drawing import curve, side_by_side
@@ -70,16 +69,13 @@ class Measure(NamedTuple):
     over: bool
 
 
-def page(
-    result: Result, mark: Mark | None = None, course: str = "", reviews: Sequence[Review] = ()
-) -> str:
+def page(result: Result, mark: Mark | None = None, course: str = "") -> str:
     """The feedback page of one student.
 
     Args:
         result: The result of the submission.
         mark: The mark in the gradebook; by default that of the result.
         course: The name of the course.
-        reviews: What the readers of a report wrote.
 
     Returns:
         HTML in one file, which can be read without its scripts.
@@ -93,7 +89,6 @@ def page(
         result=result,
         mark=mark,
         course=course,
-        reviews=reviews,
         lines=asked | {line.name: line for line in mark.lines},
         by_hand=[line for line in mark.lines if line.name not in asked],
         answers=[q.verdict for q in result.questions if not is_prediction(q.verdict)],
@@ -117,14 +112,14 @@ def write_feedback(course: Course, assignment: str, marks: Iterable[Mark]) -> li
     Returns:
         For each student the file, or why no page could be made.
     """
-    name, said = read_rules(course).name, reviews(course, assignment)[0]
+    name = read_rules(course).name
 
     def make(mark: Mark) -> Path:
         if mark.result is None or (mark.missing and not mark.lines):
             raise LabkitError(mark.missing or "there is no result of theirs; grade again")
         path = course.root / "feedback" / mark.student / assignment / f"{assignment}.html"
         result = replace(mark.result, student=mark.student)  # a report has one for the team
-        write(path, page(result, mark, name, said.get(mark.author or mark.student, ())))
+        write(path, page(result, mark, name))
         return path
 
     return [for_student(mark.student, partial(make, mark)) for mark in marks]

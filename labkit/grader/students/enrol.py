@@ -105,8 +105,7 @@ def import_list(
     Args:
         course: The course.
         file: A CSV file; see `read_list`.
-        assignment: The assignment, if the file is Moodle's grading worksheet; it may be that of a
-            peer review, such as ``08_report_review``.
+        assignment: The assignment, if the file is Moodle's grading worksheet.
 
     Returns:
         Two lists of sentences. The first says what was done; the second, what a person should look

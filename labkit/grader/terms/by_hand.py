@@ -3,21 +3,18 @@
 from __future__ import annotations
 
 from collections.abc import Collection, Iterable, Iterator, Sequence
-from pathlib import Path
 from shlex import quote
 
 from ...course.authoring.layout import Course
 from ...course.own_arm import Arms
 from ...errors import LabkitError
-from ..pseudonyms import FILE as KEY
-from ..pseudonyms import pseudonym
 from ..rules import FILE as RULES
 from ..rules import rules_in
 from ..students.enrol import agreements, marks
 from ..students.identity import all_lms_users
 from ..students.roster import Roster, read_roster, same_name
 from ..submission import did_you_mean, is_name
-from .forget import FOLDERS, all_terms, pages_of_mates
+from .forget import all_terms, pages_of_mates
 
 _ZIP = "dist/baxter-lab.zip"
 
@@ -46,15 +43,6 @@ def left_by_hand(course: Course, terms: Sequence[Course], student: str) -> Itera
             f"{page.relative_to(course.root)} says that {student} handed in; once it is deleted, "
             f"write it again: labkit feedback {assignment} --student {quote(mate)}"
         )
-    sheets = [str(path.relative_to(course.root)) for path in _read_by_others(terms, student)]
-    if sheets:
-        yield f"the sheets of their readers still hold their report: {', '.join(sheets)}"
-    for term in terms:
-        for sheet in sorted((term.submitted / student).glob("*_review")):
-            yield (
-                f"the reviews that they wrote go too ({sheet.relative_to(course.root)}); when you "
-                "write the feedback pages of other teams again, these reviews will be missing"
-            )
     if any((x.root / _ZIP).exists() and student in Arms.of(x.root).handles for x in terms):
         yield f"{_ZIP} may still hold their arm; make it again: labkit student-bundle"
     yield (
@@ -102,14 +90,3 @@ def _perhaps_theirs(
             if any(ties) or (not ties and same_name(one.name) in names):
                 found.add(one.id)
         yield term, sorted(found - {student})
-
-
-def _read_by_others(terms: Iterable[Course], student: str) -> Iterator[Path]:
-    """Peer-review sheets, handed out or handed in, that contain a student's report."""
-    for term in terms:
-        key = term.root / KEY
-        if key.exists():
-            name = pseudonym(key.read_bytes(), student)
-            for folder in FOLDERS:
-                sheets = sorted(term.root.glob(f"{folder}/*/*_review/**/*.ipynb"))
-                yield from (x for x in sheets if name in x.read_text(errors="replace"))

@@ -23,7 +23,6 @@ from ...errors import LabkitError
 from ..atomic import write
 from ..grading.results import Results
 from ..nbgrader.gradebook import quiet_database
-from ..peers.readers import move_reviews
 from ..rules import FILE as RULES
 from ..rules import rules_in
 from ..students.arms import sealed_text
@@ -172,7 +171,6 @@ def forget(
                     f"{student} handed in {name} for {mate} too, who has other files in "
                     f"{term.root / 'attempts' / mate / name}; move these away, then try again"
                 )
-            move_reviews(term, name, student, mate)
             shutil.rmtree(term.root / "feedback" / mate / name, ignore_errors=True)  # names both
         for path in found:
             if path.is_dir() and not path.is_symlink():

@@ -1,1 +1,0 @@
-"""Two reviews of each report by other students: who reads whose, and the sheet."""
