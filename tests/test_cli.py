@@ -73,7 +73,6 @@ def test_a_number_that_makes_no_sense_is_a_sentence(words, sentence, capsys):
         (["term", "list", "--course", "nowhere"], "there is no "),
         (["feedback", "99_dance", "--course", ROOT], "'01_paths'"),
         (["grade", "--course", ROOT], "which assignment? "),
-        (["export", "01_paths", "--layout", "cup", "--course", ROOT], "export --layout cup"),
         (["export", "--layout", "moodle", "--course", ROOT], "labkit export ASSIGNMENT --layout m"),
         (
             ["export", "--layout", "moodle", "--column", "Paths", "--course", ROOT],
@@ -87,7 +86,6 @@ def test_a_number_that_makes_no_sense_is_a_sentence(words, sentence, capsys):
             )
             for layout in ("questions", "nbgrader", "moodle-worksheet", "gradescope")
         ),
-        (["export", "--final", "--course", ROOT], "type: labkit export --layout cup"),
         (["collect", "01_paths", ".", "--course", ROOT], "nothing in . was handed in for 01_paths"),
     ],
 )

@@ -72,7 +72,7 @@ ORDER = [
     {"course.source"},
     {"course.forms"},
     {"course.judges", "course.withheld", "course.unfinished", "course.stand_ins"},
-    {"course.baxter_cup", "course.bugs"},
+    {"course.bugs"},
     {"course.own_arm"},
     {"course.equivalence"},
     {"course.question"},
@@ -100,7 +100,7 @@ ORDER = [
 LEVEL = {name: i for i, names in enumerate(ORDER) for name in names}
 FOLDERS = [
     *("sandbox", "", "grading", "nbgrader", "students", "marks", "feedback"),
-    *("defence", "cup", "terms", "gradescope", "commands"),
+    *("defence", "terms", "gradescope", "commands"),
 ]
 """The grader's folders from the ground up; "" is `labkit/grader` itself, which all others share."""
 UPSTAIRS = {"grader", "__main__"}

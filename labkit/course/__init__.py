@@ -5,7 +5,6 @@ A notebook uses `check`, `hint` and `use`; the graders apply `mark` to the same 
 
 from __future__ import annotations
 
-from .baxter_cup import cup
 from .bugs import Found, Telling
 from .equivalence import AtTip, Response, TipTorque
 from .forms import Choose, Curve, Measured, Number, Rank
@@ -53,7 +52,6 @@ __all__ = [
     "Within",
     "case",
     "check",
-    "cup",
     "fingerprint",
     "hand_in",
     "hint",

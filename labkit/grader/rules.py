@@ -21,7 +21,7 @@ import msgspec
 from nbgrader.plugins import LateSubmissionPlugin
 from traitlets.utils.importstring import import_item
 
-from ..course.authoring.layout import UNRELEASED, Course
+from ..course.authoring.layout import DEFENCE, Course
 from ..errors import LabkitError
 from .nbgrader_api import nbgrader_api
 
@@ -140,7 +140,7 @@ def read_rules(course: Course) -> Rules:
     rules = rules_in(path)
     unknown = {*rules.assignments, *(x.assignment for x in rules.extensions)} - {
         "",
-        *UNRELEASED,
+        DEFENCE,
         *course.names(),
     }
     if unknown:

@@ -34,7 +34,7 @@ from made import notebook_of, result_of
 from test_platforms import FILES, TEXTS
 
 from labkit.__main__ import main
-from labkit.course.authoring.layout import CUP, DEFENCE
+from labkit.course.authoring.layout import DEFENCE
 from labkit.errors import LabkitError
 from labkit.grader.defence.mark import await_mark, give_mark
 from labkit.grader.grading.results import Results
@@ -45,7 +45,7 @@ from labkit.grader.students.collect import collect
 from labkit.grader.students.enrol import enrol, import_list
 from labkit.grader.students.exchange import SECRET
 from labkit.grader.students.identity import FILE, all_lms_users, lms_users, record_users
-from labkit.grader.students.move import move_to_owners, move_work
+from labkit.grader.students.move import move_to_owners
 from labkit.grader.students.platforms import LmsUser
 from labkit.grader.students.roster import FILE as ROSTER
 from labkit.grader.students.roster import read_roster, save_roster
@@ -345,10 +345,9 @@ def test_marks_go_with_the_work(course, tmp_path):
     await_mark(course, "Ada-Lovelace-42", ())
     give_mark(course, "Ada-Lovelace-42", (3, 2, 1))
     (before,) = marks_of(course, NAME)
-    cup = course.results / "cup/Ada-Lovelace-42.json"
-    for path in (cup, course.build / "explain/Ada-Lovelace-42/circle.html"):
-        path.parent.mkdir(parents=True, exist_ok=True)
-        path.write_text("[]")
+    path = course.build / "explain/Ada-Lovelace-42/circle.html"
+    path.parent.mkdir(parents=True, exist_ok=True)
+    path.write_text("[]")
     (tmp_path / "list.csv").write_text("name,login\nAda Lovelace,ada\n")
     _, left = import_list(course, tmp_path / "list.csv")
     assert not left
@@ -394,20 +393,6 @@ def test_two_of_one_name_change_places_with_their_marks(course, tmp_path, order)
     assert not any(mark.missing for mark in marks.values())
     given = {x: [line.by_hand for line in mark.lines if line.by_hand] for x, mark in marks.items()}
     assert given == {"ada": [], "ada2": [1.5]}
-
-
-def test_a_cup_entry_is_nobodys_where_the_notebook_has_left(bare):
-    """Its former folder would show it twice, even if other work has to stay there."""
-    for name in (NAME, CUP):
-        path = bare.submitted / "Ada-42" / name / f"{name}.ipynb"
-        path.parent.mkdir(parents=True)
-        path.write_text("{}")
-    entry = bare.results / "cup/Ada-42.json"
-    entry.parent.mkdir(parents=True)
-    entry.write_text("[]")
-    assert not move_work(bare, CUP, {"Ada-42": "ada"})
-    assert list(counting(bare)) == ["Ada-42"] and list(counting(bare, CUP)) == ["ada"]
-    assert not entry.exists()
 
 
 def test_what_cannot_be_moved_is_named(bare, tmp_path):

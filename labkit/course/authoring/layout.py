@@ -18,10 +18,6 @@ if TYPE_CHECKING:
 
 DEFENCE = "09_defence"
 """The oral examination, an assignment of the gradebook that nobody hands in."""
-CUP = "10_cup"
-"""The Baxter Cup, an assignment of the gradebook that has no points but extra credit."""
-UNRELEASED = (DEFENCE, CUP)
-"""Assignments that have no notebook to release."""
 
 
 @dataclass(frozen=True)

@@ -12,15 +12,12 @@ from zoneinfo import ZoneInfo
 
 import click
 
-from ...course.authoring.layout import CUP, DEFENCE, Course
+from ...course.authoring.layout import DEFENCE, Course
 from ...course.cli import PATH, verb
 from ...errors import LabkitError
 
 SEED = click.IntRange(min=0)
-MARKED_BY = {
-    CUP: "labkit export --layout cup --final",
-    DEFENCE: "labkit defence STUDENT --mark A,B,C",
-}
+MARKED_BY = {DEFENCE: "labkit defence STUDENT --mark A,B,C"}
 """The command that gives the marks of an assignment without a notebook."""
 
 
@@ -155,7 +152,7 @@ def students(course: Course, action: str, file: Path, assignment: str | None) ->
     """
     from ..students.enrol import import_list
 
-    if assignment and assignment != CUP:
+    if assignment:
         course.notebook_source(assignment)
     summary, left = import_list(course, file, assignment)
     print("\n".join(summary))
@@ -200,13 +197,11 @@ def collect(
     Exit code: 0 if everything was collected, 1 if a file was not collected or its owner is not
     certain (named at the end), 2 if nothing could be collected.
     """
-    from ..cup.entries import tied
     from ..rules import read_rules
     from ..students.collect import collect
     from ..timestamp import read_time
 
-    if assignment != CUP:
-        course.notebook_source(assignment)
+    course.notebook_source(assignment)
     zone = ZoneInfo(read_rules(course).zone)
     when = read_time(at, zone) if at else None
     if at and when is None:
@@ -229,9 +224,6 @@ def collect(
     finally:
         for taken in doubtful:
             print(taken, file=sys.stderr)
-    if assignment == CUP:
-        for says in tied(course):
-            print(says, file=sys.stderr)
     return 1 if doubtful else 0
 
 

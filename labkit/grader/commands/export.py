@@ -1,17 +1,16 @@
-"""The command that writes tables of marks, files for other platforms, and the cup's board."""
+"""The command that writes tables of marks, files for other platforms, and the concept test."""
 
 from __future__ import annotations
 
 import shlex
 import sys
 from dataclasses import replace
-from datetime import UTC, datetime
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 import click
 
-from ...course.authoring.layout import CUP, UNRELEASED, Course
+from ...course.authoring.layout import DEFENCE, Course
 from ...course.cli import verb
 from ...errors import LabkitError
 from ..clean import few
@@ -36,17 +35,13 @@ QUIZZES = ("paper", "moodle-quiz", "canvas-quiz")
 @of_course
 @click.option(
     "--layout",
-    type=click.Choice([*TABLES, *QUIZZES, "gradescope", "cup"]),
+    type=click.Choice([*TABLES, *QUIZZES, "gradescope"]),
     default="questions",
     help="moodle: for Moodle's gradebook; moodle-worksheet: for the assignment's page in Moodle; "
     "paper, moodle-quiz, canvas-quiz: the concept test instead of marks; gradescope: the zip with "
-    "which Gradescope grades ASSIGNMENT itself; cup: the board of the Baxter Cup, after the new "
-    "entries were run in the sandbox, at most three of a handle in a day.",
+    "which Gradescope grades ASSIGNMENT itself.",
 )
 @click.option("--form", type=click.Choice(["a", "b"]), help="Which form of the concept test.")
-@click.option(
-    "--final", is_flag=True, help="Cup: run on the seeds of the final, and give the bonus for it."
-)
 @click.option(
     "--column",
     metavar="NAME",
@@ -63,12 +58,11 @@ def export(
     assignment: str | None,
     layout: str,
     form: Form | None,
-    final: bool,
     column: str | None,
     absent_zero: bool,
     to: Path | None,
 ) -> int:
-    """Write marks, the concept test, or the board of the cup.
+    """Write marks or the concept test.
 
     The marks are those of an assignment or, without ASSIGNMENT, of the term: every assignment that
     was graded, and the total with the weights of course.toml.
@@ -89,15 +83,11 @@ def export(
         return _concept_test(course, layout, form, assignment, to)
     if form:
         raise LabkitError(f"--form is of the concept test: --layout {', '.join(QUIZZES)}")
-    if layout == "cup" and assignment is None:
-        return _board(course, final, to)
-    if final or layout == "cup":
-        raise LabkitError("for the cup's board type: labkit export --layout cup [--final]")
 
     doubts = list(about_extensions(course))
 
     def read(name: str) -> list[Mark]:
-        if name not in UNRELEASED:
+        if name != DEFENCE:
             course.notebook_source(name)
         found = list(marks_of(course, name))
         doubts.extend(idle_extensions(course, name, found))
@@ -125,7 +115,7 @@ def export(
                 f"--layout {layout}; without them, labkit export writes the table of the term"
             )
         rules, names = read_rules(course), [x.stem for x in sorted(course.bundle.glob("*.json"))]
-        names += UNRELEASED
+        names += [DEFENCE]
         term = {name: marks for name in names if (marks := read(name))}
         if not term:
             raise LabkitError("nobody is graded in any assignment; type: labkit grade ASSIGNMENT")
@@ -169,29 +159,6 @@ def _autograder(course: Course, assignment: str | None, to: Path | None) -> int:
         why = "the roster has no e-mail address, by which Gradescope tells whose arm it is"
         failures.add("not known to Gradescope", [Failure(x.id, why) for x in unknown])
         print(f"written: {to}; it holds the hidden cases, so give it to Gradescope alone")
-    return failures.code
-
-
-def _board(course: Course, final: bool, to: Path | None) -> int:
-    """Run the new entries of the cup and print the board; write it as a page too."""
-    from ..cup.entries import latest, play, tied
-    from ..cup.table import as_text, give_bonus, page
-    from ..seeds import public_warning, seed_of
-    from ..submission import misnamed
-
-    with Failures() as failures:
-        failures.add("not run", misnamed(course, CUP))
-        played = play(course, datetime.now(UTC).date(), final)
-        for entry in failures.sift(played, "not run"):
-            print(f"run: {entry.student}", flush=True)
-        found = latest(course, final)
-        tell(as_text(found), sys.stdout)
-        tell(tied(course), sys.stderr)
-        if to is not None:
-            write(page(course, found, final), to)
-        if final:
-            give_bonus(course, found)
-        tell(filter(None, [public_warning(seed_of(course))]), sys.stderr)
     return failures.code
 
 

@@ -7,7 +7,7 @@ from collections.abc import Iterator, Mapping
 from functools import partial
 
 from ...course.authoring.bundle import Bundle
-from ...course.authoring.layout import CUP, DEFENCE, Course
+from ...course.authoring.layout import DEFENCE, Course
 from ...errors import LabkitError
 from ..clean import how_many
 from ..each import Failure, for_student
@@ -30,8 +30,8 @@ def current_results(
         submission is not graded, if another one has been handed in since, if a later release has
         other questions or points, or if the file is damaged.
     """
-    if assignment in {CUP, DEFENCE}:
-        return  # these have commands of their own, and no result files
+    if assignment == DEFENCE:
+        return  # it has a command of its own, and no result files
     results = Results(course, assignment)
     handed_in = set(students(course, assignment))
     released = _released(course, assignment)

@@ -112,8 +112,7 @@ def _participants(marks: Sequence[Mark]) -> set[str]:
 def of_term(marks: Mapping[str, Sequence[Mark]], weights: Mapping[str, float]) -> list[list[Any]]:
     """All assignments side by side, with the total in percent.
 
-    An assignment without full marks, such as the cup, is a bonus: its points, times its weight, are
-    added to the percentage.  Without a defence yet, the percentage is that of everything else.
+    Without a defence yet, the percentage is that of everything else.
 
     Args:
         marks: The marks by assignment; the students may differ between assignments.
@@ -131,9 +130,8 @@ def of_term(marks: Mapping[str, Sequence[Mark]], weights: Mapping[str, float]) -
         counted = [(name, x) for name, x in scored if full[name] and (name, x) != (DEFENCE, "")]
         whole = sum(weights[name] for name, _ in counted)
         shares = [weights[n] * x / full[n] for n, x in counted if isinstance(x, float)]
-        bonus = sum(weights[n] * x for n, x in scored if isinstance(x, float) and not full[n])
         certain = whole and len(shares) == len(counted)
-        percent = round(100 * sum(shares) / whole + bonus, 2) if certain else ""
+        percent = round(100 * sum(shares) / whole, 2) if certain else ""
         ids = (student, who.first_name, who.last_name, who.email, who.id_number)
         table.append([*ids, *scores, percent])
     return table

@@ -1,4 +1,4 @@
-"""Assignments that have no notebook, in nbgrader's gradebook: the defence and the cup."""
+"""An assignment that has no notebook, in nbgrader's gradebook: the defence."""
 
 from __future__ import annotations
 

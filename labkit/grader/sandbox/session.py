@@ -1,6 +1,6 @@
 """A session: the process of one submission in the sandbox, started again if it dies.
 
-The message of an exception becomes one clean line here, because Gradescope and the cup show it
+The message of an exception becomes one clean line here, because Gradescope shows it
 before there is a result.  What cells print is only shown with a result, and is cleaned with it.
 """
 

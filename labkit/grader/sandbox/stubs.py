@@ -18,7 +18,7 @@ def install() -> None:
     import labkit
 
     checks = ModuleType("labkit.course")
-    for function in (check, cup, hint, predict, use):
+    for function in (check, hint, predict, use):
         setattr(checks, function.__name__, function)
     vars(checks).update(also=hint, case=hint)  # released cells do not call these
     for name in ("course", "check"):  # notebooks of version 0.1 say labkit.check
@@ -60,11 +60,6 @@ def my_arm(*_: Any, **__: Any) -> None:
 def predict(name: str, said: Any = None, *, truth: Any = None) -> Any:
     """Return the prediction that the student committed to."""
     return said
-
-
-def cup(make: Callable[..., Any], workspace: bool = False) -> None:
-    """Keep the controller that is entered; its runs are made outside."""
-    vars(cup).update(make=make, workspace=workspace)
 
 
 right: set[str] = set()

@@ -7,7 +7,7 @@ from collections.abc import Iterator, Mapping
 from pathlib import Path
 from typing import Any
 
-from ...course.authoring.layout import CUP, Course
+from ...course.authoring.layout import Course
 from ..each import Failure
 from ..grading.results import Results
 from ..nbgrader.gradebook import open_gradebook
@@ -122,11 +122,9 @@ def _move_marks(course: Course, assignment: str, moves: Mapping[str, str]) -> No
 
 
 def _move_pages(course: Course, assignment: str, old: str, new: str) -> None:
-    """Move pages about a student whose folder has no work left; the cup runs its entries again."""
+    """Move pages about a student whose folder has no work left."""
     left = any((course.root / base / old).exists() for base in _WORK)
     stays = left or old in read_roster(course)
-    if assignment == CUP or not stays:
-        (course.results / "cup" / f"{old}.json").unlink(missing_ok=True)
     if stays:
         return
     made = (course.build / "explain", course.build / "defence", *map(course.root.joinpath, _MADE))

@@ -46,8 +46,8 @@ def left_by_hand(course: Course, terms: Sequence[Course], student: str) -> Itera
     if any((x.root / _ZIP).exists() and student in Arms.of(x.root).handles for x in terms):
         yield f"{_ZIP} may still hold their arm; make it again: labkit student-bundle"
     yield (
-        "copies elsewhere are yours to delete: downloads, exported tables and reports, pages of "
-        "the Baxter Cup, the zip of feedback, backups, the exchange, the platform itself"
+        "copies elsewhere are yours to delete: downloads, exported tables and reports, "
+        "the zip of feedback, backups, the exchange, the platform itself"
     )
 
 

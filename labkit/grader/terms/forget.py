@@ -16,7 +16,7 @@ from markupsafe import escape
 from nbgrader.api import Gradebook
 
 from ...course.authoring.bundle import Bundle
-from ...course.authoring.layout import CUP, Course
+from ...course.authoring.layout import Course
 from ...course.own_arm import FILE as ARMS
 from ...course.own_arm import HANDLES, Arms
 from ...errors import LabkitError
@@ -110,7 +110,7 @@ def entries_of(terms: Iterable[Course], student: str) -> list[Path]:
 def shared_work(terms: Iterable[Course], student: str) -> list[tuple[Course, str, str]]:
     """What a student handed in for a team: term, assignment and new owner of each.
 
-    Reports belong to it, and the cup's notebook if it is the team's only one.
+    Reports belong to it.
 
     Raises:
         LabkitError: The roster or the release of a term is damaged.
@@ -122,10 +122,9 @@ def shared_work(terms: Iterable[Course], student: str) -> list[tuple[Course, str
         if one is None or not one.team:
             continue
         team = {mate.id for mate in roster.students if mate.team == one.team}
-        for name in [CUP, *sorted(path.stem for path in term.bundle.glob("*.json"))]:
+        for name in sorted(path.stem for path in term.bundle.glob("*.json")):
             own = team & {*students(term, name), *Results(term, name).students()}
-            shared = len(own) == 1 if name == CUP else Bundle.of(term, name).is_report
-            if shared and min(own, default="") == student and team - own:
+            if Bundle.of(term, name).is_report and min(own, default="") == student and team - own:
                 found.append((term, name, min(team - own)))
     return found
 

@@ -1,1 +1,0 @@
-"""The Baxter Cup: entries run in the sandbox, and their table."""
