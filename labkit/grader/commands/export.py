@@ -1,4 +1,4 @@
-"""The command that writes tables of marks, files for other platforms, and the concept test."""
+"""The command that writes tables of marks, and files for other platforms."""
 
 from __future__ import annotations
 
@@ -20,14 +20,11 @@ from .pages import nobody, tell, to_file, write
 
 if TYPE_CHECKING:
     from ..marks.mark import Mark
-    from ..terms.concepts import Form
 
 TABLES = ("nbgrader", "questions", "canvas", "moodle", "moodle-worksheet")
 """Layouts of marks."""
 NAMED = ("canvas", "moodle")
 """Layouts with a column whose name a platform must know."""
-QUIZZES = ("paper", "moodle-quiz", "canvas-quiz")
-"""Layouts of the concept test."""
 
 
 @verb("01_paths --to marks.csv")
@@ -35,13 +32,11 @@ QUIZZES = ("paper", "moodle-quiz", "canvas-quiz")
 @of_course
 @click.option(
     "--layout",
-    type=click.Choice([*TABLES, *QUIZZES, "gradescope"]),
+    type=click.Choice([*TABLES, "gradescope"]),
     default="questions",
     help="moodle: for Moodle's gradebook; moodle-worksheet: for the assignment's page in Moodle; "
-    "paper, moodle-quiz, canvas-quiz: the concept test instead of marks; gradescope: the zip with "
-    "which Gradescope grades ASSIGNMENT itself.",
+    "gradescope: the zip with which Gradescope grades ASSIGNMENT itself.",
 )
-@click.option("--form", type=click.Choice(["a", "b"]), help="Which form of the concept test.")
 @click.option(
     "--column",
     metavar="NAME",
@@ -57,12 +52,11 @@ def export(
     course: Course,
     assignment: str | None,
     layout: str,
-    form: Form | None,
     column: str | None,
     absent_zero: bool,
     to: Path | None,
 ) -> int:
-    """Write marks or the concept test.
+    """Write marks.
 
     The marks are those of an assignment or, without ASSIGNMENT, of the term: every assignment that
     was graded, and the total with the weights of course.toml.
@@ -79,10 +73,6 @@ def export(
         )
     if layout == "gradescope":
         return _autograder(course, assignment, to)
-    if layout in QUIZZES:
-        return _concept_test(course, layout, form, assignment, to)
-    if form:
-        raise LabkitError(f"--form is of the concept test: --layout {', '.join(QUIZZES)}")
 
     doubts = list(about_extensions(course))
 
@@ -133,19 +123,6 @@ def export(
     tell(doubts, sys.stderr)
     lost, count = unmatched(layout, marks)
     return int(any(m.missing for m in marks) or 0 < count == len(lost) or bool(doubts))
-
-
-def _concept_test(
-    course: Course, layout: str, form: Form | None, assignment: str | None, to: Path | None
-) -> int:
-    """Write a form of the concept test."""
-    from ..terms.concepts import LAYOUTS
-
-    if to is None or form is None or assignment:
-        raise LabkitError(f"type: labkit export --layout {layout} --form a --to FILE")
-    to.write_bytes(LAYOUTS[layout](course, form))
-    print(f"written: {to}")
-    return 0
 
 
 def _autograder(course: Course, assignment: str | None, to: Path | None) -> int:
