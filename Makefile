@@ -16,7 +16,7 @@ ASSIGNMENT ?= 01_paths
 SECOND := .venv-313/bin
 ON_SECOND := -m "not slow and not soak and not pybullet"
 
-.PHONY: help demo test test-313 wheels zip dev quick soak count record lab release grade book book-zip book-pdf film vendor campaign campaign-engines bench tag-bench report-card doctor lint types format clean
+.PHONY: help demo test test-313 zip dev quick soak count record lab release grade book book-zip book-pdf film vendor campaign campaign-engines bench tag-bench report-card doctor lint types format clean
 
 help: ## list the targets
 	@grep -hE '^[a-z0-9-]+:.*##' $(MAKEFILE_LIST) | awk -F':.*## ' '{printf "  make %-16s %s\n", $$1, $$2}'
@@ -32,9 +32,6 @@ test-313: .venv-313/.made ## on Python 3.13 without PyBullet: the lab, the cours
 	$(SECOND)/python -m pytest -q -n 2 $(ON_SECOND) tests/test_*.py tests/sim tests/tags tests/course \
 	&& $(SECOND)/python -m pytest -q -n 2 $(ON_SECOND) tests/notebooks/test_always_runs.py -k "all or none"; \
 	tests=$$?; wait $$card && exit $$tests
-
-wheels: .venv/.dev ## find the systems on which pip can install what a student needs
-	@PATH="$(CURDIR)/$(BIN):$$PATH" $(BIN)/python .ci/wheels.py
 
 dev: for-all .venv/.dev ## make the environment, .venv, and nothing else
 
@@ -85,8 +82,8 @@ record: .venv/.course ## make all recorded data again, and say which verdicts ch
 build/campaign.json: # the book to hand out contains the films of the campaign
 	@$(BIN)/python -m solutions.study
 
-count: ## count labkit's lines of code and statements, layer by layer
-	@python3 tests/count.py
+count: ## count the lines of code, storey by storey, beside their ceilings
+	@python3 tests/test_size.py
 
 bench: for-tests .venv/.dev browser ## measure speeds as ratios: build/bench.json
 	@$(BIN)/python -m tests.bench
@@ -100,8 +97,9 @@ report-card: .venv/.course ## test that the checks reject wrong answers and acce
 doctor: .venv/.course ## say how well this machine can isolate submissions
 	@$(BIN)/labkit doctor
 
-lint: .venv/.dev ## check style and spelling, and nothing else
+lint: .venv/.dev ## check style, spelling and who imports whom, and nothing else
 	@$(BIN)/ruff check --quiet . && $(BIN)/ruff format --quiet --check . || { $(BIN)/ruff format --diff . ; exit 1; }
+	@said=$$($(BIN)/lint-imports --no-logo --no-cache) || { echo "$$said"; exit 1; }
 	@$(BIN)/codespell *.md book labkit solutions tests .ci
 
 types: .venv/.dev ## check the types, and nothing else

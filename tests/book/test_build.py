@@ -1,12 +1,10 @@
 """The build tool: what it keeps, what it makes again, and what it refuses."""
 
-import ast
 import json
 import re
 import subprocess
 import sys
 import zipfile
-from importlib.util import find_spec
 from types import SimpleNamespace
 
 import book_pages
@@ -15,7 +13,6 @@ import pytest
 import yaml
 from book_pages import BOOK, ROOT
 from bs4 import BeautifulSoup
-from figures import architecture
 from figures.page import ConclusionFails, Question, holds, quiz, shown
 
 
@@ -52,43 +49,6 @@ def test_pages_of_the_contents_exist(book):
     """Each page of the table of contents has a source in Markdown or as a notebook."""
     for name in book_pages.in_order():
         assert any((ROOT / f"book/{name}{end}").exists() for end in (".md", ".ipynb"))
-
-
-def test_the_reference_has_every_module():
-    """It describes each module of the lab, course and replay as wholes, and none that is gone."""
-    told = "".join(p.read_text() for p in (ROOT / "book/reference").glob("*.md"))
-    described = set(re.findall(r"automodule:: labkit\.([\w.]+)$", told, re.M))
-    gone = {x for x in described if not find_spec(f"labkit.{x}")}
-    assert not gone, f"{gone} are described and are not there"
-    whole = {"course", "grader", "replay"}  # what these give stands in their __init__
-    folders = {p.parent for p in (ROOT / "labkit").glob("*/__init__.py")}
-    there = {p.stem for p in (ROOT / "labkit").glob("*.py")} | whole - {"grader"}
-    for folder in folders:
-        if folder.name not in whole:
-            there |= {f"{folder.name}.{p.stem}" for p in folder.glob("*.py")}
-    missing = {x for x in there - described if not x.endswith("__init__")} - {"__main__"}
-    assert not missing, f"enter {missing} as automodule on a page of book/reference"
-
-
-def test_the_picture_of_the_modules_has_the_order_that_imports_keep():
-    """Its rows, from the ground up, never contradict the order of tests/test_imports.py."""
-    text = (ROOT / "tests/test_imports.py").read_text()
-    order = ast.literal_eval(re.search(r"^ORDER = (\[.*?^\])", text, re.M | re.S)[1])
-    level = {name: k for k, names in enumerate(order) for name in names}
-    rows = [[level.get(name, len(order)) for name in names] for _, names in architecture.LAYERS]
-    drawn = {name for _, names in architecture.LAYERS for name in names}
-    missing = {name for name in level if "." not in name} - {"labkit"} - drawn
-    assert not missing, f"enter {missing} in LAYERS of book/figures/architecture.py"
-    assert [max(row) for row in rows] == sorted(max(row) for row in rows)
-
-
-def test_a_module_without_a_place_in_the_picture_is_named_with_the_file_to_enter_it_in(monkeypatch):
-    """Of one that has gone and one that is new, both are named."""
-    first, (title, _), *rest = architecture.LAYERS
-    monkeypatch.setattr(architecture, "LAYERS", (first, (title, ("trajectory", "gone")), *rest))
-    words = r"LAYERS of book/figures/architecture\.py .* enter there, or take out: gone, paths;"
-    with pytest.raises(ConclusionFails, match=words):
-        architecture.picture()
 
 
 def test_a_quiz_marks_one_answer_right():
