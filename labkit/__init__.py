@@ -31,7 +31,12 @@ from .trajectory import Chain, Hold, PosePath, PoseSample, Sample, Trajectory
 from .world import World
 
 if TYPE_CHECKING:
+    from . import course as course
     from . import plotting, replay
+    from . import tags as tags
+    from .course import hand_in as hand_in
+    from .course import my_arm as my_arm
+    from .course import my_bug as my_bug
     from .replay import live
     from .tags import *  # noqa: F403
 
@@ -47,17 +52,17 @@ __all__ = [
 ]  # fmt: skip
 
 
-def __getattr__(name: str) -> Any:
-    """Load a name on first use, because OpenCV, Matplotlib and IPython are slow to import."""
-    if name in ("course", "plotting", "replay", "tags"):
-        return import_module(f".{name}", __name__)
-    if name == "live":
-        return import_module(".replay", __name__).live
-    if name in ("hand_in", "my_arm", "my_bug"):
-        return getattr(import_module(".course", __name__), name)
-    if name not in __all__:
-        raise AttributeError(f"module 'labkit' has no attribute {name!r}")
-    return getattr(import_module(".tags", __name__), name)
+_FROM = {"live": "replay"} | dict.fromkeys(("hand_in", "my_arm", "my_bug"), "course")
+
+if not TYPE_CHECKING:  # else every misspelt name would pass a type checker
+
+    def __getattr__(name: str) -> Any:
+        """Load a name on first use, because OpenCV, Matplotlib and IPython are slow to import."""
+        if name in ("course", "plotting", "replay", "tags"):
+            return import_module(f".{name}", __name__)
+        if name not in __all__ and name not in _FROM:
+            raise AttributeError(f"module 'labkit' has no attribute {name!r}")
+        return getattr(import_module(f".{_FROM.get(name, 'tags')}", __name__), name)
 
 
 def __dir__() -> list[str]:

@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+import inspect
 from typing import Any
 
 import numpy as np
 
 from .arm import Arm
 from .arm_adapters import Real, RealArm, Simulated
-from .control import COMMANDS, Command, State
+from .control import COMMANDS, Controller
 from .errors import (
     ArmLost,
     Closed,
@@ -25,9 +25,7 @@ from .robot import Robot
 from .shapes import Array, as_array, as_number, shown
 from .trajectory import AnySample, PoseSample, Sample, Target
 
-Controller = Callable[[State, Any], Command]
-"""Any function of the state and the target's sample; it need not inherit or register anything."""
-
+ORDER = "the order is arm, target, controller"
 RUNAWAY = 50.0
 """An arm whose joint speeds are a longer vector than this, in [rad/s], is out of control.
 
@@ -50,7 +48,8 @@ def run(
         arm: The arm: simulated, or a real one behind the methods of `RealArm`.
         target: A function of the time since the start, in [s], that returns a `Sample` or a
             `PoseSample`.
-        controller: A function of a `State` and the target's sample that returns a command.
+        controller: A function of a `State` and the target's sample that returns a command.  If it
+            is an object with a method ``reset()``, that is called first; see `Remembering`.
         rate: How often the controller is called, in [Hz]; its period is a whole number of physics
             steps.  With a real arm, the loop skips the ticks for which it is late.
         duration: Length of the run, in [s]; None means the target's own duration.
@@ -64,15 +63,32 @@ def run(
         Diverged: The arm ran away; the error keeps the log too.
         ArmLost: A real arm stopped answering, or answered with NaN; the error keeps the log too.
         OutOfRange: The rate does not fit the physics step, or no duration is known.
-        TypeMismatch: The arm, the target or the controller has the wrong type.
+        TypeMismatch: The arm, the target or the controller has the wrong type, or target and
+            controller are swapped.
         Closed: The arm's world is closed.
     """
-    for name, given in (("target", target), ("controller", controller)):
-        if not callable(given):
-            raise TypeMismatch(
-                f"{name} is {shown(given)}, expected a function: run(arm, target, controller)"
-            )
+    check_order(target, controller)
     return run_driven(_driven(arm, rate), target, controller, duration)
+
+
+def check_order(target: object, *controllers: object) -> None:
+    """Raise `TypeMismatch` unless all are functions, in the order that `run` and `live` share."""
+    for name, given in (("target", target), *(("controller", law) for law in controllers)):
+        if not callable(given):
+            raise TypeMismatch(f"{name} is {shown(given)}, expected a function; {ORDER}")
+    if not _takes_time(target) and any(map(_takes_time, controllers)):
+        raise TypeMismatch(f"target and controller are swapped; {ORDER}")
+
+
+def _takes_time(function: Any) -> bool:
+    """Whether a function can be called with the time alone, as a target is."""
+    try:
+        inspect.signature(function).bind(0.0)
+    except TypeError:
+        return False
+    except ValueError:  # a built-in function does not say
+        pass
+    return True
 
 
 def run_driven(
@@ -106,6 +122,8 @@ def _loop(
     often = max(1, round(0.005 / driven.period))  # every 5 ms, in which no arm gets far
     t = driven.begin()
     try:
+        if reset := getattr(controller, "reset", None):
+            reset()
         while True:
             running = samples.name
             actual, reported, _ = seen = driven.observe()
@@ -151,7 +169,7 @@ def _driven(arm: object, rate: Any) -> Simulated | Real:
         return Real(arm, rate)
     lacks = [part for part in ("robot", "state", "apply", "stop", "wait") if not hasattr(arm, part)]
     hint = f"; as a real arm it lacks {', '.join(lacks)}" if len(lacks) < 4 else ""
-    raise TypeMismatch(f"arm is {shown(arm)}, expected an Arm: run(arm, target, controller){hint}")
+    raise TypeMismatch(f"arm is {shown(arm)}, expected an Arm; {ORDER}{hint}")
 
 
 _FLOAT = np.dtype(np.float64)
@@ -220,10 +238,7 @@ def _ticks(target: Target, duration: float | None, period: float) -> int:
     if duration is None:
         duration = getattr(target, "duration", None)
         if duration is None:
-            raise OutOfRange(
-                f"the target {name_of(target)} has no duration; give duration=..., unless target "
-                "and controller were swapped: run(arm, target, controller)"
-            )
+            raise OutOfRange(f"the target {name_of(target)} has no duration; give duration=...")
     return round(as_number(duration, "duration", least=0.0) / period + 1e-9) + 1
 
 

@@ -41,7 +41,7 @@ def picked() -> HTML:
     names = {campaign.BASELINE: "baseline (the built-in method)"}
     rows = [
         (names.get(controller, controller), *(_error(controller, task) for task in campaign.TASKS))
-        for controller in (*campaign.FIVE, campaign.BASELINE)
+        for controller in (*campaign.FIVE, campaign.INTEGRAL, campaign.BASELINE)
     ]
     return table(
         ("Method", *campaign.TASKS),

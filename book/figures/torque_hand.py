@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import replace
+from typing import Any
 
 import matplotlib.pyplot as plt
 import numpy as np
@@ -14,11 +15,22 @@ from scipy.optimize import fsolve
 import labkit as lk
 from labkit import metrics
 from labkit.plotting import STYLES
-from solutions.study.joint_torque import ComputedTorque
+from solutions.study import tasks
+from solutions.study.joint_torque import ComputedTorque, IntegralTorque
 
 from .claims import claim, shows
-from .page import figure, number, numbers, shown, table
-from .torque import DAMPER, KP, ON_CIRCLE, REPORT_KD, REPORT_KP, SPRING, circle_run, radius
+from .page import figure, holds, number, numbers, shown, table
+from .torque import (
+    DAMPER,
+    KP,
+    ON_CIRCLE,
+    ON_CIRCLE_KD,
+    REPORT_KD,
+    REPORT_KP,
+    SPRING,
+    circle_run,
+    radius,
+)
 
 WEIGHT = 0.5
 """Mass of the thing in the hand, in [kg]."""
@@ -274,4 +286,47 @@ def payload() -> HTML:
         "Dotted, the formula.",
         f"Two curves that rise and settle: {', '.join(said)}; the dotted lines of the formula "
         "are near the ends of the curves, and a little above where the gain is small.",
+    )
+
+
+KI, SEEDS = 1000.0, 10
+"""Gain of the integral, in [1/s^3], and the number of seeds for its table."""
+
+
+def integral() -> HTML:
+    """What an integral gains and costs: the circle, then ten seconds at rest, over the seeds."""
+    model, task = lk.Model("left", lk.BAXTER), tasks.circle()
+    gains = model, ON_CIRCLE, ON_CIRCLE_KD
+    laws = {
+        "computed torque": ComputedTorque(*gains, gravity=False),
+        "with the integral": IntegralTorque(*gains, KI, gravity=False),
+    }
+    found = {
+        name: np.array([_circle_then_rest(law, task, seed) for seed in range(SEEDS)])
+        for name, law in laws.items()
+    }
+    plain, better = (x.mean(axis=0) for x in found.values())
+    holds(better[0] < 0.7 * plain[0], "the integral tracks better")
+    holds((better[1:3] > 1.05 * plain[1:3]).all(), "it pays with speed error and with hunting")
+    rows = [
+        (name, *(f"{m:.3g} ± {s:.1g}" for m, s in zip(x.mean(0), x.std(0, ddof=1), strict=True)))
+        for name, x in found.items()
+    ]
+    head = ("", "error on the circle [mm]", "speed error there [mm/s]", "speed at rest [mm/s]",
+            "error at rest [mm]")  # fmt: skip
+    return table(
+        head, rows, f"RMS at the tip, realistic arm: mean and standard deviation of {SEEDS} seeds"
+    )
+
+
+def _circle_then_rest(law: Any, task: tasks.Task, seed: int) -> tuple[float, ...]:
+    """RMS errors of place and speed on the circle, speed and error at rest, in [mm] and [mm/s]."""
+    with lk.Arm("left", lk.BAXTER, seed, q0=task.start(seed)) as arm:
+        runs = lk.run(arm, task.joints, law), lk.run(arm, lk.Hold(task.q0, 10.0), law)
+    moving, still = (metrics.since(log, at) for log, at in zip(runs, (1.0, 2.0), strict=True))
+    return (
+        1e3 * metrics.rms(metrics.tip_error(moving)[:, :3]),
+        1e3 * metrics.rms(metrics.velocity_error(moving)),
+        1e3 * metrics.rms(metrics.tip_velocities(still)),
+        1e3 * metrics.rms(metrics.tip_error(still)[:, :3]),
     )

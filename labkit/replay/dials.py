@@ -114,6 +114,11 @@ class Dialled:
         told = [f"{d} {self.values[d]:g}" for d in self._takes[self.name]]
         return ", ".join([self.name, *told])
 
+    def reset(self) -> None:
+        """Let the selected controller forget, if it has a memory."""
+        if reset := getattr(self._laws[self.name], "reset", None):
+            reset()
+
     def turn(self, name: str, value: float) -> bool:
         """Set a dial, and return whether it belongs to the plant."""
         self.values[name] = value

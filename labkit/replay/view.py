@@ -4,15 +4,16 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from dataclasses import asdict
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from ..arm import Arm
 from ..errors import TypeMismatch
 from ..robot import SIDES
-from ..run import name_of
+from ..run import check_order, name_of
 from ..shapes import shown
+from ..trajectory import Target
 from .dials import read_dials
 from .figure import compact
 from .motion import drawn
@@ -20,16 +21,19 @@ from .saved import still
 from .session import Session
 from .surroundings import faces
 
+if TYPE_CHECKING:
+    from .front import Live
+
 
 def live(
     arm: Arm,
+    target: Target,
     controller: Callable[..., Any] | Mapping[str, Callable[..., Any]],
-    target: Any,
     *,
     rate: float = 200.0,
     title: str = "The arm, live",
     **dials: Any,
-) -> Any:
+) -> Live:
     """Show an arm in real time that the user can pull with the mouse, by touch or with keys.
 
     Nothing runs before "Start" is pressed.  From then on the arm belongs to the cell, and its use
@@ -38,10 +42,10 @@ def live(
 
     Args:
         arm: A simulated arm, preferably one made for this cell; it starts where it is.
-        controller: As for `run`; or several by name, to switch between.  One that has an argument
-            with the name of a dial is given the dial's value there: ``law(state, target, Kp)``.
         target: As for `run`.  A closed path repeats for ever; a target of poses can be dragged,
             and so can walls, tables, bands and tags.
+        controller: As for `run`; or several by name, to switch between.  One that has an argument
+            with the name of a dial is given the dial's value there: ``law(state, target, Kp)``.
         rate: How often the controller is called, in [Hz].
         title: The heading.
         **dials: For each dial a range (low, high) or (low, high, start), and perhaps a unit, as in
@@ -54,8 +58,8 @@ def live(
         dial or choice of a controller, and anew after 120 s.
 
     Raises:
-        TypeMismatch: The arm is not simulated, a controller or the target is not a function, or a
-            dial has no range.
+        TypeMismatch: The arm is not simulated, a controller or the target is not a function, they
+            are swapped, or a dial has no range.
         UnknownName: Neither a controller nor the plant has a number of a dial's name.
         OutOfRange: A dial starts outside its range, or the rate does not fit the physics step.
     """
@@ -65,9 +69,7 @@ def live(
     if not isinstance(arm, Arm):
         raise TypeMismatch(f"arm is {shown(arm)}, expected a simulated lk.Arm")
     named = controller if isinstance(controller, Mapping) else {name_of(controller): controller}
-    for name, given in (*named.items(), ("target", target)):
-        if not callable(given):
-            raise TypeMismatch(f"{name} is {shown(given)}, expected a function")
+    check_order(target, *named.values())
     laws = {str(name): law for name, law in named.items()}
     found = read_dials(dials, arm.plant, laws)
     widget = Live()

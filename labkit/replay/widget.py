@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from itertools import cycle
-from typing import Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -15,6 +15,9 @@ from .motion import Motion
 from .saved import body, still
 from .surroundings import faces, outline, placed
 
+if TYPE_CHECKING:
+    from .front import Replay
+
 BOARD = 0.12
 """Side of the square that represents a tag's board, as in `marks.js`, in [m]."""
 
@@ -24,7 +27,7 @@ SEEN_THROUGH = 0.38
 """Colours and opacity of see-through arms, as in `player.js` and `body.js`."""
 
 
-def show(motion: Motion) -> Any:
+def show(motion: Motion) -> Replay:
     """Make a replay to put at the end of a cell.
 
     Args:

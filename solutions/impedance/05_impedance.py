@@ -693,8 +693,8 @@ def by_hand(state, target, stiffness):
 wall = lk.Wall(T_ready[:3, 3] + [0.06, 0.0, 0.0], normal=(-1.0, 0.0, 0.0), size=(0.3, 0.3))
 view = lk.live(
     lk.Arm("left", plant, q0=ready, world=lk.World(things=[wall])),
-    {your_law: by_hand, "position mode": stiff},
     lk.Hold(T_ready, 1.0),
+    {your_law: by_hand, "position mode": stiff},
     title="An impedance in your hand",
     stiffness=(50.0, 1500.0, 300.0, "N/m"),
     payload=(0.0, 1.0),

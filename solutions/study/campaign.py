@@ -1,6 +1,6 @@
 """The report's comparison, run honestly: ``make campaign``.
 
-Seven methods follow every task, on the ideal arm and on Baxter's, with several seeds.  A seed
+Eight methods follow every task, on the ideal arm and on Baxter's, with several seeds.  A seed
 decides where the arm starts (about 10 mm off the path), the measurement noise and which ticks are
 late.  With one seed every method starts at the same place, so differences can be taken in pairs.
 The gains are in `gains`; `claims` judges what the report claimed about the outcome.
@@ -56,11 +56,12 @@ FIVE = (
     "workspace impedance",
 )
 """The order of the report: figures 4 to 7, 8 to 11, and so on."""
-CONTROLLERS = (*FIVE, FEED_FORWARD, BASELINE)
+INTEGRAL = "computed torque with an integral"
+CONTROLLERS = (*FIVE, INTEGRAL, FEED_FORWARD, BASELINE)
 
 
 def grid(seeds: int, controllers: Sequence[str] = CONTROLLERS) -> list[dict[str, Any]]:
-    """The cells of the campaign: 7 controllers, all tasks, 2 plants, the seeds."""
+    """The cells of the campaign: 8 controllers, all tasks, 2 plants, the seeds."""
     return cells(controller=controllers, task=TASKS, plant=("ideal", "baxter"), seed=range(seeds))
 
 

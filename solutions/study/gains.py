@@ -13,10 +13,10 @@ from dataclasses import dataclass
 from typing import Any
 
 from labkit import Model, Plant
-from labkit.run import Controller
+from labkit.control import Controller
 
 from .joint_impedance import JointImpedance
-from .joint_torque import AugmentedPD, ComputedTorque
+from .joint_torque import AugmentedPD, ComputedTorque, IntegralTorque
 from .joint_velocity import JointVelocityPD
 from .workspace_impedance import WorkspaceImpedance
 from .workspace_velocity import WorkspaceVelocityPD
@@ -64,12 +64,15 @@ def course_controllers(model: Model, plant: Plant | None = None) -> dict[str, Ca
 
 
 def variants(model: Model, plant: Plant | None = None) -> dict[str, Candidate]:
-    """The other form of the torque law, and both impedances with a prescribed inertia."""
+    """The other forms of the torque law, and both impedances with a prescribed inertia."""
     plant = plant or model.plant
     gravity, slow = not plant.gravity_compensation, _slow(plant)
     fast = 200.0 if slow else 1000.0
     K, D = _JOINT_SPRING[slow], _JOINT_DAMPER[slow]
     return {
+        "computed torque with an integral": Candidate(
+            IntegralTorque(model, *_COMPUTED[slow], gravity=gravity), fast, True
+        ),
         "augmented PD": Candidate(AugmentedPD(model, *_AUGMENTED[slow], gravity), fast, True),
         "shaped workspace impedance": Candidate(
             WorkspaceImpedance(model, K=TIP_SPRING, inertia=_TIP_INERTIA[slow], gravity=gravity),

@@ -15,8 +15,7 @@ import numpy as np
 from scipy.signal import savgol_filter
 
 from labkit import BAXTER, Arm, JointTorque, Log, Model, Plant, Sample, State, metrics, run
-from labkit.control import Command
-from labkit.run import Controller
+from labkit.control import Command, Controller
 from labkit.shapes import Array
 
 from .gains import course_controllers

@@ -31,8 +31,8 @@ from labkit import (
     run,
     se3,
 )
+from labkit.control import Controller
 from labkit.paths import Spline
-from labkit.run import Controller
 from labkit.shapes import Array
 from labkit.tags.board import Board
 from labkit.tags.camera import Camera, looking_at

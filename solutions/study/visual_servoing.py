@@ -23,9 +23,8 @@ from labkit import (
     Trajectory,
     se3,
 )
-from labkit.control import Command
+from labkit.control import Command, Controller
 from labkit.errors import ControllerError
-from labkit.run import Controller
 from labkit.shapes import as_vector
 from labkit.tags.stream import Reading
 

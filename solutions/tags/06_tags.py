@@ -496,7 +496,7 @@ board.place(se3.pose(np.eye(3), T_wt[:3, 3] - offset))
 stream = lk.TagStream(watching, board.tag, rate=10.0, delay=0.1)
 mine = my_carry_forward is not given_carry_forward and my_blend is not given_blend
 law = "position mode after your prediction" if mine else "position mode after a stand-in"
-view = lk.live(arm, {law: by_camera}, lk.TagTarget(stream, Follower()), rate=100.0, title="You move the tag")
+view = lk.live(arm, lk.TagTarget(stream, Follower()), {law: by_camera}, rate=100.0, title="You move the tag")
 view
 
 # %% [markdown]

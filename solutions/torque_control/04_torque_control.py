@@ -724,7 +724,7 @@ def pulled(state, target, factor):
 
 
 view = lk.live(
-    lk.Arm("left", lk.BAXTER, q0=circle(0.0).position), {spring_law: pulled, ct.__name__: ct}, circle,
+    lk.Arm("left", lk.BAXTER, q0=circle(0.0).position), circle, {spring_law: pulled, ct.__name__: ct},
     title="Torque control", factor=(0.3, 2.0, 1.0), payload=(0.0, 1.0), stiction=(0.0, 1.0),
 )
 view

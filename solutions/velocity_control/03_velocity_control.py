@@ -536,7 +536,7 @@ def circling(state, target, kp):
 
 
 view = lk.live(
-    lk.Arm("left", lk.BAXTER, q0=q0), {joint_law: circling}, joints, title="Velocity control",
+    lk.Arm("left", lk.BAXTER, q0=q0), joints, {joint_law: circling}, title="Velocity control",
     kp=(0.0, 30.0, 5.0, "1/s"), state_delay=(0.0, 0.2), payload=(0.0, 1.0),
 )
 view

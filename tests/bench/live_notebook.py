@@ -79,7 +79,7 @@ laws = [right, wrong_sign, tool_axes, no_gravity, raises, diverges, too_slow, lo
 wall = lk.Wall(T[:3, 3] + [0.1, 0.0, 0.0], (-1.0, 0.0, 0.0), size=(0.3, 0.3))
 band = lk.Spring(T[:3, 3] + [0.0, 0.25, 0.0], 20.0)
 arm = lk.Arm("left", PLANT, q0=ready, world=lk.World(things=[wall, band]))
-view = lk.live(arm, {law.__name__: law for law in laws}, lk.Hold(T, 2.0),
+view = lk.live(arm, lk.Hold(T, 2.0), {law.__name__: law for law in laws},
                stiffness=(50.0, 1500.0, 300.0), payload=(0.0, 1.0))
 view
 """

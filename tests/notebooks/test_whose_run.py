@@ -23,9 +23,9 @@ def named(monkeypatch):
     """The names of laws that a notebook hands to `lk.live`, and those of arms in its replays."""
     live, motion_of, laws_of_live, labels = labkit.live, labkit.replay.motion_of, [], []
 
-    def named_live(arm, laws, *args, **dials):
+    def named_live(arm, target, laws, **dials):
         laws_of_live.extend(laws)
-        return live(arm, laws, *args, **dials)
+        return live(arm, target, laws, **dials)
 
     def named_motion(log, *args, **options):
         motion = motion_of(log, *args, **options)

@@ -274,7 +274,7 @@ def test_a_run_that_reached_the_limit_says_so(live, monkeypatch):
 def test_a_view_without_a_kept_run_says_so():
     """`view.log` of a view that kept nothing is an error of labkit's, and says what to press."""
     with lk.Arm("left", q0=READY) as arm:
-        view = lk.live(arm, springy, lk.Hold(T_READY, 1.0))
+        view = lk.live(arm, lk.Hold(T_READY, 1.0), springy)
         assert view.logs == ()
         with pytest.raises(NothingKept, match="press Start, then Keep this run"):
             view.log  # noqa: B018
@@ -501,20 +501,34 @@ def test_a_model_may_be_shared_by_threads():
     assert wrong_ones == []
 
 
+def test_a_controller_with_memory_forgets_at_the_start_of_each_run(live):
+    """Start and Reset each reset the selected one."""
+    starts = []
+
+    def law(state, target):
+        return springy(state, target)
+
+    law.reset = lambda: starts.append(1)
+    session, frames = live({"law": law})
+    for count, kind in enumerate(("go", "reset"), start=1):
+        session.tell({"kind": kind})
+        until(frames, lambda frame, count=count: len(starts) == count)
+
+
 def test_what_is_given_wrongly_is_a_sentence():
     """A dial nobody reads, one without a range, a start outside it, a law that cannot be called."""
     with lk.Arm("left", q0=READY) as arm:
         hold = lk.Hold(T_READY, 1.0)
         with pytest.raises(UnknownName, match="dial"):
-            lk.live(arm, springy, hold, facter=(0, 1))
+            lk.live(arm, hold, springy, facter=(0, 1))
         with pytest.raises(TypeMismatch, match=r"factor=\(low, high\)"):
-            lk.live(arm, springy, hold, factor=3.0)
+            lk.live(arm, hold, springy, factor=3.0)
         with pytest.raises(OutOfRange, match="starts at 5"):
-            lk.live(arm, springy, hold, factor=(0, 1, 5))
+            lk.live(arm, hold, springy, factor=(0, 1, 5))
         with pytest.raises(TypeMismatch, match="expected a function"):
-            lk.live(arm, 3.0, hold)
+            lk.live(arm, hold, 3.0)
         with pytest.raises(TypeMismatch, match="expected a simulated"):
-            lk.live("left", springy, hold)
+            lk.live("left", hold, springy)
 
 
 STIFF = np.array([300.0] * 3 + [20.0] * 3)

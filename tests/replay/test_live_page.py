@@ -26,7 +26,7 @@ def data():
         laws = {"soft": soft, "stiff": lk.control.hold(robot.ready)}
         circle = lk.Circle(T[:3, 3], T[:3, 3] + [0.0, 0.05, 0.0])
         target = lk.Trajectory(lk.PosePath(circle, T[:3, :3]), lk.Quintic(5.0))
-        view = lk.live(arm, laws, target, title="Feel it", factor=(0.0, 2.0, 1.0))
+        view = lk.live(arm, target, laws, title="Feel it", factor=(0.0, 2.0, 1.0))
         return view.data
 
 
@@ -162,7 +162,7 @@ def test_no_unit_is_cut_in_the_column_beside_the_picture(chromium, width):
 
     with lk.Arm(robot, q0=robot.ready) as arm:
         dial = {"stiffness": (50.0, 1500.0, 300.0, "N/m")}
-        view = lk.live(arm, {"soft": soft}, lk.Hold(robot.ready, 5.0), **dial)
+        view = lk.live(arm, lk.Hold(robot.ready, 5.0), {"soft": soft}, **dial)
         page = opened(chromium, view.data)
     page.wait_for_selector("[data-ready]")
     page.set_viewport_size({"width": width, "height": 800})

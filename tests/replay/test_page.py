@@ -202,7 +202,7 @@ def test_the_still_of_a_live_arm_shows_the_arm_alone_and_its_wall():
     T = lk.Model(robot).pose(robot.ready)
     wall = lk.Wall(T[:3, 3] + [0.1, 0, 0], [-1.0, 0.0, 0.0], size=(0.3, 0.3), colour=(0, 0, 1, 1))
     with lk.Arm(robot, q0=robot.ready, world=lk.World(things=[wall])) as arm:
-        view = lk.live(arm, lk.control.hold(robot.ready), lk.Hold(T, 1.0))
+        view = lk.live(arm, lk.Hold(T, 1.0), lk.control.hold(robot.ready))
         pixels = np.array(Image.open(BytesIO(view.picture()))).astype(int)
     assert ((pixels[:, :, 2] > 100) & (pixels[:, :, 0] == 0) & (pixels[:, :, 3] > 0)).sum() > 500
     assert (pixels[:, 520:, 3] == 0).all(), "no body beside the shoulder"
