@@ -18,7 +18,6 @@ import numpy as np
 
 from ..errors import LabkitError
 from ..quiet import diverted
-from ..shapes import locked
 
 
 class Captured:
@@ -71,18 +70,18 @@ def captured() -> Iterator[Captured]:
 
 
 class ArgumentChanged(LabkitError):
-    """A function changed a list or a dict that it was given."""
+    """A function changed a list, a dict or an array that it was given."""
 
 
 def call(function: Callable[..., Any], args: Sequence[Any], kwargs: Mapping[str, Any]) -> Any:
     """The function's answer to arguments that it cannot spoil for the next call.
 
-    The function is given copies of lists and dicts, and read-only arrays.
+    The function is given copies that can be written to, because scipy and cv2 read no others.
 
     Raises:
-        ArgumentChanged: The function changed the copy of a list or of a dict.
+        ArgumentChanged: The function changed the copy of a list, of a dict or of an array.
     """
-    given, named = [_copied(x) for x in args], {key: _copied(x) for key, x in kwargs.items()}
+    given, named = [copied(x) for x in args], {key: copied(x) for key, x in kwargs.items()}
     answer = function(*given, **named)
     places: list[int | str] = [*range(len(args)), *kwargs]
     befores, afters = [*args, *kwargs.values()], [*given, *named.values()]
@@ -92,16 +91,16 @@ def call(function: Callable[..., Any], args: Sequence[Any], kwargs: Mapping[str,
     return answer
 
 
-def _copied(x: Any) -> Any:
-    """A copy with new containers and read-only arrays; the value itself if it has neither."""
+def copied(x: Any) -> Any:
+    """A copy with new containers and arrays; the value itself if it has neither."""
     if isinstance(x, np.ndarray):
-        return locked(x.copy()) if x.flags.writeable else x
+        return x.copy()
     if type(x) is list:
-        return [_copied(item) for item in x]
+        return [copied(item) for item in x]
     if type(x) is dict:
-        return {key: _copied(item) for key, item in x.items()}
+        return {key: copied(item) for key, item in x.items()}
     if isinstance(x, tuple):
-        items = [_copied(item) for item in x]
+        items = [copied(item) for item in x]
         if all(a is b for a, b in zip(x, items, strict=True)):
             return x
         return type(x)(*items) if hasattr(x, "_fields") else tuple(items)
@@ -111,7 +110,7 @@ def _copied(x: Any) -> Any:
 def _same(before: Any, after: Any) -> bool:
     """Whether a copy still holds the original's objects; no ``==`` of an object is called."""
     if isinstance(before, np.ndarray):
-        return True  # it cannot be written to
+        return before.shape == after.shape and before.tobytes() == after.tobytes()
     if isinstance(before, list | tuple):
         return len(before) == len(after) and all(map(_same, before, after))
     if isinstance(before, dict):
@@ -121,11 +120,13 @@ def _same(before: Any, after: Any) -> bool:
 
 def _sentence(function: Callable[..., Any], place: int | str, before: Any) -> str:
     name = place if isinstance(place, str) else _parameter(function, place)
-    kind = type(before).__name__
+    array = isinstance(before, np.ndarray)
+    kind = "array" if array else type(before).__name__
     inner = before.values() if isinstance(before, dict) else before
-    flat = kind != "tuple" and not any(isinstance(x, list | dict | tuple) for x in inner)
+    flat = not array and not any(isinstance(x, list | dict | tuple | np.ndarray) for x in inner)
+    how = "np.array" if array else kind if flat and kind in ("list", "dict") else "copy.deepcopy"
     which = f" `{name}`" if name else ""
-    copy = name and f", {kind if flat else 'copy.deepcopy'}({name})"
+    copy = name and f", {how}({name})"
     who = getattr(function, "__name__", "the function")
     return f"{who} changes the {kind}{which} that it is given; work on a copy{copy}"
 

@@ -16,6 +16,7 @@ from ..errors import Diverged, LabkitError
 from ..log import Log
 from ..shapes import Array
 from .advice import full_description
+from .calling import call
 from .equivalence import Judge, as_expected, shares_error
 from .judges import AtMost, Close, numbers
 from .question import Call, Case, Choice, Loop, Mistake, Question, Raised, Test, Tuned
@@ -197,7 +198,11 @@ def recognise(question: Question, answers: list[Any]) -> Mistake | None:
 
 def fingerprint(question: Question, function: Function) -> tuple[Any, ...]:
     """A function's answer to each public call, or `Raised` if it raises an exception."""
-    given = (_answer(call, function) for call in question.calls)
+
+    def safely(*args: Any, **kwargs: Any) -> Any:
+        return call(function, args, kwargs)
+
+    given = [_answer(case, safely) for case in question.calls]
     return tuple(Raised(a.kind) if isinstance(a, _Failure) else a for a in given)
 
 

@@ -23,7 +23,6 @@ from ..recordings import Runner, Trials
 from ..run import run
 from ..shapes import Array
 from ..world import Thing, World
-from .calling import call
 from .equivalence import Judge
 from .verdict import Misconception
 
@@ -46,7 +45,7 @@ class Call:
 
     def ask(self, function: Callable[..., Any]) -> Any:
         """The function's answer."""
-        return call(function, self.args, self.kwargs)
+        return function(*self.args, **self.kwargs)
 
     def shown(self, name: str) -> str:
         """The call as a student would type it, but for long arguments; see `is_shortened`."""
@@ -93,7 +92,7 @@ class Loop:
         """The run with the function as its controller."""
 
         def controller(state: Any, target: Any) -> Any:
-            return call(function, (state, target), self.kwargs)
+            return function(state, target, **self.kwargs)
 
         arm = Arm(self.side, self.plant, self.seed, world=World(things=self.things))
         arm.reset(arm.robot.ready if self.q0 is None else self.q0)
@@ -173,7 +172,7 @@ class Tuned:
 
     def ask(self, function: Callable[..., Any]) -> Log:
         """The run with the gains that the function returns."""
-        kp, kd = call(function, self.args, {})
+        kp, kd = function(*self.args)
         return self.loop.ask(springs(kp, kd))
 
     def measured(self, answer: Log) -> dict[str, float]:

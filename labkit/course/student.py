@@ -16,7 +16,7 @@ from typing import Any
 
 from ..errors import LabkitError, UnknownName
 from .advice import line_of
-from .calling import captured
+from .calling import captured, copied
 from .card import card, picture
 from .checks_file import read_checks
 from .definitions import answer_hash
@@ -212,7 +212,7 @@ def case(name: str) -> tuple[tuple[Any, ...], dict[str, Any]]:
     call = desk().failing.get(desk().question(name).name)
     if call is None:
         raise LabkitError(f"the last check of {name} did not stop at a call; run its check first")
-    return call.args, dict(call.kwargs)
+    return copied(call.args), copied(dict(call.kwargs))
 
 
 def hint(name: str, level: int = 1) -> None:

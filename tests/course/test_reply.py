@@ -8,6 +8,7 @@ import control
 import numpy as np
 import pytest
 from questions import DOUBLE
+from scipy.spatial.transform import Rotation
 
 import labkit as lk
 from labkit.course import Call, Close, Outcome, Question, Response, Test
@@ -61,19 +62,30 @@ def test_what_is_changed_is_told_and_whole_again(function, args, says):
     assert json.dumps(args) == before
 
 
-def test_arrays_are_read_only_wherever_they_are():
-    """Arrays that nobody has locked are locked, in lists, dicts and tuples too."""
-    a = np.zeros(3)
-    sample = lk.Sample(a, a, a)
+def test_arrays_are_copies_that_can_be_written_to_and_a_change_is_told():
+    """In lists, dicts, states and samples too, locked or not, and the next call has them whole."""
+    a, b = np.zeros(3), np.zeros(3)
+    b.setflags(write=False)
+    for given in (a, b, [a], {"a": b}, lk.State(0.0, b, b), lk.Sample(a, a, a), (1.0, (a,))):
 
-    def write(x):
-        for array in (x[0], x[1]["a"], x[2].position):
-            with pytest.raises(ValueError, match="read-only"):
-                array[0] = 1.0
-        return "tried"
+        def write(x):
+            while not isinstance(x, np.ndarray):
+                x = x["a"] if isinstance(x, dict) else x[-1]
+            x += 1.0
 
-    assert call(write, ([a, {"a": a}, sample],), {}) == "tried"
-    assert a.flags.writeable and not a.any()
+        with pytest.raises(ArgumentChanged):
+            call(write, (given,), {})
+    assert not a.any() and not b.any()
+
+
+def test_scipy_can_read_what_a_function_is_given():
+    """`Rotation` reads only what it may write to, and NaN is no change."""
+    R, p = np.eye(3), np.array([1.0, 2.0, 3.0])
+    for x in (R, p):
+        x.setflags(write=False)
+    turned = call(lambda R, p, x: Rotation.from_matrix(R).apply(p), (R, p, np.full(2, np.nan)), {})
+    assert np.array_equal(turned, p)
+    assert call(lambda v: Rotation.from_rotvec(v).magnitude(), (p,), {}) > 0.0
 
 
 def test_arguments_by_name_are_copied_too():
@@ -86,11 +98,9 @@ def test_arguments_by_name_are_copied_too():
         call(f, (), {"gains": {"kp": 1}})
 
 
-def test_what_cannot_change_is_handed_on_as_it_is():
-    """Nothing is copied that need not be: a grader sends what is the same only once."""
-    a, model = np.zeros(3), lk.Model()
-    a.setflags(write=False)
-    args = (a, model, "text", 2.0, lk.Sample(a, a, a), (1, a))
+def test_what_has_no_arrays_is_handed_on_as_it_is():
+    """A model, a text, a number, and a tuple of these are themselves."""
+    args = (lk.Model(), "text", 2.0, (1, "a"))
     assert all(x is y for x, y in zip(call(lambda *x: x, args, {}), args, strict=True))
 
 
