@@ -87,15 +87,15 @@ class PublicResult:
 
     def first_mismatch(self, question: Question) -> Mismatch | None:
         """The numbers of the first public call whose answer is wrong but has the right form."""
-        for call in question.calls:
-            answer: Any = self.answers.get(call)
+        for case in question.calls:
+            answer: Any = self.answers.get(case)
             try:
-                expected, given = numbers(call.expected), numbers(answer)
+                expected, given = numbers(case.expected), numbers(answer)
             except (TypeError, ValueError, OverflowError):
                 continue
             same_form = expected.shape == given.shape and np.isfinite(given).all()
-            if same_form and question.judge(answer, call.expected) is not None:
-                return Mismatch(call.shown(question.name), expected, given)
+            if same_form and question.judge(answer, case.expected) is not None:
+                return Mismatch(case.shown(question.name), expected, given)
         return None
 
 

@@ -89,7 +89,7 @@ def _tip(
     T_wd = lk.se3.pose(R @ T[:3, :3], T[:3, 3] + shift * random.uniform(-1.0, 1.0, 3))
     dV = ddx * random.uniform(-1.0, 1.0, 6)
     V = twist * random.uniform(-1.0, 1.0, 6)
-    return model, lk.State(0.0, q, dq), lk.PoseSample(T_wd, V, dV)
+    return model, lk.State(0.7, q, dq), lk.PoseSample(T_wd, V, dV)
 
 
 def _gains(random: Random) -> dict[str, Any]:

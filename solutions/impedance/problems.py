@@ -37,12 +37,12 @@ def _target(shift: object, turn: object, moving: float) -> lk.PoseSample:
 
 
 def _law(shift: object, turn: object, *, speed: float = 0.0, moving: float = 0.0) -> Call:
-    state = lk.State(0.0, BENT, speed * SPEED, FELT)
+    state = lk.State(0.7, BENT, speed * SPEED, FELT)
     return call(state, _target(shift, turn, moving), MODEL, stiffness=K, damping=D)
 
 
 def _shaped(inertia: object, wrench: object, *, moving: float = 0.0) -> Call:
-    state = lk.State(0.0, BENT, moving * SPEED)
+    state = lk.State(0.7, BENT, moving * SPEED)
     target = _target([0.03, -0.02, 0.04], [0.1, -0.2, 0.1], moving)
     return call(state, target, wrench, MODEL, inertia=inertia, stiffness=K, damping=D)
 
@@ -435,6 +435,7 @@ WORKSPACE_IMPEDANCE = Problem(
             "turned off its target, about each axis",
             tuple(_law(NOWHERE, turn) for turn in (0.2 * np.eye(3)).tolist()),
             hidden.off_in_orientation,
+            weight=0.5,
         ),
         Trial(
             "a moving arm",
@@ -451,7 +452,7 @@ WORKSPACE_IMPEDANCE = Problem(
             (_law(ASIDE, [0.1, -0.2, 0.1], speed=1.0, moving=1.0),),
             hidden.everything_at_the_tip,
             "everything at once",
-            weight=3.0,
+            weight=2.5,
         ),
         Trial(
             "a run: from an offset, then pushed",
@@ -800,6 +801,7 @@ SHAPED_IMPEDANCE = Problem(
             "M_d = Λ: the measured wrench must not matter",
             (_shaped(LAMBDA, PUSH),),
             hidden.as_heavy_as_it_is,
+            weight=0.5,
         ),
         Trial(
             "M_d = 2 Λ: now it must",
@@ -811,7 +813,7 @@ SHAPED_IMPEDANCE = Problem(
             "everything at once",
             (_shaped(M_D, PUSH, moving=1.0),),
             hidden.everything_shaped,
-            weight=3.0,
+            weight=2.5,
         ),
     ),
     hints=(

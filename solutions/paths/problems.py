@@ -34,6 +34,7 @@ BANG_BANG = Problem(
             (call(1.5, 2.0), call(1.001, 2.0)),
             hidden.bang_bang_second,
             "just after the middle",
+            weight=0.5,
         ),
         Trial(
             "before the start and after the end the motion is at rest",
@@ -45,7 +46,7 @@ BANG_BANG = Problem(
             "the whole motion",
             tuple(call(float(t), 4.0) for t in np.linspace(-0.6, 4.6, 14)),
             hidden.bang_bang_all,
-            weight=2.0,
+            weight=1.5,
         ),
     ),
     withheld=OWN_WORK,
@@ -745,6 +746,7 @@ SEGMENT_AT = Problem(
             (call(TOUR, 0.0), call(TOUR, -0.5), call(TOUR, 3.5), call(TOUR, 5.0)),
             hidden.segment_ends,
             "before the start",
+            weight=0.5,
         ),
         Trial(
             "the instants where two segments meet",
@@ -756,7 +758,7 @@ SEGMENT_AT = Problem(
             "a whole tour",
             tuple(call(TOUR, 0.5 * k) for k in range(-1, 10)),
             hidden.segment_all,
-            weight=2.0,
+            weight=1.5,
         ),
     ),
     withheld=("labkit.Chain",),

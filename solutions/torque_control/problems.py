@@ -26,7 +26,7 @@ BARE = lk.Plant(name="ideal, with rotors", armature=0.05)
 
 def _law(ddq: float, speed: float, wanted: float, *, compensates: bool) -> Call:
     target = lk.Sample(READY + OFF, wanted * WANTED, ddq * PUSH)
-    state = lk.State(0.0, READY, speed * SPEED)
+    state = lk.State(0.7, READY, speed * SPEED)
     return call(state, target, MODEL, kp=KP, kd=KD, arm_compensates=compensates)
 
 
@@ -74,7 +74,7 @@ TERMS = (
         "everything at once",
         (_law(1.0, 1.0, 1.0, compensates=False), _law(1.0, 1.0, 1.0, compensates=True)),
         hidden.all_at_once,
-        weight=3.0,
+        weight=4.0,
     ),
 )
 """Trials for each term of the law, in both of its forms."""
@@ -1235,13 +1235,14 @@ CHOOSE_GAINS = Problem(
             ),
             hidden.quick_tours,
             "other paths and speeds, both arms",
+            weight=0.5,
         ),
         Trial(
             "back to a place from 0.1 rad off, at rest after 0.8 s",
             (Tuned((MODEL,), hidden.back(MODEL, OFF), hidden.AT_REST),),
             hidden.returns,
             "other places, both arms",
-            weight=3.0,
+            weight=2.0,
         ),
         Trial(
             "a kilogram in the gripper",
@@ -1254,6 +1255,7 @@ CHOOSE_GAINS = Problem(
             ),
             hidden.loaded_tours,
             "other loads",
+            weight=0.5,
         ),
     ),
     hints=(

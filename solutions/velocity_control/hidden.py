@@ -21,7 +21,7 @@ STRETCHED = np.array([-0.3, -0.4, 0.1, 0.06, 0.2, 0.5, 0.0])
 
 def state(q: Any, dq: Any = REST) -> lk.State:
     """The joints at the angles q."""
-    return lk.State(0.0, np.array(q, dtype=float), np.array(dq, dtype=float))
+    return lk.State(0.7, np.array(q, dtype=float), np.array(dq, dtype=float))
 
 
 def sample(q: Any, dq: Any = REST, ddq: Any = REST) -> lk.Sample:

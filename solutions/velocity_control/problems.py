@@ -59,7 +59,7 @@ JOINT_VELOCITY_PD = Problem(
             ),
             hidden.joint_targets,
             "any states, targets and gains",
-            weight=2.0,
+            weight=2.5,
         ),
         Trial(
             "closed loop: the arm starts with an error, reaches the path and stays on it",
@@ -71,6 +71,7 @@ JOINT_VELOCITY_PD = Problem(
             ),
             hidden.joint_runs,
             "other starts and paths",
+            weight=1.5,
         ),
     ),
     hints=(
@@ -533,7 +534,7 @@ WORKSPACE_VELOCITY_PD = Problem(
             ),
             hidden.pose_turns,
             "turns at other poses, small ones and large ones",
-            weight=2.0,
+            weight=1.0,
         ),
         Trial(
             "a target that moves, with the tip on the target and off it",
@@ -557,7 +558,7 @@ WORKSPACE_VELOCITY_PD = Problem(
             ),
             hidden.pose_moves,
             "other twists and errors",
-            weight=2.0,
+            weight=3.0,
         ),
         Trial(
             "the elbow almost straight",
@@ -572,13 +573,14 @@ WORKSPACE_VELOCITY_PD = Problem(
             ),
             hidden.pose_stretched,
             "other stretched poses",
+            weight=0.5,
         ),
         Trial(
             "closed loop: the tip follows a circle from a shifted and tilted start",
             (pose_run(CENTIMETRES, (0.15, 0.1, -0.1)),),
             hidden.pose_runs,
             "other starts",
-            weight=2.0,
+            weight=1.5,
         ),
     ),
     withheld=("labkit.Model.pose_error",),

@@ -17,7 +17,7 @@ DOWN = np.diag([1.0, -1.0, -1.0])
 
 def state(random: Random) -> lk.State:
     """Any state of the joints."""
-    return lk.State(0.0, random.uniform(-1.0, 1.0, 7), random.uniform(-0.5, 0.5, 7))
+    return lk.State(0.7, random.uniform(-1.0, 1.0, 7), random.uniform(-0.5, 0.5, 7))
 
 
 def sample(random: Random) -> lk.Sample:

@@ -15,7 +15,7 @@ REST = np.zeros(7)
 
 
 def _state(q: object, dq: object = REST) -> lk.State:
-    return lk.State(0.0, np.asarray(q, dtype=float), np.asarray(dq, dtype=float))
+    return lk.State(0.7, np.asarray(q, dtype=float), np.asarray(dq, dtype=float))
 
 
 def _sample(q: object, dq: object = REST) -> lk.Sample:
@@ -312,6 +312,7 @@ ORIENTATION_ERROR = Problem(
             ),
             hidden.big_turns,
             "turns of up to 160 degrees",
+            weight=2.0,
         ),
     ),
     withheld=("labkit.se3.orientation_error", "labkit.Model.pose_error"),
