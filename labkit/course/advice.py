@@ -8,11 +8,14 @@ import re
 import sysconfig
 from collections.abc import Iterable
 from difflib import get_close_matches
+from importlib import import_module
 from pathlib import Path
 from traceback import walk_tb
+from typing import Any
 
 import numpy as np
 
+from .. import se3
 from ..control import State
 from ..trajectory import PoseSample, Sample
 
@@ -51,6 +54,19 @@ def unwritten(error: BaseException) -> str:
     return mine[-1].co_name if called else ""
 
 
+def still_raises(function: Any) -> str:
+    """What to do where a function has more in it than a stub but raises as a stub does, or ""."""
+    code = getattr(function, "__code__", None)
+    if code is None or "NotImplementedError" not in code.co_names:  # a library raises it too
+        return ""
+    if len(code.co_names) == 1 and code.co_nlocals == code.co_argcount + code.co_kwonlyargcount:
+        return ""  # a stub
+    return (
+        "Your function reaches its line `raise NotImplementedError`; delete this line once your "
+        "own lines return the answer, and run the cell again."
+    )
+
+
 def remedy(error: BaseException) -> str:
     """What to do about an exception whose own message does not help a student, or ""."""
     text = str(error)
@@ -80,6 +96,10 @@ def _unknown(error: NameError) -> str:
     if name in IMPORTS:
         return f"to use it, begin the cell with `{IMPORTS[name]}`"
     in_numpy = [f"np.{name}"] if hasattr(np, name) else []
+    if getattr(getattr(se3, name, None), "__module__", "") == se3.__name__:
+        return _did_you_mean([*in_numpy, f"lk.se3.{name}"])
+    if name in import_module("labkit").__all__:
+        return _did_you_mean([f"lk.{name}"])
     frames = [frame for frame, _ in walk_tb(error.__traceback__)][-1:]
     own = [x for frame in frames for x in (*frame.f_locals, *frame.f_globals)]
     near = _near(name, own, 0.85 if in_numpy else 0.6)

@@ -119,14 +119,13 @@ def _quoted(part: str) -> str:
 
 
 def likely_cause(d: Difference) -> str:
-    """The likely cause of wrong numbers; a single one may be twice another by chance."""
+    """The likely cause of wrong numbers."""
     if _is_rounded(d.expected, d.found):
         return "is float32, which has 7 digits; compute in float64"
     if d.times is None:
         return ""
-    single = isinstance(d.expected, float) and not d.at
     for factor, means in _CAUSES.items():
-        if math.isclose(d.times, factor, rel_tol=1e-6) and not (single and factor in (2.0, 0.5)):
+        if math.isclose(d.times, factor, rel_tol=1e-6):
             return means
     return ""
 

@@ -102,8 +102,12 @@ def on_the_public_arm(question: Question, verdict: Verdict, answer: Any) -> tupl
     if judge(answer, judge.expected(draw(PUBLIC_SEED, DEMO))) is None:
         return verdict, f"Your answer is right for the public arm, {DEMO!r}."
     found = f"it is not right for the public arm, {DEMO!r}"
-    if isinstance(judge, Measured) and judge.of == "payload":
-        found += "; did its tip touch the wall in your run?"
+    if isinstance(judge, Measured):
+        off = answer - judge.expected(draw(PUBLIC_SEED, DEMO))
+        more = "more" if off > 0.0 else "less"
+        found += f": it is {abs(off):.2g} {judge.unit} {more} than there"
+        if judge.of == "payload":
+            found += "; did its tip touch the wall in your run?"
     why = Difference(Kind.REFUSED, found=found)
     call = f"{question.name}()"
     wrong = replace(verdict.tests[-1], outcome=Outcome.WRONG, call=call, difference=why)

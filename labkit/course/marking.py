@@ -160,8 +160,31 @@ def try_public(question: Question, function: Function) -> PublicResult:
     if _outcome(results) in (Outcome.WRONG, Outcome.ERROR):
         for call in question.calls:
             if call not in answers:
-                answers[call] = _answer(call, function)
-    return PublicResult(tuple(results), answers, failing)
+                answers[call] = ask(call, function)
+    return PublicResult(tuple(_with_factors(question, results, answers)), answers, failing)
+
+
+def _with_factors(
+    question: Question, results: Sequence[TestResult], answers: Mapping[Case, Any]
+) -> Iterator[TestResult]:
+    """The results; a factor stays only if it holds in every public call where that part is wrong.
+
+    One number of one call may be a multiple of another by chance.
+    """
+    wrong: dict[str, list[Difference]] = {}
+    pairs = [(test, case) for test in question.tests for case in test.cases if case in answers]
+    for test, case in pairs:
+        found = _difference(question, test, case, answers[case])
+        if found and isinstance(case, Call):
+            wrong.setdefault(found.part, []).append(found)
+    for result in results:
+        d = result.difference
+        if d is not None and d.times is not None:
+            others = [x.times for x in wrong[d.part]]
+            same = all(x is not None and np.isclose(x, d.times, rtol=1e-6) for x in others)
+            if not same or (len(others) == 1 and isinstance(d.expected, float) and not d.at):
+                result = replace(result, difference=replace(d, times=None))
+        yield result
 
 
 def _outcome(results: Sequence[TestResult]) -> Outcome:
@@ -202,7 +225,7 @@ def fingerprint(question: Question, function: Function) -> tuple[Any, ...]:
     def safely(*args: Any, **kwargs: Any) -> Any:
         return call(function, args, kwargs)
 
-    given = [_answer(case, safely) for case in question.calls]
+    given = [ask(case, safely) for case in question.calls]
     return tuple(Raised(a.kind) if isinstance(a, _Failure) else a for a in given)
 
 
@@ -215,7 +238,8 @@ class _Failure(Raised):
     tool: str = ""
 
 
-def _answer(case: Case, function: Function) -> Any:
+def ask(case: Case, function: Function) -> Any:
+    """The function's answer to a case, or `Raised` in its place."""
     try:
         return case.ask(function)
     except (Exception, SystemExit) as error:  # exit() in a function must not end the notebook
@@ -256,7 +280,7 @@ def _try(
     outcome = Outcome.RIGHT if cases else Outcome.NOT_TRIED
     result = TestResult(test.name, test.weight, outcome, also=test.also)
     for case in cases:
-        answer = _answer(case, function)
+        answer = ask(case, function)
         if not case.hidden:
             answers[case] = answer
         found = _difference(question, test, case, answer)

@@ -130,10 +130,9 @@ def message(
             call = f'hint("{question.name}", 1)'
             hint = f"Stuck? Run `{call}` in a new cell (press Esc, then B). It is free."
         if depends_on:
-            was, it = ("was", "it") if len(depends_on) == 1 else ("were", "them")
+            is_, it = ("is", "it") if len(depends_on) == 1 else ("are", "them")
             helps.append(
-                f"It uses your {listed(depends_on)}, which {was} not right when you last "
-                f"checked {it}; correct {it} and check {it} again first."
+                f"It uses your {listed(depends_on)}, which {is_} not right yet; correct {it} first."
             )
         if replaced:
             helps.append(

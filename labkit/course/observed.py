@@ -1,8 +1,9 @@
 """Observed causes of wrong answers that no known mistake explains.
 
-Each sentence states what holds in all public calls, so it is true by construction: every number has
-the other sign, the answer does not depend on an argument, what an argument adds is there twice, or
-the same gains are chosen for arms that differ.
+Each sentence states what holds in all public calls: every number has the other sign, the answer
+does not depend on an argument, what an argument adds is there twice, or the same gains are chosen
+for arms that differ.  This is true only of a function that answers the same call alike, so a call
+is repeated first.
 """
 
 from __future__ import annotations
@@ -15,10 +16,10 @@ from typing import Any
 import numpy as np
 
 from .equivalence import accepts
-from .judges import factor
-from .marking import Function, PublicResult
+from .judges import factor, numbers
+from .marking import Function, PublicResult, ask
 from .probes import exchanges, numeric_parts, try_call, variations
-from .question import Call, Case, Choice, Question
+from .question import Call, Case, Choice, Question, Raised
 from .relations import Parts, all_near, related, same_form
 from .verdict import Kind, Misconception, Outcome, Verdict
 
@@ -37,12 +38,42 @@ def diagnosed(
         tried: The result of the public cases.
         function: The student's function, which is called again with one argument changed.
     """
-    if verdict.mistake or verdict.outcome not in (Outcome.WRONG, Outcome.ERROR):
+    if verdict.outcome not in (Outcome.WRONG, Outcome.ERROR):
+        return verdict
+    if _varies(question, tried.answers, function):
+        return replace(verdict, mistake=Misconception("", VARIES))
+    if verdict.mistake:
         return verdict
     if any(test.difference and test.difference.kind is Kind.TYPE for test in verdict.tests):
         return verdict  # the numbers of another command type reveal nothing
     says = cause(question, tried.answers, function)
     return replace(verdict, mistake=Misconception("", says)) if says else verdict
+
+
+VARIES = (
+    "Your function gives another answer when the same call is repeated. Let it depend on its "
+    "arguments alone, not on earlier calls or on chance."
+)
+
+
+def _varies(question: Question, answers: Mapping[Case, Any], function: Function) -> bool:
+    """Whether the function answers a public call differently when it is repeated."""
+    until = monotonic() + LONGEST
+    for call in question.calls:
+        if isinstance(call, Call) and call in answers and monotonic() < until:
+            before, now = answers[call], ask(call, function)
+            if isinstance(before, Raised) or isinstance(now, Raised):
+                kinds = [getattr(x, "kind", "") for x in (before, now)]
+                if kinds[0] != kinds[1] and "TimeoutError" not in kinds:
+                    return True
+                continue
+            try:
+                a, b = numbers(before), numbers(now)
+            except (TypeError, ValueError, OverflowError):
+                continue
+            if a.shape != b.shape or not np.allclose(a, b, rtol=1e-9, atol=1e-12, equal_nan=True):
+                return True
+    return False
 
 
 def cause(question: Question, answers: Mapping[Case, Any], function: Function) -> str:

@@ -5,11 +5,13 @@ Both encode and decode the answer in the same way, so both accept the same answe
 
 from __future__ import annotations
 
+import _thread
 import signal
 import threading
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager, suppress
 from itertools import islice
+from time import monotonic, sleep
 from typing import Any
 
 import numpy as np
@@ -155,28 +157,65 @@ class LocalFunction:
         return answer(data, self.withheld)
 
 
+class _Limit:
+    """A limit of time: until when, and whether it was exceeded and whether its block is over."""
+
+    def __init__(self, until: float) -> None:
+        self.until, self.late, self.over = until, False, False
+
+
+_watching: list[threading.Thread] = []
+_limits: list[_Limit] = []
+_lock = threading.Lock()
+
+
 @contextmanager
 def time_limit(seconds: float) -> Iterator[None]:
     """Raise `TimeUp` in the block after some seconds, and again if the block catches it.
 
-    This works only in the main thread, and not on Windows; elsewhere there is no limit.
+    A thread interrupts the main one, as Ctrl-C does, on every system; other threads have no limit.
     """
-    if threading.current_thread() is not threading.main_thread() or not hasattr(
-        signal, "setitimer"
-    ):
+    if threading.current_thread() is not threading.main_thread():
         yield
         return
-    before = signal.signal(signal.SIGALRM, _time_up)
-    signal.setitimer(signal.ITIMER_REAL, seconds, 0.5)
+    limit = _Limit(monotonic() + seconds)
+
+    def interrupted(number: int, frame: Any) -> None:
+        if not limit.late:
+            raise KeyboardInterrupt
+        if not limit.over:
+            raise TimeUp
+
+    before = signal.signal(signal.SIGINT, interrupted)
+    _limits.append(limit)
+    if not any(thread.is_alive() for thread in _watching):  # it does not survive a fork
+        _watching[:] = [threading.Thread(target=_watch, daemon=True)]
+        _watching[0].start()
     try:
         yield
     finally:
-        signal.setitimer(signal.ITIMER_REAL, 0.0)
-        signal.signal(signal.SIGALRM, before)
+        limit.over = True
+        with _lock:  # an interruption has been sent by now, or never will be
+            _limits.remove(limit)
+        signal.signal(signal.SIGINT, before)
 
 
-def _time_up(number: int, frame: Any) -> None:
-    raise TimeUp
+def _watch() -> None:
+    while True:
+        sleep(0.1)
+        with _lock:
+            for limit in _limits[-1:]:
+                if monotonic() > limit.until and not limit.over:
+                    limit.late, limit.until = True, monotonic() + 0.5
+                    _interrupt()
+
+
+def _interrupt() -> None:
+    """Interrupt the main thread; a signal, where threads can be sent one, also ends its sleep."""
+    if hasattr(signal, "pthread_kill"):
+        signal.pthread_kill(threading.main_thread().ident or 0, signal.SIGINT)
+    else:
+        _thread.interrupt_main()
 
 
 def _as_data(given: Any) -> Any:

@@ -9,13 +9,14 @@ import inspect
 import linecache
 import os
 import sys
+import time
 from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
 from ..errors import LabkitError, UnknownName
-from .advice import line_of
+from .advice import line_of, still_raises
 from .calling import captured, copied
 from .card import card, picture
 from .checks_file import read_checks
@@ -32,7 +33,6 @@ from .reply import LocalFunction
 from .serialize import read_question
 from .source import analyse
 from .stand_ins import STAND_IN, WRONG, StandIns, globals_of, in_form
-from .unfinished import still_raises, watch
 from .verdict import Outcome, Verdict
 from .withheld import withheld_tools, withhold
 
@@ -105,10 +105,11 @@ class Desk:
         return verdict, out.text, found
 
     def wrong_dependencies(self, name: str, function: Callable[..., Any]) -> tuple[str, ...]:
-        """Other answers that a function calls by name and that were wrong when last checked."""
+        """Other answers that a function calls by name and that are wrong, checked again now."""
         fine = (Outcome.RIGHT, Outcome.NOT_ATTEMPTED)  # to call a stub is an error of its own
-        wrong = {other for other, (_, v) in self.checked.items() if v.outcome not in fine}
-        return tuple(other for other in globals_of(function) if other in wrong - {name})
+        wrong = {other for other, (_, v) in self.checked.items() if v.outcome not in fine} - {name}
+        called = {x: now for x, now in globals_of(function).items() if x in wrong}
+        return tuple(x for x, now in called.items() if self.verdict(x, now)[0].outcome not in fine)
 
 
 def shell() -> Any:
@@ -133,8 +134,22 @@ def executed_cells(function: Callable[..., Any]) -> list[str]:
 
 
 _desks: dict[Path, Desk] = {}
-_unfinished = watch(shell()) if shell() else set()
-"""Answers from an earlier run of their cell, because its last run ended with an error."""
+_ran = [0.0]
+"""When the last cell ran that does not hand in."""
+
+
+def _note_time(result: Any) -> None:
+    if "hand_in(" not in (result.info.raw_cell or ""):
+        _ran[0] = time.time()
+
+
+if shell():
+    shell().events.register("post_run_cell", _note_time)
+
+
+def last_run() -> float:
+    """When a cell of this notebook ran last, in [s] since 1970, those that hand in left out."""
+    return _ran[0]
 
 
 def desk() -> Desk:
@@ -158,12 +173,6 @@ class Points(float):
             raise NotImplementedError
 
 
-_NOT_RUN = (
-    "{name}: not tried, because its cell stopped with an error, which is shown below that cell. "
-    "Correct the cell and run it without an error, then run this one again."
-)
-
-
 def check(name: str, function: Callable[..., Any]) -> float:
     """Try your function and print the result.
 
@@ -172,18 +181,15 @@ def check(name: str, function: Callable[..., Any]) -> float:
         function: The function, or the value, that you wrote.
 
     Returns:
-        The points earned, which nbgrader reads.
-
-    Raises:
-        UnknownName: There is no such question.
+        The points earned, which nbgrader reads; for an unknown name, which is told, they are 0.
     """
-    question = desk().question(name)
-    if name in _unfinished:
-        print(wrapped(_NOT_RUN.format(name=name)))
+    if name not in desk().questions:
+        print(wrapped(f"There is no question {name!r:.60}. The names are {_names()}."))
         return Points(0.0)
+    question = desk().question(name)
     verdict, printed, found = desk().verdict(name, function)
     stub = verdict.outcome is Outcome.NOT_ATTEMPTED
-    more = [still_raises(executed_cells(function), name)] if stub else []
+    more = [still_raises(function)] if stub else []
     handle = shell() and str(shell().user_ns.get("HANDLE"))
     if awaits_marking(verdict) and handle and normalised(handle) == DEMO:
         verdict, *more = on_the_public_arm(question, verdict, function)
@@ -194,6 +200,10 @@ def check(name: str, function: Callable[..., Any]) -> float:
     judged = answer_hash(executed_cells(function), name)
     _say(says, verdict, found if verdict.mistake else None, judged)
     return Points(verdict.earned)
+
+
+def _names() -> str:
+    return ", ".join(desk().questions)
 
 
 def case(name: str) -> tuple[tuple[Any, ...], dict[str, Any]]:
@@ -222,8 +232,7 @@ def hint(name: str, level: int = 1) -> None:
     `hint` says where else to ask.  For an unknown name, it prints the names of the questions.
     """
     if name not in desk().questions:
-        names = ", ".join(desk().questions)
-        print(wrapped(f"There are no hints for {name!r:.60}. The names are {names}."))
+        print(wrapped(f"There are no hints for {name!r:.60}. The names are {_names()}."))
         return
     hints, command = desk().question(name).hints, ""
     if not hints:
@@ -269,9 +278,6 @@ def use(
     Returns:
         One of them; a line says so each time that it is not a right answer of yours, and why.
     """
-    if name in _unfinished:
-        print(wrapped(f"[stand-in] {_NOT_RUN.format(name=name)}"))
-        return desk().stand_ins.give(name, STAND_IN, given, shell())
     known, verdict = desk().checked.get(name, (None, None))
     if known is not function or verdict is None:
         verdict, *_ = desk().verdict(name, function)

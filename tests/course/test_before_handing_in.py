@@ -3,14 +3,10 @@
 import json
 import shutil
 from dataclasses import replace
-from datetime import timedelta
 from pathlib import Path
-from types import SimpleNamespace
 
-import numpy as np
 import pytest
 
-import labkit as lk
 from labkit import LabkitError
 from labkit.course.before_handing_in import HandIn, examine
 from labkit.course.brief import PLACEHOLDER, words_of
@@ -19,7 +15,7 @@ from labkit.course.merge import merge
 from labkit.course.messages import HEADS
 from labkit.course.notebook import read_cells, verdict_in, verdict_metadata
 from labkit.course.own_arm import FILE
-from labkit.course.receipt import _advice, hand_in, receipt
+from labkit.course.receipt import receipt
 from labkit.course.verdict import Outcome, TestResult, Verdict
 
 ASSIGNMENT = Path(__file__).resolve().parents[2] / "assignments" / "01_paths"
@@ -542,53 +538,6 @@ def test_an_empty_cell_leaves_the_receipt_as_it_is():
     assert receipt(["a", "b"]) == receipt(["a", "b", "", " \n"]) != receipt(["a", "b", "c"])
 
 
-def test_the_last_word_says_whether_to_hand_in(folder):
-    """A file is handed in unless it lacks what ran last, or a text was typed since it was saved."""
-    blank = examine(folder / "01_paths.ipynb")
-    found = replace(blank, verdicts=dict.fromkeys(blank.verdicts, object()))
-    clean = replace(found, notes=())
-    says = [
-        _advice("f", clean, timedelta(seconds=5), []),
-        _advice("f", found, timedelta(seconds=5), []),
-        _advice("f", clean, timedelta(minutes=5), []),
-        _advice("f", clean, timedelta(seconds=5), ["circle"]),
-        _advice("f", replace(clean, old=["circle"]), timedelta(seconds=5), []),
-    ]
-    last = "Hand it in if you have changed nothing since then; if you have, save it and run this"
-    for k, start in enumerate(
-        (" 5 s ago and is complete", " 5 s ago: first look at what is", " 5 min")
-    ):
-        assert says[k].startswith(f"f was saved{start}") and last in says[k]
-    assert "but does not hold the circle that you ran last: run all cells, save it" in says[3]
-    assert says[4].startswith("f was saved 5 s ago: run all cells from the top, save it")
-    word = "f was saved 5 s ago, before any check had run: save it and run this cell again."
-    assert _advice("f", blank, timedelta(seconds=5), []) == word
-    gap = replace(blank, problems=("a given cell stopped",))
-    assert "correct what is marked with [fix], run all cells, then" in _advice(
-        "f", gap, timedelta(seconds=5), []
-    )
-
-
-def test_a_file_that_lacks_what_ran_last_is_not_said_to_be_ready(folder, capsys, monkeypatch):
-    """Two sentences about handing in would contradict each other."""
-    answered(folder, "circle", "def circle(*a): return 1", [output("circle", Outcome.WRONG)])
-    monkeypatch.chdir(folder)
-    for unsaved in ["circle"], []:
-        monkeypatch.setattr("labkit.course.receipt._unsaved", lambda *_, now=unsaved: now)
-        hand_in("01_paths")
-        said = " ".join(capsys.readouterr().out.split())
-        assert ("can be handed in as it is" in said) == (not unsaved)
-
-
-def test_a_file_without_any_result_is_not_told_task_by_task(folder, capsys, monkeypatch):
-    """After Run All the file is as it was before; a table of what did not run would be wrong."""
-    monkeypatch.chdir(folder)
-    hand_in("01_paths")
-    said = capsys.readouterr().out
-    assert "not run" not in said and "0 of" not in said
-    assert "save it and run this cell again" in " ".join(said.split())
-
-
 def test_what_changed_after_its_check_is_not_called_ready(folder):
     """An old verdict is called old, beside it and in the last line, except for predictions."""
     right = output("circle", Outcome.RIGHT)
@@ -604,53 +553,3 @@ def test_what_changed_after_its_check_is_not_called_ready(folder):
     said = 'twice_the_time = predict("twice_the_time", "a")'
     answered(folder, "twice_the_time", said, [by_mouse])
     assert examine(folder / "01_paths.ipynb").old == ["circle"]
-
-
-def test_the_file_that_is_handed_in_is_the_open_one(folder, monkeypatch):
-    """Under another name the notebook is not inspected, and another file is not taken for it."""
-    monkeypatch.chdir(folder)
-    opened = folder / "01_paths-Copy1.ipynb"
-    monkeypatch.setenv("JPY_SESSION_NAME", str(opened))
-    hand_in("01_paths")  # the open file has been renamed since the kernel started
-    opened.write_text((folder / "01_paths.ipynb").read_text())
-    with pytest.raises(
-        LabkitError, match=r"opened as 01_paths-Copy1.*; if not, move the file called"
-    ):
-        hand_in("01_paths")
-    (folder / "01_paths.ipynb").unlink()
-    with pytest.raises(LabkitError, match=r"ipynb; save this notebook, rename it to 01_paths"):
-        hand_in("01_paths")
-
-
-RING = """\
-factor = np.array(1.0)
-
-def circle(s, start, centre):
-    w, (x, y, _) = 2.0 * np.pi, start - centre
-    c, d = np.cos(w * s), np.sin(w * s)
-    out = factor * [c * x - d * y, d * x + c * y, 0.0]
-    on = np.array([-out[1], out[0], 0.0])
-    return lk.Sample([*centre[:2], start[2]] + out, w * on, -w * w * out)
-"""
-
-
-def test_an_answer_that_is_not_right_any_more_is_named(folder, monkeypatch, capsys):
-    """The hand-in tries what will be marked, so it finds what no text of a cell shows."""
-    namespace = {"np": np, "lk": lk}
-    exec(RING, namespace)
-    answered(folder, "circle", RING, [output("circle", Outcome.RIGHT)])
-    shell = SimpleNamespace(
-        user_ns=namespace, history_manager=SimpleNamespace(input_hist_raw=[RING])
-    )
-    monkeypatch.setattr("labkit.course.receipt.shell", lambda: shell)
-    monkeypatch.setattr("labkit.course.student.shell", lambda: shell)
-    monkeypatch.chdir(folder)
-    for factor in 1.0, 2.0:
-        namespace["factor"][...] = factor
-        hand_in("01_paths")
-        said = " ".join(capsys.readouterr().out.split())
-        assert ("circle was right when it was checked and is not right now" in said) == (factor > 1)
-    shell.history_manager.input_hist_raw.append(RING.replace("2.0", "4.0"))
-    hand_in("01_paths")
-    said = " ".join(capsys.readouterr().out.split())
-    assert "does not hold the circle that you ran last" in said and "is not right now" not in said

@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+from questions import DOUBLE
 
 import labkit as lk
 from labkit import recordings
@@ -9,7 +10,9 @@ from labkit.course import Choice, mark
 from labkit.course.authoring.problem import Problem, Trial, call
 from labkit.course.judges import AtMost, Close
 from labkit.course.marking import try_public
-from labkit.course.observed import diagnosed
+from labkit.course.observed import VARIES, diagnosed
+from labkit.course.student import Desk
+from labkit.course.verdict import Misconception
 from labkit.recordings import read_trials
 from solutions.comparison.hidden import stiffer
 
@@ -62,6 +65,20 @@ def seen(problem, function):
 def test_the_cause_is_seen_in_the_numbers(function, says):
     """A sign, exchanged gains, a lost term and one too many are told, each in its sentence."""
     assert says in seen(LAW, function)
+
+
+def test_of_a_function_with_a_memory_only_that_is_said():
+    """Also where its first answers are those of a known mistake; a right one hears nothing."""
+    calls = []
+
+    def remembers(x):
+        calls.append(x)
+        return x * x + 0.1 * (len(calls) > 3)
+
+    verdict, *_ = Desk({"double": DOUBLE}).verdict("double", remembers)
+    assert verdict.mistake == Misconception("", VARIES)
+    verdict, *_ = Desk({"double": DOUBLE}).verdict("double", lambda x: x * x)
+    assert verdict.mistake.name == "squared"
 
 
 def test_a_factor_that_is_an_argument_is_told():

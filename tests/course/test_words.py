@@ -205,12 +205,16 @@ def test_long_answers_stand_below_each_other():
     assert lines[1] == '  In the test "a long one", it has the other sign.'
 
 
-def test_the_likely_cause_is_told_of_its_own_test():
-    """Twice in the first test, and something else in the next, is not told of the whole answer."""
+def test_a_factor_is_told_only_if_it_holds_in_every_call_that_failed():
+    """Neither twice in one call and another thing in the next, nor of a single number by chance."""
     tests = [Test(f"{k} rows", (Call((np.eye(k),), expected=np.ones(9)),)) for k in (3, 4)]
     question = replace(DOUBLE, tests=tuple(tests), mistakes=())
-    lines = said(lambda x: np.full(9, 2.0 if len(x) == 3 else 0.3), question).splitlines()
-    assert lines[1] == '  In the test "3 rows", it is twice what is expected.'
+    for second, told in ((0.3, False), (2.0, True)):
+        text = said(lambda x, y=second: np.full(9, 2.0 if len(x) == 3 else y), question)
+        assert ("twice" in text) == told
+    plain = replace(DOUBLE, mistakes=())
+    assert "other sign" in said(lambda x: -2.0 * x, plain)
+    assert "other sign" not in said(lambda x: 2.0 * abs(x), plain)
 
 
 def test_a_test_that_nobody_can_see_is_told():
@@ -239,7 +243,7 @@ def test_the_same_failure_is_told_once():
 @pytest.mark.parametrize(
     ("given", "first"),
     [
-        ((-1.0, 2.0), "In `double(1.0)`, kp has the other sign."),
+        ((-1.0, 2.0), "In `double(1.0)`, kp is -1 instead of 1."),
         ((float("inf"), 2.0), "kp is inf; look for a division by zero"),
         ((1.0, 2.5), "In `double(1.0)`, kd is 2.5 instead of 2."),
         ((1.0,), "It should be 2 values (kp, kd), not 1."),
