@@ -110,7 +110,7 @@ def copied(x: Any) -> Any:
 def _same(before: Any, after: Any) -> bool:
     """Whether a copy still holds the original's objects; no ``==`` of an object is called."""
     if isinstance(before, np.ndarray):
-        return before.shape == after.shape and before.tobytes() == after.tobytes()
+        return bool(before.shape == after.shape and before.tobytes() == after.tobytes())
     if isinstance(before, list | tuple):
         return len(before) == len(after) and all(map(_same, before, after))
     if isinstance(before, dict):

@@ -137,13 +137,6 @@ def test_a_wrong_answer_that_drives_anyway_is_named_and_tells_no_truth(said):
     assert "The arm says:  2" in told[8]
 
 
-def test_an_older_answer_is_replaced_by_a_stand_in_that_is_named(said):
-    """After an error in its cell, a right answer of before is not used."""
-    right = ANSWER.format(2)
-    *_, drawn = said(right, USE, DRAW, f"1 / 0\n{right}", USE, DRAW)
-    assert drawn == f"{NAMED}Drawn."
-
-
 def test_before_a_cell_has_run_nothing_is_drawn():
     """A history without cells."""
     assert drawn_with([], {"double"}) == drawn_with([""], {"double"}) == []
