@@ -29,7 +29,7 @@ ARG HUB=6.1.1
 COPY --from=course /handout/baxter-lab /lab/.ci/start_container.sh /opt/baxter-lab/
 RUN pip install --quiet --no-cache-dir --disable-pip-version-check --root-user-action=ignore \
       --constraint /opt/baxter-lab/constraints.txt \
-      /opt/baxter-lab/labkit-*.whl "jupyterhub==$HUB" nbgitpuller nbgrader
+      "$(ls /opt/baxter-lab/labkit-*.whl)[notebook]" "jupyterhub==$HUB" nbgitpuller nbgrader
 # Of nbgrader's extensions, a student has only the list of assignments; a hub mounts its exchange in the
 # folder made here. JupyterLab does not ask for news.
 RUN for part in formgrader course_list validate_assignment; do \

@@ -62,7 +62,7 @@ def main(arguments: list[str] | None = None) -> int:
             return 1
     say_where_to_look(time.monotonic() - began)
     if doctor.returncode:
-        print(f"\nNo class was graded: `make doctor` fails.\n{doctor.stdout}", file=sys.stderr)
+        print(f"\nNo class was graded: `labkit doctor` fails.\n{doctor.stdout}", file=sys.stderr)
         return 1
     return 0
 

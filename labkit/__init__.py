@@ -58,11 +58,15 @@ if not TYPE_CHECKING:  # else every misspelt name would pass a type checker
 
     def __getattr__(name: str) -> Any:
         """Load a name on first use, because OpenCV, Matplotlib and IPython are slow to import."""
-        if name in ("course", "plotting", "replay", "tags"):
-            return import_module(f".{name}", __name__)
-        if name not in __all__ and name not in _FROM:
+        whole = name in ("course", "plotting", "replay", "tags")
+        if not whole and name not in __all__ and name not in _FROM:
             raise AttributeError(f"module 'labkit' has no attribute {name!r}")
-        return getattr(import_module(f".{_FROM.get(name, 'tags')}", __name__), name)
+        try:
+            module = import_module(f".{name if whole else _FROM.get(name, 'tags')}", __name__)
+        except ModuleNotFoundError as missing:
+            say = f"lk.{name} needs {missing.name}; type: pip install 'labkit[notebook]'"
+            raise LabkitError(say) from missing
+        return module if whole else getattr(module, name)
 
 
 def __dir__() -> list[str]:
@@ -75,8 +79,6 @@ def ready() -> None:
     Raises:
         LabkitError: The arm did not reach its goal.
     """
-    import psutil  # only this function needs it
-
     from .run import run  # not `lk.run`, which a user may have replaced
 
     with Arm() as arm:
@@ -88,9 +90,7 @@ def ready() -> None:
     if off > 0.01:
         raise LabkitError(f"the arm ended {off:.3f} rad from where it was sent; reinstall labkit")
     engines = ", ".join(f"{name} {version(name)}" for name in (arm.world.engine, "pin"))
-    free = psutil.virtual_memory().available / 2**30
     print(  # short enough for one line of a notebook beside its file browser
         f"labkit {__version__}: the arm moved {1e3 * np.linalg.norm(b - a):.0f} mm; Python "
-        f"{platform.python_version()}, {sys.platform} {platform.machine()}, {engines}, "
-        f"{free:.0f} GB memory free"
+        f"{platform.python_version()}, {sys.platform} {platform.machine()}, {engines}"
     )

@@ -10,7 +10,10 @@ from collections.abc import Sequence
 from importlib.util import find_spec
 from io import TextIOWrapper
 
-import click
+try:
+    import click
+except ModuleNotFoundError:
+    sys.exit("labkit: click is missing; type: pip install 'labkit[notebook]'")
 
 from . import __version__
 from .course.cli import merge, submit_check

@@ -14,13 +14,20 @@ from typing import Any
 
 import matplotlib.pyplot as plt
 import numpy as np
-from IPython.core.getipython import get_ipython
-from IPython.display import display
 from matplotlib.figure import Figure
 
 from . import metrics
 from .log import Log
 from .model import Model
+
+try:
+    from IPython.core.getipython import get_ipython
+    from IPython.display import display
+except ModuleNotFoundError:  # a script, without the extra `notebook`
+
+    def get_ipython() -> None:  # type: ignore[misc]
+        """Say that there is no notebook."""
+
 
 STYLES = ("-", "--", "-.", ":")
 AXES = ("x", "y", "z")

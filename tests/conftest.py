@@ -1,5 +1,6 @@
 """Tools of all tests: repeatable runs of hypothesis, states drawn from a seed, a browser."""
 
+from collections import Counter
 from contextlib import contextmanager
 
 import numpy as np
@@ -23,37 +24,17 @@ ARGUMENTS = [
     "--disable-background-networking", "--disable-component-update", "--disable-sync",
 ]  # fmt: skip
 
-
 FIRST = "test_pages_of_the_contents_exist"
 
 
-def pytest_addoption(parser):
-    parser.addoption(
-        "--quick", action="store_true", help="leave out what needs Chromium where it is missing"
-    )
-
-
-def _without_chromium(config):
-    """Whether to leave out the tests that need Chromium."""
-    try:
-        return config.getoption("quick") and not program()
-    except SystemExit:
-        return True
-
-
-def pytest_report_header(config):
-    return ["Chromium is missing, so its tests are left out"] if _without_chromium(config) else []
-
-
-def pytest_terminal_summary(terminalreporter, config):
-    """Say at the end of `make quick` what it left out, so that nobody takes it for `make test`."""
-    if config.getoption("quick") and config.getoption("ignore"):
-        browser = ", what needs Chromium" if _without_chromium(config) else ""
-        folders = ", ".join(config.getoption("ignore"))
-        terminalreporter.write_line(
-            f"make quick left out {folders}{browser} and all slow tests; make test runs them, "
-            "and make soak what is marked soak"
-        )
+def pytest_terminal_summary(terminalreporter):
+    """Say how long each folder of tests took, over all workers."""
+    took = Counter()
+    for report in (x for found in terminalreporter.stats.values() for x in found):
+        if hasattr(report, "duration"):
+            took["/".join(report.nodeid.partition("::")[0].split("/")[:-1][:2])] += report.duration
+    for folder, seconds in took.most_common(12):
+        terminalreporter.write_line(f"{folder}: {seconds:.0f} s")
 
 
 def _turn(item):
@@ -61,13 +42,9 @@ def _turn(item):
     return ("book" in item.fixturenames) * (1 if item.name != FIRST else -1)
 
 
-def pytest_collection_modifyitems(config, items):
-    """Order the tests; only `make quick` leaves out tests whose program is missing."""
+def pytest_collection_modifyitems(items):
+    """One worker builds the book first; other tests of the book come last."""
     items.sort(key=_turn)
-    if _without_chromium(config):
-        left_out = [item for item in items if "playwright" in item.fixturenames]
-        config.hook.pytest_deselected(items=left_out)
-        items[:] = [item for item in items if item not in left_out]
 
 
 @pytest.fixture(params=["left", "right"])

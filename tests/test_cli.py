@@ -173,7 +173,7 @@ def test_a_missing_package_of_instructors_is_a_sentence(package, monkeypatch, ca
     monkeypatch.setattr("labkit.course.before_handing_in.examine", missing)
     if package == "sqlalchemy":
         assert main(["submit-check", "x"]) == 2
-        assert "pip install 'labkit[instructor]'" in capsys.readouterr().err
+        assert "pip install 'labkit[grader]'" in capsys.readouterr().err
     else:
         with pytest.raises(ModuleNotFoundError):
             main(["submit-check", "x"])

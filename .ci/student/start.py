@@ -159,7 +159,7 @@ def install(python):
     """Let pip install the lab, and print what it fetches and how far it is."""
     words = ["install", "--no-compile", "--progress-bar", "off", "--disable-pip-version-check"]
     words += ["--cache-dir", str(CACHE), "--retries", "2", "--timeout", "20"]
-    words += ["--constraint", str(HERE / "constraints.txt"), wheel()]
+    words += ["--constraint", str(HERE / "constraints.txt"), wheel() + "[notebook]"]
     command = [str(python), "-m", "pip"] + words
     said, count, warned, end = [], 0, False, threading.Event()
     with LOG.open("w") as log, subprocess.Popen(

@@ -29,7 +29,7 @@ MEASURED = {
     "cost_answer_s": 8.97,
     "cost_endless_s": 45.3,
 }
-"""Results of ``make bench`` on two quiet cores, with the names that it prints."""
+"""Results of ``python -m tests.bench`` on two quiet cores, with the names that it prints."""
 CLASSES, CORES = (40, 400, 10_000), (2, 8, 64)
 
 
@@ -37,8 +37,8 @@ def _measured(key: str) -> tuple[float, str]:
     """A number of the bench, and its origin."""
     here = json.loads(BENCH.read_text()).get(key) if BENCH.exists() else None
     if here is not None:
-        return float(here), "as make bench measured on this machine"
-    return MEASURED[key], "as make bench measured on two quiet cores"
+        return float(here), "as tests.bench measured on this machine"
+    return MEASURED[key], "as tests.bench measured on two quiet cores"
 
 
 def table_of_effort() -> HTML:

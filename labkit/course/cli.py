@@ -34,7 +34,7 @@ class Verb(click.Command):
             package = (error.name or "").partition(".")[0]
             if package not in FOR_INSTRUCTORS:
                 raise
-            return self._stop(f"{package} is missing; type: pip install 'labkit[instructor]'")
+            return self._stop(f"{package} is missing; type: pip install 'labkit[grader]'")
         except KeyboardInterrupt:
             return self._stop("stopped", code=130)
         except BrokenPipeError:  # the reader of the output has seen enough

@@ -64,7 +64,7 @@ def _linux() -> Iterator[Finding]:
 
     yield Finding("Python", True, f"{platform.python_version()}, {' and '.join(installed())}")
     missing = [x for x in ("nbgrader", "jupytext") if find_spec(x) is None]
-    says = f"missing {', '.join(missing)}; type: pip install 'labkit[instructor]'"
+    says = f"missing {', '.join(missing)}; type: pip install 'labkit[grader]'"
     yield Finding("instructor's packages", not missing, says if missing else "installed")
     program = shutil.which("bwrap")
     yield Finding("bubblewrap", program is not None, program or "missing")

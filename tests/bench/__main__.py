@@ -1,4 +1,4 @@
-"""Measure, print and write build/bench.json: `make bench`, or `python -m tests.bench start`.
+"""Measure, print and write build/bench.json: `python -m tests.bench`, or one alone.
 
 A measurement is a file here with a function ``measure() -> {key: number or None}`` and an entry in
 `MEASUREMENTS`.  The first line of the function's docstring says what the numbers are.

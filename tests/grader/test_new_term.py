@@ -311,7 +311,7 @@ def test_a_term_with_students_does_not_end_by_mistake(course, capsys):
 
 
 def test_a_release_that_nobody_used_is_said_to_be_one(course, capsys):
-    """The first term after `make release` archives hidden cases, and says that nobody is there."""
+    """The first term archives the hidden cases released before, and says that nobody is there."""
     words = ["00_warmup", "--course", str(course.root)]
     assert main(["release", *words]) == 0
     assert main(["term", "new", *words]) == 0

@@ -150,7 +150,7 @@ def test_a_students_environment_is_told_what_an_instructors_has(monkeypatch, cap
 
     monkeypatch.setattr("labkit.grader.terms.release.release", missing)
     assert main(["release", NAME, "--course", str(COURSE.root)]) == 2
-    said = "labkit release: nbgrader is missing; type: pip install 'labkit[instructor]'\n"
+    said = "labkit release: nbgrader is missing; type: pip install 'labkit[grader]'\n"
     assert capsys.readouterr().err == said
 
 

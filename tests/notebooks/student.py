@@ -137,7 +137,7 @@ def run_kernel(name, parts, folder):
         files = {"transport": "ipc", "ip": f"{sockets}/kernel"}
         NotebookClient(
             notebook,
-            timeout=600,  # only so that no test hangs; `make bench` measures the time
+            timeout=600,  # only so that no test hangs; `tests.bench` measures the time
             kernel_name="python3",
             resources=place,
             config=Config({"KernelManager": files}),

@@ -96,7 +96,7 @@ def joints(page):
 def test_a_motion_becomes_ready_and_is_drawn(chromium, visit, pages):
     """More than 1 % of the canvas has the red of the arms."""
     page = visit(chromium, "motion")
-    page.wait_for_selector("[data-ready]")  # how soon is a question for `make bench`
+    page.wait_for_selector("[data-ready]")  # how soon is a question for `tests.bench`
     pixels = page.evaluate("""() => {
         const c = document.querySelector('canvas');
         const d = c.getContext('2d').getImageData(0, 0, c.width, c.height).data;

@@ -270,6 +270,6 @@ def test_without_the_extra_a_sentence_tells_what_to_install():
     """Where toppra is missing, the import fails with the pip command for it."""
     code = "import sys; sys.modules['toppra'] = None\nimport solutions.study.baseline"
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True)
-    assert 'the baseline needs toppra, which is not installed: pip install "labkit[baseline]"' in (
+    assert 'the baseline needs toppra, which is not installed: pip install "labkit[book]"' in (
         done.stderr
     )

@@ -11,5 +11,5 @@ python3 -m venv /opt/uv
 export UV_PYTHON_INSTALL_DIR=/opt/python
 /opt/uv/bin/uv venv --quiet --python 3.11 /opt/labkit
 /opt/uv/bin/uv pip install --quiet --compile-bytecode --python /opt/labkit/bin/python \
-  --constraint constraints.txt ./labkit-*.whl
+  --constraint constraints.txt "$(ls ./labkit-*.whl)[notebook]"
 ./run_autograder --try

@@ -1,6 +1,6 @@
 """The built-in method, as a baseline: plan, time and execute as MoveIt and Rethink's server do.
 
-The method needs the extra ``labkit[baseline]`` (ompl, toppra); its recorded runs do not.
+The method needs the extra ``labkit[book]`` (ompl, toppra); its recorded runs do not.
 """
 
 from __future__ import annotations
@@ -12,7 +12,7 @@ try:
     from .timing import HARDWARE, MOVEIT, JointLimits, Schedule, quickest
 except ModuleNotFoundError as missing:
     raise ModuleNotFoundError(
-        f'the baseline needs {missing.name}, which is not installed: pip install "labkit[baseline]"'
+        f'the baseline needs {missing.name}, which is not installed: pip install "labkit[book]"'
         "; its recorded runs need nothing: labkit.recordings.names()",
         name=missing.name,
     ) from missing
