@@ -13,11 +13,11 @@ from pathlib import Path
 
 ROOT = Path(__file__).parents[1]
 STOREYS = {
-    "lab": (r"labkit/(?!course/|grader/|__main__).*\.py", 5228),
+    "lab": (r"labkit/(?!course/|grader/|__main__).*\.py", 5300),
     "course": (r"labkit/(course/|__main__).*\.py", 5429),
     "grader": (r"labkit/grader/.*\.py", 9116),
-    "solutions": (r"solutions/.*\.py", 16224),
-    "book": (r"book/.*\.py", 7269),
+    "solutions": (r"solutions/.*\.py", 16300),
+    "book": (r"book/.*\.py", 7350),
     "tests": (r"tests/.*\.py", 29493),
     "JavaScript, styles": (r".*\.(js|mjs|css)", 5265),
     "templates, texts": (r".*\.(j2|html|toml|yml|yaml)|solutions/.*\.(md|txt)", 1190),
