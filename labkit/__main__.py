@@ -24,7 +24,6 @@ examples:
 """
 EXAMPLES_FOR_INSTRUCTORS = """\
   labkit release                        make all assignments, for students and graders
-  labkit release 01_paths --seed 7      make one, with hidden cases from seed 7
   labkit student-bundle                 a zip for students, with a start page
   labkit grade 01_paths                 grade everything under submitted/
   labkit report-card                    measure how well checks tell right from wrong

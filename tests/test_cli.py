@@ -28,7 +28,7 @@ def test_instructors_have_at_most_fourteen_verbs():
     assert len(set(VERBS) - {"submit-check", "merge"}) <= 14
 
 
-@pytest.mark.parametrize("words", [[], ["dance"], ["release", "--seed", "many"]])
+@pytest.mark.parametrize("words", [[], ["dance"], ["report-card", "--seed", "many"]])
 def test_wrong_words_end_with_code_two(words, capsys):
     """Words that make no sense end with a usage line and exit code 2."""
     assert main(words) == 2
@@ -54,7 +54,7 @@ def test_the_list_of_verbs_says_what_each_does(capsys):
 @pytest.mark.parametrize(
     ("words", "sentence"),
     [
-        (["release", "--seed", "-1"], "-1 is not in the range x>=0"),
+        (["report-card", "--seed", "-1"], "-1 is not in the range x>=0"),
         (["grade", "01_paths", "--jobs", "0"], "0 is not in the range x>=1"),
     ],
 )

@@ -31,7 +31,6 @@ from .gaps import (
     undefined_names,
     unreadable,
 )
-from .identification import where_it_was_measured
 from .messages import head
 from .notebook import check_id, defines, grade_id, last_verdict, read_cells
 from .serialize import decode
@@ -151,9 +150,9 @@ def examine(path: Path) -> HandIn:
         for verdict in verdicts.values()
         if verdict is not None and verdict.withheld
     ]
-    for lost, told in left_behind(folder, cells), where_it_was_measured(folder, code, verdicts):
-        problems += lost
-        notes += told
+    lost, told = left_behind(folder, cells)
+    problems += lost
+    notes += told
     problems += [
         f"the cell of {name} says None, although you had committed to a prediction; the cell is "
         "what is marked, so write your prediction into it again and run it"

@@ -2,17 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from dataclasses import dataclass, replace
-from pathlib import Path
 from typing import Any
 
 from .brief import heading, where_hints_are
 from .bugs import Found, Telling
 from .forms import OWN_ARM, Measured
-from .own_arm import DEMO, FILE, OwnArm, arms_for, draw, opens_the_public_arm
+from .own_arm import DEMO, OwnArm, public_arm
 from .question import Call, Question, Test
-from .seed import PUBLIC_SEED
 from .verdict import Difference, Kind, Outcome, Verdict
 
 
@@ -99,11 +96,11 @@ def personalised(question: Question, arm: OwnArm) -> Question:
 def on_the_public_arm(question: Question, verdict: Verdict, answer: Any) -> tuple[Verdict, str]:
     """The verdict on a plausible answer about the public arm, and a remark if it is right."""
     judge: Any = question.judge
-    if judge(answer, judge.expected(draw(PUBLIC_SEED, DEMO))) is None:
+    if judge(answer, judge.expected(public_arm())) is None:
         return verdict, f"Your answer is right for the public arm, {DEMO!r}."
     found = f"it is not right for the public arm, {DEMO!r}"
     if isinstance(judge, Measured):
-        off = answer - judge.expected(draw(PUBLIC_SEED, DEMO))
+        off = answer - judge.expected(public_arm())
         more = "more" if off > 0.0 else "less"
         found += f": it is {abs(off):.2g} {judge.unit} {more} than there"
         if judge.of == "payload":
@@ -113,32 +110,3 @@ def on_the_public_arm(question: Question, verdict: Verdict, answer: Any) -> tupl
     wrong = replace(verdict.tests[-1], outcome=Outcome.WRONG, call=call, difference=why)
     tests = (*verdict.tests[:-1], wrong)
     return replace(verdict, outcome=Outcome.WRONG, earned=0.0, tests=tests), ""
-
-
-def where_it_was_measured(
-    folder: Path, code: list[str], verdicts: Mapping[str, Verdict | None]
-) -> tuple[list[str], list[str]]:
-    """Problems and notes before handing in, if the public arm was measured in place of one's own.
-
-    Args:
-        folder: The folder of the notebook, with or without the file of the students' own arms.
-        code: The text of the cells of code.
-        verdicts: The last verdict on each question.
-    """
-    measured = [
-        name
-        for name, verdict in verdicts.items()
-        if verdict and verdict.right and any(test.name == OWN_ARM for test in verdict.tests)
-    ]
-    if not (measured and opens_the_public_arm(code)):
-        return [], []
-    begins, names = 'HANDLE is "demo", the public arm', ", ".join(measured)
-    if arms_for(folder):
-        return [
-            f"{begins}, but {names} will be judged by an arm of your own; set HANDLE to the name "
-            "that your instructor gave you, and measure again"
-        ], []
-    return [], [
-        f"{begins}, and {FILE} is not beside the notebook: {names} will earn nothing if your "
-        "course gave you an arm of your own. If it did, ask your instructor for this file"
-    ]

@@ -1,19 +1,16 @@
-"""Students' own arms, which are drawn from their handles and the secret of the term.
+"""Students' own arms, which are drawn from their handles and a key of the term.
 
-Payload, stiction, lag and a wall follow from the HMAC of the handle under the term's secret.  The
-students' file holds each arm as a sealed text, so that nobody reads a number by accident.  A
-student who unseals it misses the experiment, and the grader cannot detect this.
+Payload, stiction, lag and a wall follow from the HMAC of the handle under the key.  The students'
+file holds them as they are: a student who looks misses the experiment, and nobody can tell.
 """
 
 from __future__ import annotations
 
-import base64
 import hashlib
 import hmac
 import json
-import re
 import unicodedata
-from collections.abc import Iterable, Mapping
+from collections.abc import Mapping
 from dataclasses import asdict, dataclass, field, replace
 from pathlib import Path
 
@@ -31,9 +28,9 @@ from .bugs import CAUSES, MOVES, Bug
 from .seed import PUBLIC_SEED
 
 FILE = "arms.json"
-"""The file of a term's sealed arms, beside each notebook that asks about one's own arm."""
+"""The file of a term's arms, beside each notebook that asks about one's own arm."""
 HANDLES = "course_private/handles.json"
-"""The file with the term's seed and the handle of each student, in the course's folder."""
+"""The file with the key of the arms and the handle of each student, in the course's folder."""
 DEMO = "demo"
 """The handle of the public arm, for self-study and for a course without a term."""
 
@@ -44,13 +41,6 @@ RANGES = {
     "wall": (0.04, 0.09),
 }
 """The range from which each number is drawn; `OwnArm` explains the numbers."""
-
-APART = {"payload": 0.15, "stiction": 0.1, "lag": 0.00625, "wall": 0.005}
-"""Smallest difference between a number of the public arm and that of any other arm.
-
-A measurement of the public arm is therefore wrong for every other arm.  For a number that students
-measure, the difference is 1.25 tolerances.
-"""
 
 BUGS = 3
 """The number of misbehaving runs of each arm, of all pairs from `CAUSES` and `MOVES`."""
@@ -89,13 +79,14 @@ class OwnArm:
         )
 
 
-def draw(secret: int, handle: str) -> OwnArm:
-    """The arm of a handle, whatever its spelling, by HMAC-SHA256 under the term's secret."""
-    handle = normalised(handle)
-    digest = hmac.new(str(secret).encode(), handle.encode(), hashlib.sha256).digest()
+def draw(key: str, handle: str) -> OwnArm:
+    """The arm of a handle, whatever its spelling, by HMAC-SHA256 under a key."""
+    digest = hmac.new(key.encode(), normalised(handle).encode(), hashlib.sha256).digest()
     shares = (int.from_bytes(digest[8 * k : 8 * k + 8], "big") / 2.0**64 for k in range(4))
-    public = None if handle == DEMO else draw(PUBLIC_SEED, DEMO)
-    numbers = (_number(name, x, public) for name, x in zip(RANGES, shares, strict=True))
+    numbers = {
+        name: least + share * (most - least)
+        for share, (name, (least, most)) in zip(shares, RANGES.items(), strict=True)
+    }
     random = np.random.default_rng(list(digest))
     causes = random.choice(list(CAUSES), BUGS, replace=False)
     bugs = (
@@ -108,19 +99,7 @@ def draw(secret: int, handle: str) -> OwnArm:
             strict=True,
         )
     )
-    payload, stiction, lag, wall = numbers
-    return OwnArm(payload, stiction, lag, wall, tuple(bugs))
-
-
-def _number(name: str, share: float, public: OwnArm | None) -> float:
-    """The number at a share of its range, without the part of the range near the public arm."""
-    least, most = RANGES[name]
-    if public is None:
-        return least + share * (most - least)
-    middle: float = getattr(public, name)
-    cut = max(middle - APART[name], least), min(middle + APART[name], most)
-    number = least + share * (most - least - (cut[1] - cut[0]))
-    return number if number < cut[0] else number + (cut[1] - cut[0])
+    return OwnArm(**numbers, bugs=tuple(bugs))
 
 
 def normalised(handle: str) -> str:
@@ -136,11 +115,11 @@ class Arms:
     """The arms of the students in a term.
 
     Attributes:
-        secret: The term's seed.
+        key: The term's key for arms; without a term, one that anybody can compute.
         handles: The handle of each student, which may be their team's.
     """
 
-    secret: int = PUBLIC_SEED
+    key: str = ""
     handles: Mapping[str, str] = field(default_factory=dict)
 
     @classmethod
@@ -155,7 +134,7 @@ class Arms:
             return cls()
         try:
             found = json.loads(path.read_text(encoding="utf-8"))
-            return cls(int(found["secret"]), dict(found["handles"]))
+            return cls(str(found["key"]), dict(found["handles"]))
         except (ValueError, KeyError, TypeError):
             raise LabkitError(
                 f"{path} is damaged; delete it, and import the list of students again"
@@ -169,12 +148,15 @@ class Arms:
         """A student's arm, or None if the student has no handle."""
         known = {normalised(who): handle for who, handle in self.handles.items()}
         handle = known.get(normalised(student))
-        return None if handle is None else draw(self.secret, handle)
+        return None if handle is None else draw(self.key, handle)
 
-    def sealed(self) -> dict[str, str]:
-        """The content of the students' `FILE`, in which each student's name opens one arm."""
-        of = {who: draw(self.secret, handle) for who, handle in sorted(self.handles.items())}
-        return {_hashed(who): _seal(arm, who) for who, arm in of.items()}
+    def table(self) -> str:
+        """The text of the students' `FILE`: each arm by the hash of a student's name.
+
+        The file may lie in a public place, so it is no class list.
+        """
+        of = {_hashed(who): asdict(draw(self.key, x)) for who, x in sorted(self.handles.items())}
+        return json.dumps(of, indent=1) + "\n"
 
 
 def my_arm(handle: str = DEMO, seed: int = 0) -> Arm:
@@ -218,34 +200,25 @@ def my_bug(number: int, handle: str = DEMO) -> Log:
     return _own(handle).bugs[number - 1].log()
 
 
+def public_arm() -> OwnArm:
+    """The arm of `DEMO`."""
+    return draw(str(PUBLIC_SEED), DEMO)
+
+
 def _own(handle: str) -> OwnArm:
-    return draw(PUBLIC_SEED, DEMO) if normalised(handle) == DEMO else _unsealed(handle)
-
-
-def arms_for(folder: Path) -> Path | None:
-    """The file of sealed arms that a notebook in a folder uses, or None."""
-    files = (place / FILE for place in (folder, *folder.parents[:2]))
-    return next((file for file in files if file.exists()), None)
-
-
-def opens_the_public_arm(cells: Iterable[str]) -> bool:
-    """Whether the HANDLE that a notebook's cells set last is that of the public arm."""
-    said = re.findall(r"^HANDLE\s*=\s*(['\"])(.*?)\1", "\n".join(cells), re.MULTILINE)
-    return bool(said) and normalised(said[-1][1]) == DEMO
-
-
-def _unsealed(handle: str) -> OwnArm:
-    file = arms_for(Path.cwd())
+    if normalised(handle) == DEMO:
+        return public_arm()
+    places = (place / FILE for place in (Path.cwd(), *Path.cwd().parents[:2]))
+    file = next((place for place in places if place.exists()), None)
     if file is None:
         raise LabkitError(
             f"there is no {FILE} here or in the two folders above; your instructor hands it out "
             f"with the notebooks of your course. To practise, use lk.my_arm({DEMO!r})"
         )
     try:
-        text = json.loads(file.read_text(encoding="utf-8")).get(_hashed(handle))
-        if text is not None:
-            sealed = json.loads(_masked(base64.b64decode(text), handle))
-            return OwnArm(**sealed | {"bugs": tuple(Bug(**bug) for bug in sealed["bugs"])})
+        found = json.loads(file.read_text(encoding="utf-8")).get(_hashed(handle))
+        if found is not None:
+            return OwnArm(**found | {"bugs": tuple(Bug(**bug) for bug in found["bugs"])})
     except (AttributeError, KeyError, TypeError, ValueError):
         raise LabkitError(
             f"{file} is damaged; replace it with the {FILE} that your instructor handed out"
@@ -257,13 +230,3 @@ def _unsealed(handle: str) -> OwnArm:
 
 def _hashed(handle: str) -> str:
     return hashlib.sha256(normalised(handle).encode()).hexdigest()[:16]
-
-
-def _seal(arm: OwnArm, handle: str) -> str:
-    return base64.b64encode(_masked(json.dumps(asdict(arm)).encode(), handle)).decode()
-
-
-def _masked(data: bytes, handle: str) -> bytes:
-    """The data combined by XOR with pseudo-random bytes from the handle; twice restores it."""
-    stream = np.random.default_rng(list(normalised(handle).encode())).bytes(len(data))
-    return bytes(a ^ b for a, b in zip(data, stream, strict=True))

@@ -1,54 +1,51 @@
-"""The seeds of the hidden cases of a term and of an assignment."""
+"""The secret of a term, and what is derived from it: one key for each purpose.
+
+The secret has 128 random bits and stays in `course_private`.  A key tells neither the secret nor
+another key, so what is handed out, such as the students' own arms, gives nothing else away.
+"""
 
 from __future__ import annotations
 
+import hmac
 import json
-from pathlib import Path
 
 from ..course.authoring.layout import Course
 from ..course.seed import PUBLIC_SEED
 from ..errors import LabkitError
 
 
-def seed_of(course: Course) -> int:
-    """The course's own seed, or the public one if no term was begun.
+def key_of(course: Course, purpose: str) -> str:
+    """The key for a purpose, such as "arms", as 64 digits: HMAC-SHA256 under the term's secret.
+
+    If no term was begun, the public seed takes the place of the secret.
 
     Raises:
         LabkitError: The term's record cannot be read.
     """
-    if not course.term.exists():
-        return PUBLIC_SEED
-    return _seed_in(course.term, 'write into it the term\'s, as {"seed": 123}')
+    secret = str(PUBLIC_SEED).encode()
+    if course.term.exists():
+        try:
+            secret = bytes.fromhex(json.loads(course.term.read_text(encoding="utf-8"))["secret"])
+            if len(secret) < 16:
+                raise ValueError
+        except (ValueError, KeyError, TypeError):
+            says = f"{course.term} is damaged and holds no secret; restore it from your copy"
+            raise LabkitError(says) from None
+    return hmac.new(secret, purpose.encode(), "sha256").hexdigest()
 
 
-def seed_for(course: Course, assignment: str) -> int:
-    """The seed of an assignment that is released without one.
-
-    It is the seed of the term.  If no term was begun, it is that of the last release, so that a
-    correction keeps the hidden cases; for a first release it is the public seed.
+def seed_of(course: Course) -> int:
+    """The seed of the hidden cases: the term's, or the public one if no term was begun.
 
     Raises:
-        LabkitError: The bundle of the last release is damaged, and its seed lost.
+        LabkitError: As for `key_of`.
     """
-    seed = seed_of(course)
-    bundle = course.bundle / f"{assignment}.json"
-    if seed == PUBLIC_SEED and bundle.exists():
-        return _seed_in(bundle, f"name a seed: labkit release {assignment} --seed {seed}")
-    return seed
+    return int(key_of(course, "hidden cases"), 16) if course.term.exists() else PUBLIC_SEED
 
 
-def _seed_in(file: Path, instead: str) -> int:
-    """The seed in a file; if it is damaged, the error says what can be done ``instead``."""
-    try:
-        return int(json.loads(file.read_text(encoding="utf-8"))["seed"])
-    except (ValueError, KeyError, TypeError):
-        says = f"{file} is damaged and holds no seed; restore it, or {instead}"
-        raise LabkitError(says) from None
-
-
-def public_warning(seed: int) -> str:
-    """A warning about cases made with the public seed; "" for any other seed."""
-    if seed != PUBLIC_SEED:
+def public_warning(course: Course) -> str:
+    """A warning about what is drawn with the public seed; "" in a term."""
+    if course.term.exists():
         return ""
     return (
         f"hidden cases made with the public seed {PUBLIC_SEED} are public: anyone can compute "

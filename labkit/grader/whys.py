@@ -1,6 +1,6 @@
 """Whys: a person marks two of each student's; the others get full points if written.
 
-Nobody knows before the deadline which two, because they are drawn under the term's seed.
+Nobody knows before the deadline which two, because they are drawn under a key of the term.
 """
 
 from __future__ import annotations
@@ -11,9 +11,8 @@ from collections.abc import Collection, Iterable
 from functools import partial
 from typing import Any
 
-from ..course.authoring.bundle import Bundle
 from ..course.authoring.layout import Course
-from .seeds import seed_of
+from .seeds import key_of
 
 DRAWN = 2
 """The number of whys that a person marks, per student and term."""
@@ -21,16 +20,16 @@ _WHY = re.compile(r'^# %% \[markdown\].*\bwhy="(\w+)"', re.MULTILINE)
 
 
 def drawn(
-    seed: int, student: str, whys: Iterable[str], marked: Collection[str] = ()
+    key: str, student: str, whys: Iterable[str], marked: Collection[str] = ()
 ) -> frozenset[str]:
     """The whys that a person marks: first those that are marked already, then by lot."""
-    by_lot = sorted(whys, key=partial(rank, seed, student))
+    by_lot = sorted(whys, key=partial(rank, key, student))
     return frozenset(sorted(by_lot, key=lambda name: name not in marked)[:DRAWN])
 
 
-def rank(seed: int, student: str, what: str) -> bytes:
-    """The sort key of a thing that is drawn by lot for a student: HMAC-SHA256 under the seed."""
-    return hmac.digest(str(seed).encode(), f"{student}/{what}".encode(), "sha256")
+def rank(key: str, student: str, what: str) -> bytes:
+    """The sort key of a thing that is drawn by lot for a student: HMAC-SHA256 under a key."""
+    return hmac.digest(key.encode(), f"{student}/{what}".encode(), "sha256")
 
 
 def credit_whys(course: Course, book: Any, assignment: str) -> None:
@@ -42,8 +41,7 @@ def credit_whys(course: Course, book: Any, assignment: str) -> None:
     is by the name of the folder, says otherwise since a list was imported.
 
     Raises:
-        LabkitError: There is such a why, and the seed of the term, or that of the release if no
-            term was begun, cannot be read.
+        LabkitError: There is such a why, and the term's record cannot be read.
     """
     waiting = [
         (submission.student.id, grade)
@@ -67,9 +65,9 @@ def credit_whys(course: Course, book: Any, assignment: str) -> None:
     }
     released, term = {path.stem for path in course.bundle.glob("*.json")}, course.term.exists()
     asked = [name for name, x in whys.items() if x in released or not term]
-    seed = seed_of(course) if term else int(Bundle.of(course, assignment).data["seed"])
+    key = key_of(course, "whys")
     for student, grade in waiting:
         mine = [name for name in asked if (student, name) in marked]
-        if grade.name not in drawn(seed, student, asked, mine):
+        if grade.name not in drawn(key, student, asked, mine):
             grade.auto_score, grade.needs_manual_grade = grade.max_score, False
     book.db.commit()

@@ -10,11 +10,10 @@ import pytest
 from labkit import LabkitError
 from labkit.course.before_handing_in import HandIn, examine
 from labkit.course.brief import PLACEHOLDER, words_of
-from labkit.course.forms import COMMITTED, OWN_ARM
+from labkit.course.forms import COMMITTED
 from labkit.course.merge import merge
 from labkit.course.messages import HEADS
 from labkit.course.notebook import read_cells, verdict_in, verdict_metadata
-from labkit.course.own_arm import FILE
 from labkit.course.receipt import receipt
 from labkit.course.verdict import Outcome, TestResult, Verdict
 
@@ -398,36 +397,6 @@ def test_the_texts_of_an_older_release_are_counted(folder):
     file = folder / "checks.json"
     file.write_text(json.dumps({**json.loads(file.read_text()), "texts": {}}))
     assert examine(folder / "01_paths.ipynb").texts == {"why_twice_the_time": 0}
-
-
-def test_numbers_of_the_public_arm_are_named_where_ones_own_was_due(tmp_path):
-    """Only where the course gave arms out and a number was written down."""
-    folder = Path(shutil.copytree(ASSIGNMENT.parent / "05_impedance", tmp_path / "05_impedance"))
-    path = folder / "05_impedance.ipynb"
-    (folder / FILE).write_text("{}")
-    assert not [text for text in examine(path).problems if "public arm" in text]
-
-    def measured(cells):
-        for cell in cells:
-            if 'check("my_wall"' in "".join(cell["source"]):
-                test = TestResult(OWN_ARM, 1.0, Outcome.NOT_TRIED)
-                cell["outputs"] = [output("my_wall", Outcome.RIGHT, tests=(test,))]
-        return cells
-
-    (problem,) = examine(edited(path, measured)).problems
-    assert problem == (
-        'HANDLE is "demo", the public arm, but my_wall will be judged by an arm of your own; set '
-        "HANDLE to the name that your instructor gave you, and measure again"
-    )
-    path.write_text(path.read_text().replace('HANDLE = \\"demo\\"', 'HANDLE = \\"ada\\"'))
-    assert not examine(path).problems
-    path.write_text(path.read_text().replace('HANDLE = \\"ada\\"', 'HANDLE = \\" Demo \\"'))
-    assert examine(path).problems
-    (folder / FILE).unlink()
-    found = examine(path)
-    assert not found.problems
-    (note,) = [text for text in found.notes if "public arm" in text]
-    assert "arms.json is not beside the notebook: my_wall will earn nothing if your course" in note
 
 
 def test_an_emptied_prediction_is_named(folder):

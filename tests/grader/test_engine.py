@@ -110,7 +110,7 @@ def test_an_answer_from_the_students_own_arm_is_told_to_be_typed(marks, solved):
 
 def test_a_result_says_that_the_public_arm_was_measured(bundle, sandbox, blank):
     """Where a student has an arm of their own, and nowhere else; the last HANDLE counts."""
-    given = replace(bundle, arms=Arms(7, {"ada": "ada"}))
+    given = replace(bundle, arms=Arms("7", {"ada": "ada"}))
 
     def said(student):
         notes = grade(raw(blank), student, given, sandbox, QUICK).notes

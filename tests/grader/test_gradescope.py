@@ -150,7 +150,7 @@ def test_an_arm_of_ones_own_is_known_by_the_address(tmp_path, bundle, mail, know
     """Of a group the member counts whom the list knows; an address that it lacks is named."""
     path = tmp_path / "metadata.json"
     path.write_text(json.dumps({"users": [{"email": "bob@example.org"}, {"email": mail}]}))
-    bundle = Bundle(bundle.data, Arms(1, {"ada@example.org": "ada"}))
+    bundle = Bundle(bundle.data, Arms("1", {"ada@example.org": "ada"}))
     student, says = gradescope._student(path, bundle)
     assert (student == "ada@example.org", not says) == (known, known)
 
@@ -163,7 +163,7 @@ def test_the_zip_knows_whose_arm_it_is_by_the_address(course, tmp_path, monkeypa
         def of_student(self, student):
             return Own(**vars(self))
 
-    own = Own(data=whole.data, arms=Arms(7, {"ada": "red", "bob": "red"}))
+    own = Own(data=whole.data, arms=Arms("7", {"ada": "red", "bob": "red"}))
     people = Roster((Student("ada", email="Ada@example.org"), Student("bob"), Student("eve")))
     monkeypatch.setattr(gradescope_zip.Bundle, "of", lambda *_: own)
     monkeypatch.setattr(gradescope_zip, "read_roster", lambda _: people)
@@ -172,7 +172,7 @@ def test_the_zip_knows_whose_arm_it_is_by_the_address(course, tmp_path, monkeypa
     unknown = gradescope_zip.autograder(course, NAME, tmp_path / "a.zip")
     assert [student.id for student in unknown] == ["bob"]
     found = json.loads(zipfile.ZipFile(tmp_path / "a.zip").read(HANDLES))
-    assert found == {"secret": 7, "handles": {"ada@example.org": "red"}}
+    assert found == {"key": "7", "handles": {"ada@example.org": "red"}}
 
 
 def test_the_container_needs_no_package_of_instructors():

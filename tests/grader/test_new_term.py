@@ -25,6 +25,7 @@ from labkit.grader.terms import term
 from labkit.grader.terms.release import FORBIDDEN
 from labkit.grader.terms.student_bundle import export_course
 
+PURPOSES = ("hidden cases", "arms", "whys", "defence")
 ROOT = Path(__file__).resolve().parents[2]
 
 
@@ -34,46 +35,40 @@ def course(tmp_path):
     return copied(tmp_path)
 
 
-def test_a_term_has_a_seed_of_its_own_and_a_record(course):
-    """A new term draws a seed that is not the public one, and keeps each bundle's hash."""
-    record = term.new_term(course, None, ("01_paths",))
+def test_a_term_has_a_secret_of_its_own_and_a_record(course):
+    """It has 128 random bits; the release has a key of its own, and the record its hash."""
+    record = term.new_term(course, ("01_paths",))
     bundle = json.loads((course.bundle / "01_paths.json").read_text())
-    assert record["seed"] == bundle["seed"] == seeds.seed_of(course) != PUBLIC_SEED
+    assert bundle["seed"] == seeds.seed_of(course) != PUBLIC_SEED
+    assert len(bytes.fromhex(record["secret"])) == 16
     assert record["bundles"] == {"01_paths": bundle["hash"]}
+    other = term.new_term(course, ("00_warmup",))
+    assert other["secret"] != record["secret"]
+    assert main(["release", "01_paths", "--course", str(course.root)]) == 0
+    again = Bundle.of(course, "01_paths").data["seed"]
+    assert again == seeds.seed_of(course) != bundle["seed"], "not the last term's, which was seen"
 
 
-def test_a_correction_keeps_the_seed(course):
-    """Released again without a seed, an assignment has the hidden cases that it had."""
-    arguments = ["release", "01_paths", "--course", str(course.root)]
-    for more, seed in (([], PUBLIC_SEED), (["--seed", "41"], 41), ([], 41)):
-        assert main([*arguments, *more]) == 0
-        assert Bundle.of(course, "01_paths").data["seed"] == seed
-    assert seeds.seed_for(course, "02_model") == PUBLIC_SEED
-    term.new_term(course, 43, ("02_model",))
-    assert seeds.seed_for(course, "01_paths") == 43, "not the last term's, which was seen"
+def test_each_purpose_has_a_key_of_its_own(course):
+    """None is another's, and none is the secret, so that a leak of one gives nothing else away."""
+    public = {seeds.key_of(course, purpose) for purpose in PURPOSES}
+    term.new_term(course, ("00_warmup",))
+    keys = {seeds.key_of(course, purpose) for purpose in PURPOSES}
+    assert len(keys) == len(PURPOSES) and not keys & public
+    secret = json.loads(course.term.read_text())["secret"]
+    assert not any(secret in key for key in keys)
+    assert all(len(bytes.fromhex(key)) == 32 for key in keys)
 
 
 def test_a_public_seed_is_said_to_be_public(course, capsys):
-    """Released with the repository's seed, hidden cases are no secret, and the verb says so."""
+    """Released without a term, hidden cases are no secret, and the verb says so."""
     arguments = ["release", "00_warmup", "--course", str(course.root)]
-    sentence = "public seed 2019 are public: anyone can compute them; begin a term with: labkit"
     assert main(arguments) == 0
-    assert capsys.readouterr().out.count(sentence) == 1
-    assert main([*arguments, "--seed", "41"]) == 0
+    assert capsys.readouterr().out.count("public seed 2019 are public") == 1
+    term.new_term(course, ("00_warmup",))
+    capsys.readouterr()
+    assert main(arguments) == 0
     assert "anyone can compute" not in capsys.readouterr().out
-
-
-def test_another_seed_than_the_terms_is_said_to_be_another(course, capsys):
-    """In a term, whoever names a seed reads that it is not the term's, and how to use that one."""
-    arguments = ["release", "00_warmup", "--course", str(course.root)]
-    said = "seed 41, which is not the term's; to use the term's, type: labkit release 00_warmup"
-    for seed, more, says in ((None, ["--seed", "41"], False), (43, ["--seed", "41"], True),
-                             (43, ["--seed", "43"], False), (43, [], False)):  # fmt: skip
-        if seed:
-            course.term.parent.mkdir(exist_ok=True)
-            course.term.write_text(json.dumps({"seed": seed}))
-        assert main([*arguments, *more]) == 0
-        assert (said in capsys.readouterr().out) is says
 
 
 def test_the_next_term_archives_the_names_and_forgets_them(course, capsys):
@@ -117,9 +112,9 @@ def test_rules_of_the_last_term_are_named(course):
 
 
 def test_a_new_term_has_nothing_of_the_last_one(course):
-    """Its hidden cases go with it, and no advice names its seed."""
-    term.new_term(course, 41, ("00_warmup", "01_paths"))
-    assert term.new_term(course, 43, ("00_warmup",))["bundles"].keys() == {"00_warmup"}
+    """Its hidden cases go with it, and no advice names its secret."""
+    term.new_term(course, ("00_warmup", "01_paths"))
+    assert term.new_term(course, ("00_warmup",))["bundles"].keys() == {"00_warmup"}
     with pytest.raises(LabkitError, match="was not released here"):
         Bundle.of(course, "01_paths")
 
@@ -242,7 +237,7 @@ def test_what_an_older_labkit_archived_is_forgotten(course):
     (folder / "lms.json").write_text(
         '{"01_paths": {"ada": {"system": "moodle", "number": "7", "name": "Ada"}}}'
     )
-    (folder / "handles.json").write_text('{"secret": 3, "handles": {"ada": "a", "ada-2": "b"}}')
+    (folder / "handles.json").write_text('{"key": "3", "handles": {"ada": "a", "ada-2": "b"}}')
     assert [str(x.ended) for x in term.archives(course)] == ["2025-02-03"]
     words = ["term", "forget", "--student", "ada", "--yes", "--course", str(course.root)]
     assert main(words) == 0
@@ -267,7 +262,7 @@ def test_a_term_with_students_does_not_end_by_mistake(course, capsys):
     assert first == "a new term begins, released: 00_warmup"
     assert f"names the notebooks that were released, and says *{quoted}*." in guide
     record = course.term.read_text()
-    seed = str(seeds.seed_of(course))
+    seed = seeds.seed_of(course)
     save_roster(course, Roster((Student("ada", "Ada"), Student("bob", "Bob"))))
     hand_in = course.submitted / "ada/00_warmup/00_warmup.ipynb"
     result = course.results / "00_warmup/ada.json"
@@ -287,7 +282,8 @@ def test_a_term_with_students_does_not_end_by_mistake(course, capsys):
     assert "archived: 2 students, 1 submission, 1 graded mark" in said
     command = f"labkit term return {old.folder.name}"
     assert f"to return to it, type: {command}\n" in said
-    assert str(seeds.seed_of(course)) not in said, "the terminal may be projected"
+    secret = json.loads(course.term.read_text())["secret"]
+    assert secret not in said, "the terminal may be projected"
     rules.write_text("# of the new term\n")
     save_roster(course, Roster((Student("zoe", "Zoe"),)))
     newer = course.submitted / "zoe/00_warmup/00_warmup.ipynb"
@@ -306,7 +302,7 @@ def test_a_term_with_students_does_not_end_by_mistake(course, capsys):
     assert "zoe" not in read_roster(Course(undone.folder))
     again = json.loads((course.bundle / "00_warmup.json").read_text())["hash"]
     assert again == json.loads(record)["bundles"]["00_warmup"], "results stay valid"
-    assert hand_in.exists() and result.exists() and str(seeds.seed_of(course)) == seed
+    assert hand_in.exists() and result.exists() and seeds.seed_of(course) == seed
     assert len(read_roster(course).students) == 2
 
 
@@ -332,22 +328,15 @@ def test_who_handed_in_is_not_called_a_student_of_the_roster(course, capsys):
     assert ", 3 handed in\n" in said and "student" not in said
 
 
-@pytest.mark.parametrize("seed", [PUBLIC_SEED])
-def test_a_known_seed_is_refused(course, seed):
-    """The public seed makes no secret, and the sentence says so."""
-    with pytest.raises(LabkitError, match="may be known; take another"):
-        term.new_term(course, seed)
-
-
 def test_a_name_that_is_unknown_is_told_before_anything_is_archived(course):
     """The last term's submissions are where they were."""
     course.submitted.mkdir()
     with pytest.raises(UnknownName, match="99_dance"):
-        term.new_term(course, None, ("01_paths", "99_dance"))
+        term.new_term(course, ("01_paths", "99_dance"))
     assert course.submitted.exists() and not course.release.exists()
 
 
-def test_a_release_that_fails_leaves_the_new_seed(course, monkeypatch):
+def test_a_release_that_fails_leaves_the_new_secret(course, monkeypatch):
     """What is corrected and released again has the term's own seed, not the public one."""
 
     def fails(*args):
@@ -355,17 +344,16 @@ def test_a_release_that_fails_leaves_the_new_seed(course, monkeypatch):
 
     monkeypatch.setattr(term, "release", fails)
     with pytest.raises(LabkitError, match="could not make it"):
-        term.new_term(course, 41)
-    assert seeds.seed_of(course) == 41
+        term.new_term(course)
+    assert seeds.seed_of(course) != PUBLIC_SEED
 
 
-@pytest.mark.parametrize("text", ["", "{}", "[1]", '{"seed": "secret"}'])
+@pytest.mark.parametrize("text", ["", "{}", "[1]", '{"secret": "12"}', '{"secret": 12}'])
 def test_a_damaged_record_is_a_sentence(course, text):
     """Nothing is released with the public seed because the term's own cannot be read."""
-    file = course.root / "course_private" / "term.json"
-    file.parent.mkdir()
-    file.write_text(text)
-    with pytest.raises(LabkitError, match="holds no seed; restore it, or write into it the term's"):
+    course.term.parent.mkdir()
+    course.term.write_text(text)
+    with pytest.raises(LabkitError, match=r"term\.json is damaged"):
         seeds.seed_of(course)
 
 

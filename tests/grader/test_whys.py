@@ -24,10 +24,10 @@ WHYS = [f"why_{k}" for k in range(8)]
 def test_two_of_eight_are_drawn_evenly_and_for_good():
     """Each student's two are the same whenever they are drawn, and each why is drawn as often."""
     students = [f"student-{k}" for k in range(800)]
-    found = [drawn(7, student, WHYS) for student in students]
+    found = [drawn("7", student, WHYS) for student in students]
     assert {len(one) for one in found} == {DRAWN}
-    assert found == [drawn(7, student, reversed(WHYS)) for student in students]
-    assert found != [drawn(8, student, WHYS) for student in students]
+    assert found == [drawn("7", student, reversed(WHYS)) for student in students]
+    assert found != [drawn("8", student, WHYS) for student in students]
     counts = Counter(name for one in found for name in one)
     assert all(150 <= counts[name] <= 250 for name in WHYS)  # 200 are expected
 
@@ -76,7 +76,7 @@ def test_a_why_that_is_marked_is_one_of_the_two(course):
 def a_person_marks(course, seed):
     """Whether WHY waits for a person, once Ada has handed it in in a term of this seed."""
     course.term.parent.mkdir(exist_ok=True)
-    course.term.write_text(f'{{"seed": {seed}}}')
+    course.term.write_text(f'{{"secret": "{seed:032x}"}}')
     hand_in(course, NAME, "ada", notebook_of("ada"))
     result = result_of(course, "ada", written={WHY: "Because it is so."}, data=notebook_of("ada"))
     Results(course, NAME).keep(result)
@@ -94,16 +94,17 @@ def test_whys_are_drawn_under_the_seed_of_the_term(course):
     """Also those of a notebook that was released with another seed: two of all, not of each."""
     for name in {*course.names()} - {NAME}:
         (course.bundle / f"{name}.json").write_text("{}")
-    assert a_person_marks(course, 16)  # under 7, the seed of the release, WHY is not drawn
+    assert a_person_marks(course, 4)  # under 7 WHY is not drawn
 
 
-def test_no_why_is_drawn_where_its_seed_is_lost(course):
-    """Without a term it is that of the release; under another one a why that waits has points."""
+def test_no_why_is_drawn_where_the_secret_is_lost(course):
+    """Under another key a why that waits would have its points."""
     hand_in(course, NAME, "dan", notebook_of("dan"))  # by lot one of Dan's two is WHY
     result = result_of(course, "dan", written={WHY: "So."}, data=notebook_of("dan"))
     record(course, NAME, [result])
-    (course.bundle / f"{NAME}.json").unlink()
+    course.term.parent.mkdir(exist_ok=True)
+    course.term.write_text("{}")
     with open_gradebook(course) as book:
-        with pytest.raises(LabkitError, match="was not released here"):
+        with pytest.raises(LabkitError, match=r"term\.json is damaged"):
             apply_rules(course, book, NAME)
         assert book.find_grade(WHY, NAME, NAME, "dan").needs_manual_grade

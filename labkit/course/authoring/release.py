@@ -28,7 +28,7 @@ from ..serialize import question_data
 from ..withheld import find
 from .bundle import write_bundle
 from .layout import Course
-from .refusals import refusals
+from .refusals import guessable, refusals
 from .solved import solution_notebook
 
 
@@ -76,7 +76,7 @@ def prepare(course: Course, name: str, seed: int) -> Prepared:
                 )
     predictions = course.predictions(name)
     source = source_notebook(course.notebook_source(name), questions, predictions)
-    if reasons := refusals(source, problems, questions):
+    if reasons := [*refusals(source, problems, questions), *guessable(predictions)]:
         folder = course.notebook_source(name).parent.relative_to(course.root)
         raise LabkitError("\n".join([f"{folder}:", *reasons]))
     solved = solution_notebook(source, problems)

@@ -60,48 +60,37 @@ def of_assignment(command: Callable[..., int]) -> Callable[..., int]:
 names = click.argument("names", nargs=-1, metavar="[NAME]...")
 
 
-@verb("01_paths --seed 7")
+@verb("01_paths")
 @names
-@click.option(
-    "--seed",
-    type=SEED,
-    help="Seed of the hidden cases; by default the term's, or the last one used.",
-)
 @of_course
-def release(course: Course, names: tuple[str, ...], seed: int | None) -> int:
+def release(course: Course, names: tuple[str, ...]) -> int:
     """Make the students' notebooks.
 
     Each NAME is an assignment, such as 01_paths. Without a NAME all assignments are made. If one is
     refused, the others are still made; the reasons come at the end, with exit code 1.
     """
     from ..each import Failures
-    from ..seeds import public_warning, seed_for, seed_of
+    from ..seeds import public_warning, seed_of
     from ..terms.release import release
 
     names = names or course.names()
     for name in names:
         course.notebook_source(name)
-    seeds: set[int] = set()
+    made = False
     with Failures() as failures:
         for name in names:
             try:
-                used = seed_for(course, name) if seed is None else seed
-                print(release(course, name, used), flush=True)
-                seeds.add(used)
+                print(release(course, name, seed_of(course)), flush=True)
+                made = True
             except LabkitError as error:
                 failures.add(f"{name} is not released", [error])
-        if seeds:
+        if made:
             print(
                 "tried: known mistakes, stand-ins, public cases from memory; "
                 "more by: labkit report-card"
             )
-            for warning in filter(None, map(public_warning, seeds)):
+            if warning := public_warning(course):
                 print(warning)
-            if course.term.exists() and seed not in (None, seed_of(course)):
-                print(
-                    f"hidden cases made with seed {seed}, which is not the term's; to use the "
-                    f"term's, type: labkit release {' '.join(names)}"
-                )
             print(f"for students: {course.release}\nfor graders, with hidden cases: {course.build}")
     return failures.code
 

@@ -212,12 +212,12 @@ def defence(course: Course, student: str, mark: list[int] | None) -> int:
 
     It asks about three functions of theirs that were accepted, each with a mistake put into it, or
     as many as there are; for the rest you choose work of theirs to ask about.
-    The second side has the answers. Which functions and mistakes follows from the term's seed.
+    The second side has the answers. Which functions and mistakes follows from a key of the term.
     """
     from ..defence.draw import ASKED, draw
     from ..defence.mark import await_mark, give_mark
     from ..defence.page import write_page
-    from ..seeds import public_warning, seed_of
+    from ..seeds import public_warning
 
     if mark is not None:
         give_mark(course, student, mark)
@@ -233,7 +233,7 @@ def defence(course: Course, student: str, mark: list[int] | None) -> int:
             f"into, and {ASKED} are needed; for the rest ask about work of theirs that you choose, "
             f"and give {ASKED} numbers all the same: labkit defence {student} --mark A,B,C"
         )
-    if public_warning(seed_of(course)):
+    if public_warning(course):
         print("drawn with the public seed, so anyone can know it; begin a term: labkit term new")
     return 0
 

@@ -9,7 +9,7 @@ import click
 from ...course.authoring.layout import Course
 from ...course.cli import verb
 from ...errors import LabkitError
-from .course import SEED, names, of_course
+from .course import names, of_course
 from .pages import tell
 
 
@@ -20,9 +20,6 @@ from .pages import tell
     metavar="new|list|return|forget",
 )
 @names
-@click.option(
-    "--seed", type=SEED, help="new: seed of the hidden cases; drawn at random by default."
-)
 @click.option("--student", metavar="S", help="forget: everything of one student.")
 @click.option(
     "--older",
@@ -41,7 +38,6 @@ def term(
     course: Course,
     action: str,
     names: tuple[str, ...],
-    seed: int | None,
     student: str | None,
     older: float | None,
     yes: bool,
@@ -50,7 +46,7 @@ def term(
 
     \b
     new     archives the last term and releases each NAME, or all assignments,
-            with a new seed; refuses, without --yes, if the last term has
+            with a new secret; refuses, without --yes, if the last term has
             students, submissions or marks
     list    lists the terms that are stored
     return  returns to the archived term NAME; the term under way is archived
@@ -76,13 +72,13 @@ def term(
         if not yes:
             refuse_running(course)
         there = running(course)
-        record = new_term(course, seed, names)
+        record = new_term(course, names)
         if record["archived"]:
             empty = "the last release, in which there were no students and no marks"
             print(f"archived: {there or empty}")
             print(f"to return to it, type: labkit term return {record['archived']}")
         print(f"a new term begins, released: {', '.join(record['bundles'])}")
-        print("its secret seed is in course_private/term.json; keep a copy")
+        print("its secret is in course_private/term.json; keep a copy")
         tell(filter(None, [old_rules(course)]), sys.stdout)
     elif action == "list":
         print("\n".join(about(course)))

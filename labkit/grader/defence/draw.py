@@ -1,6 +1,6 @@
 """The defence: three of a student's own accepted functions, each with a mistake put into it.
 
-The questions are drawn under the term's seed, so each student has their own questions, which stay
+The questions are drawn under a key of the term, so each student has their own questions, which stay
 the same when the page is printed again.  A mistake is used only if the question's checks reject the
 function with it; if the question runs an arm, the arm must miss a limit.
 """
@@ -28,7 +28,7 @@ from ..grading.worker import in_sandbox
 from ..sandbox.launch import Sandbox
 from ..sandbox.limits import Limits, slowness
 from ..sandbox.session import RemoteFunction, Session
-from ..seeds import seed_of
+from ..seeds import key_of
 from ..students.roster import read_roster, same_name
 from ..submission import Submission, did_you_mean, is_name
 from ..whys import rank
@@ -108,7 +108,7 @@ def draw(course: Course, student: str) -> tuple[Asked, ...]:
         NoIsolation: No sandbox can be made here.
     """
     answers, missing = accepted(course, student)
-    secret = partial(rank, seed_of(course), student)
+    secret = partial(rank, key_of(course, "defence"), student)
 
     def order(one: Accepted) -> tuple[bool, bool, bytes]:
         long = len(shown(one.answer.source)) > LONG
@@ -187,7 +187,7 @@ def _ask(
         raise LabkitError(f"{one.assignment}: {cells}")
     todo = plan(cells, one.bundle.data["cells"])
     source = todo.source(one.question.name)
-    secret = partial(rank, seed_of(course), student)
+    secret = partial(rank, key_of(course, "defence"), student)
     mistakes = sorted(edits(source), key=lambda e: secret(f"{one.question.name}/{e.at}/{e.now}"))
     found = (_tried(edit, one, todo, sandbox, limits) for edit in mistakes[:TRIES])
     first: Asked | None = None

@@ -22,7 +22,7 @@ from ...course.verdict import Outcome
 from ...errors import LabkitError, UnknownName
 from ..atomic import write
 from ..grading.current_results import how_to_grade
-from ..grading.grade import PUBLIC_ARM, grade
+from ..grading.grade import grade
 from ..grading.plan import imports
 from ..grading.results import Result
 from ..grading.worker import in_sandbox
@@ -103,7 +103,7 @@ def _by_the_grader(
     lines = tuple(line for line in mark.lines if line.name == question)
     line = lines[0] if lines else MarkLine(question, shown.points, shown.earned)
     yield _heading(mark, line)
-    yield from map(wrapped, _judging_notes(bundle, student, question, result))
+    yield from map(wrapped, _judging_notes(bundle, student, question))
     yield "\nWhat the student has read, and may be shown:"
     yield from (wrapped(f"Note: {note}.") for note in before.notes)
     yield from map(wrapped, summary(shown))
@@ -161,7 +161,7 @@ def _heading(mark: Mark, line: MarkLine) -> str:
     return f"{mark.student}, {line.name}: {given} of {line.points:g}{origin}"
 
 
-def _judging_notes(bundle: Bundle, student: str, name: str, result: Result) -> Iterator[str]:
+def _judging_notes(bundle: Bundle, student: str, name: str) -> Iterator[str]:
     """The arm and the tolerance by which a question about one's own arm is judged, in words."""
     judge = next(q.judge for q in bundle.questions if q.name == name)
     if isinstance(judge, Measured | Found | Telling):
@@ -169,7 +169,6 @@ def _judging_notes(bundle: Bundle, student: str, name: str, result: Result) -> I
         arm = f"the arm that the course gave {student}" if given else f'the public arm "{DEMO}"'
         near = f", within {judge.tolerance:g} {judge.unit}" if isinstance(judge, Measured) else ""
         yield f"Judged by {arm}{near}."
-        yield from (note for note in result.notes if note == PUBLIC_ARM)
 
 
 def _with_cases_public(bundle: Bundle, name: str) -> Bundle:

@@ -39,7 +39,7 @@ def autograder(course: Course, assignment: str, to: Path) -> list[Student]:
     own = bundle.of_student(next(iter(handles), "")) is not bundle  # one student stands for all
     if own:
         by_mail = {x.email.casefold(): handles[x.id] for x in roster if x.email and x.id in handles}
-        files[HANDLES] = Arms(bundle.arms.secret, by_mail).text()
+        files[HANDLES] = Arms(bundle.arms.key, by_mail).text()
     to.parent.mkdir(parents=True, exist_ok=True)
     with tempfile.TemporaryDirectory() as folder, ZipFile(to, "w", ZIP_DEFLATED) as archive:
         os.chmod(to, 0o600)

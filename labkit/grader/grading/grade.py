@@ -15,7 +15,6 @@ from typing import Any, cast
 from ...course.authoring.bundle import Bundle
 from ...course.marking import PublicResult, all_alike, mark, not_counted, try_public
 from ...course.messages import why_not_counted
-from ...course.own_arm import opens_the_public_arm
 from ...course.question import Question
 from ...course.receipt import receipt
 from ...course.serialize import read_record, record_data
@@ -34,11 +33,6 @@ from .results import OTHER_NOTEBOOK, Answer, FailedCell, Hashes, OwnCell, Result
 ADDED = (
     "this question was added in a later release, and this notebook does not have it; it counts 0 "
     "until the new notebook is handed in, into which `labkit merge` copies the work done so far"
-)
-
-PUBLIC_ARM = (
-    'HANDLE is "demo": what was measured on this public arm is not true of the arm that the course '
-    "gave this student"
 )
 
 _STUDENT_TEXTS = {
@@ -75,13 +69,11 @@ def grade(
         The result; nothing that a notebook does raises an exception here.
     """
     began = time.perf_counter()
-    given = bundle.arms.arm(student) is not None
     bundle = bundle.of_student(student)
     cells = parse(data, sandbox, limits)
     if isinstance(cells, str):
         return rejection(cells, student, bundle, sandbox.level, data)
     todo = plan(cells, bundle.data["cells"])
-    public_arm = PUBLIC_ARM if given and opens_the_public_arm(x["source"] for x in cells) else ""
     other = _other_notebook(cells, bundle)
     absent = bundle.added - todo.places.keys()
     todo = replace(todo, notes={**todo.notes, **dict.fromkeys(absent, (ADDED,))})
@@ -113,7 +105,7 @@ def grade(
             )
             for question in bundle.questions
         ),
-        notes=(*filter(None, (note, other, public_arm)), *todo.notes.get("", ())),
+        notes=(*filter(None, (note, other)), *todo.notes.get("", ())),
         cells=cast(tuple[FailedCell, ...], failed),
         own=cast(tuple[OwnCell, ...], todo.own),
         written=todo.written,

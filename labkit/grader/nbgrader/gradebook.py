@@ -17,7 +17,6 @@ from typing import Any
 from sqlalchemy import text as sql
 from sqlalchemy.exc import DatabaseError, OperationalError, SAWarning
 
-from ...course.authoring.bundle import Bundle
 from ...course.authoring.layout import Course
 from ...course.brief import words_of
 from ...course.notebook import by_hand, grade_id, nbgrader_info, question_of, read_cells
@@ -51,10 +50,9 @@ def record(course: Course, assignment: str, results: Iterable[Result]) -> list[s
     source = release_source(course, assignment)
     with open_gradebook(course) as book:
         if assignment not in {known.name for known in book.assignments}:
-            seed = Bundle.of(course, assignment).data["seed"]
             raise LabkitError(
                 f"the gradebook does not know {assignment}, as if it were a new one; type: "
-                f"labkit release {assignment} --seed {seed}"
+                f"labkit release {assignment}"
             )
         for result in results:
             step = partial(_record, course, book, source, result)
@@ -70,7 +68,7 @@ def apply_rules(course: Course, book: Any, assignment: str) -> None:
     """Update the gradebook to the present rules: whys that nobody marks, and late work.
 
     Raises:
-        LabkitError: The rules, or the seed of the whys that a person marks, cannot be used.
+        LabkitError: The rules, or the term's record, cannot be used.
     """
     credit_whys(course, book, assignment)
     _update_times(course, book, assignment)

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 import re
 from collections.abc import Sequence
 
@@ -12,33 +11,28 @@ from ..atomic import write
 from .roster import Roster
 
 
-def give_arms(course: Course, roster: Roster, secret: int) -> None:
-    """Record which student has which arm, and put the sealed arms beside released notebooks.
+def give_arms(course: Course, roster: Roster, key: str) -> None:
+    """Record which student has which arm, and put the arms beside released notebooks.
 
-    The students of a team share one arm. An arm depends only on the secret and the handle, so it
+    The students of a team share one arm. An arm depends only on the key and the handle, so it
     stays the same when others join the class.
 
     Args:
         course: The course.
         roster: The students of the course.
-        secret: The term's seed.
+        key: The term's key for arms.
     """
     handles = {student.id: student.team or student.id for student in roster.students}
-    write(course.root / HANDLES, Arms(secret, handles).text())
+    write(course.root / HANDLES, Arms(key, handles).text())
     for name in course.names():
         lay_arms(course, name)
 
 
 def lay_arms(course: Course, name: str) -> None:
-    """Put the sealed arms beside a released notebook that asks about the student's own arm."""
+    """Put the arms beside a released notebook that asks about the student's own arm."""
     arms, folder = Arms.of(course.root), course.release / name
     if arms.handles and _asks(course, name) and folder.is_dir():
-        write(folder / FILE, sealed_text(arms))
-
-
-def sealed_text(arms: Arms) -> str:
-    """The text of the students' file of arms."""
-    return json.dumps(arms.sealed(), indent=1) + "\n"
+        write(folder / FILE, arms.table())
 
 
 def without_arms(course: Course, names: Sequence[str]) -> str:

@@ -18,7 +18,7 @@ from ...course.authoring.layout import Course
 from ...errors import LabkitError
 from ..clean import few, how_many, safe_name
 from ..rules import read_rules
-from ..seeds import seed_of
+from ..seeds import key_of
 from .arms import give_arms
 from .class_list import Entry, Student, read_list
 from .identity import all_lms_users, assign_folders, identity_lock
@@ -135,7 +135,7 @@ def import_list(
             rules = read_rules(course)
         save_roster(course, done.roster)
         tell_gradebook(course, done.roster)
-        give_arms(course, done.roster, seed_of(course))
+        give_arms(course, done.roster, key_of(course, "arms"))
         left = move_to_owners(course, done.roster)
         taken, late, look = 0, list[str](), list[str]()
         if assignment:

@@ -25,7 +25,6 @@ from ..grading.results import Results
 from ..nbgrader.gradebook import quiet_database
 from ..rules import FILE as RULES
 from ..rules import rules_in
-from ..students.arms import sealed_text
 from ..students.enrol import agreements, marks
 from ..students.identity import FILE as LMS
 from ..students.identity import all_lms_users, identity_lock, save_lms_users
@@ -211,7 +210,7 @@ def _entries(term: Course, student: str) -> Iterator[tuple[Path, Callable[[], ob
         arms = replace(arms, handles=handles)
         yield term.root / HANDLES, partial(write, term.root / HANDLES, arms.text())
         for file in sorted(term.release.glob(f"*/{ARMS}")):
-            yield file, partial(write, file, sealed_text(arms))
+            yield file, partial(write, file, arms.table())
 
 
 def _in_gradebook(path: Path, student: str) -> bool:

@@ -1,4 +1,4 @@
-"""A term: its secret seed, the record of what was released, and its archive."""
+"""A term: its secret, the record of what was released, and its archive."""
 
 from __future__ import annotations
 
@@ -14,14 +14,13 @@ from typing import Any
 from ...course.authoring.layout import Course
 from ...course.own_arm import FILE as ARMS
 from ...course.own_arm import HANDLES
-from ...course.seed import PUBLIC_SEED
 from ...errors import LabkitError
 from .. import pseudonyms
 from ..atomic import write
 from ..clean import how_many
 from ..rules import FILE as RULES
 from ..rules import read_rules
-from ..seeds import seed_for, seed_of
+from ..seeds import seed_of
 from ..students import attempts, identity, roster
 from .release import release
 
@@ -64,33 +63,33 @@ def refuse_running(course: Course) -> None:
         )
 
 
-def new_term(course: Course, seed: int | None, names: tuple[str, ...] = ()) -> dict[str, Any]:
-    """Begin a term: archive the last one, release with a new seed, keep a record.
+def new_term(course: Course, names: tuple[str, ...] = ()) -> dict[str, Any]:
+    """Begin a term: archive the last one, release with a new secret, keep a record.
 
     Args:
         course: The course.
-        seed: The seed of the hidden cases; None draws one.
         names: The assignments to release; all by default.
 
     Returns:
-        The record, with the seed, the date, the archive of the last term, and each bundle's hash,
-        by which every result identifies its release.
+        The record: the secret of 128 random bits, the date, the archive of the last term, and each
+        bundle's hash, by which every result identifies its release.
 
     Raises:
-        LabkitError: The seed is the public one or the last term's, or a name is unknown.
+        UnknownName: There is no such assignment.
     """
     names = names or course.names()
     for name in names:
         course.notebook_source(name)
-    if seed in (PUBLIC_SEED, seed_of(course)):
-        raise LabkitError(f"seed {seed} was used before, so its cases may be known; take another")
-    seed = secrets.randbelow(2**31) if seed is None else seed
     old = archive(course)
-    record = {"seed": seed, "begun": datetime.now(UTC).date().isoformat(), "bundles": {}}
+    record = {
+        "secret": secrets.token_hex(16),
+        "begun": datetime.now(UTC).date().isoformat(),
+        "bundles": {},
+    }
     record["archived"] = old.name if old else ""
-    _keep(course, record)  # first, so that a failed release is repeated with this seed
+    _keep(course, record)  # first, so that a failed release is repeated with this secret
     for name in names:
-        release(course, name, seed)
+        release(course, name, seed_of(course))
     record["bundles"] = {
         path.stem: json.loads(path.read_text(encoding="utf-8"))["hash"]
         for path in sorted(course.bundle.glob("*.json"))
@@ -107,7 +106,7 @@ def archive(course: Course) -> Path | None:
     """Move the personal files of the last term to an archive; None if there are none.
 
     The archive has the layout of the course.  The rules are copied, as most of them are used again;
-    the sealed arms are deleted from the students' notebooks.
+    the students' arms are deleted from the students' notebooks.
     """
     for path in course.release.glob(f"*/{ARMS}"):
         path.unlink()
@@ -147,7 +146,7 @@ def restore(course: Course, old: Path) -> tuple[Path | None, list[str]]:
         shutil.rmtree(old)
     released = sorted(path.stem for path in course.bundle.glob("*.json"))
     for name in released:
-        release(course, name, seed_for(course, name))
+        release(course, name, seed_of(course))
     return undone, released
 
 
