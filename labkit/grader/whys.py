@@ -65,7 +65,7 @@ def credit_whys(course: Course, book: Any, assignment: str) -> None:
     }
     released, term = {path.stem for path in course.bundle.glob("*.json")}, course.term.exists()
     asked = [name for name, x in whys.items() if x in released or not term]
-    key = key_of(course, "whys")
+    key = key_of(course, "the whys")
     for student, grade in waiting:
         mine = [name for name in asked if (student, name) in marked]
         if grade.name not in drawn(key, student, asked, mine):

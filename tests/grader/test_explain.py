@@ -119,7 +119,7 @@ def test_what_cannot_be_explained_is_a_sentence(course):
 
 def test_what_a_person_marks_is_explained_from_the_gradebook(course, capsys):
     """Its points, where they come from, the comment, the text, and where to mark it."""
-    for student in ("ada", "dan"):
+    for student in ("ada", "don"):
         data = notebook_of(student)
         hand_in(course, NAME, student, data)
         result = result_of(course, student, data=data)
@@ -130,18 +130,18 @@ def test_what_a_person_marks_is_explained_from_the_gradebook(course, capsys):
     assert main(["explain", "ada", WHY, *words]) == 0
     said = " ".join(capsys.readouterr().out.split())
     assert f"ada, {WHY}: 2 of 2" in said and "not one of those that are drawn" in said
-    assert main(["explain", "dan", WHY, *words]) == 0
+    assert main(["explain", "don", WHY, *words]) == 0
     said = " ".join(capsys.readouterr().out.split())
-    assert f"dan, {WHY}: no mark of 2 (not marked yet) A person marks it, {where}" in said
+    assert f"don, {WHY}: no mark of 2 (not marked yet) A person marks it, {where}" in said
     assert "a quarter of the acceleration." in said and "Comment" not in said
     with open_gradebook(course) as book:
-        grade = book.find_grade(WHY, NAME, NAME, "dan")
+        grade = book.find_grade(WHY, NAME, NAME, "don")
         grade.manual_score, grade.needs_manual_grade = 1.5, False
-        book.find_comment(WHY, NAME, NAME, "dan").manual_comment = "And the speed?"
+        book.find_comment(WHY, NAME, NAME, "don").manual_comment = "And the speed?"
         book.db.commit()
-    assert main(["explain", "dan", WHY, *words]) == 0
+    assert main(["explain", "don", WHY, *words]) == 0
     said = capsys.readouterr().out
-    assert f"dan, {WHY}: 1.5 of 2 (1.5 by hand)" in said and "Comment: And the speed?" in said
+    assert f"don, {WHY}: 1.5 of 2 (1.5 by hand)" in said and "Comment: And the speed?" in said
 
 
 @pytest.mark.slow

@@ -25,7 +25,7 @@ from labkit.grader.terms import term
 from labkit.grader.terms.release import FORBIDDEN
 from labkit.grader.terms.student_bundle import export_course
 
-PURPOSES = ("hidden cases", "arms", "whys", "defence")
+PURPOSES = ("hidden cases", "arms", "the whys", "defence")
 ROOT = Path(__file__).resolve().parents[2]
 
 
