@@ -22,7 +22,6 @@ from .judges import AtMost, Close, numbers
 from .question import Call, Case, Choice, Loop, Mistake, Question, Raised, Test, Tuned
 from .reply import NoAnswer
 from .verdict import Difference, Kind, Misconception, Outcome, TestResult, Verdict
-from .withheld import Withheld
 
 Function = Callable[..., Any]
 
@@ -126,7 +125,6 @@ def mark(question: Question, function: Function, tried: PublicResult | None = No
         0.0,
         question.points,
         results,
-        withheld=tuple(dict.fromkeys(result.tool for result in results if result.tool)),
         complete=question.complete,
         mistake=known and Misconception(known.name, known.says),
     )
@@ -235,7 +233,6 @@ class _Failure(Raised):
 
     sentence: str
     log: Log | None = None
-    tool: str = ""
 
 
 def ask(case: Case, function: Function) -> Any:
@@ -253,7 +250,7 @@ def _failure(error: BaseException) -> _Failure:
     known = isinstance(error, NoAnswer) or (isinstance(error, LabkitError) and error.__cause__)
     sentence = str(error) if known else full_description(error)
     log = error.log if isinstance(error, Diverged) and isinstance(error.log, Log) else None
-    return _Failure(kind, sentence, log, cause.tool if isinstance(cause, Withheld) else "")
+    return _Failure(kind, sentence, log)
 
 
 _WRONG = {"ArgumentChanged": Kind.CHANGED, "NotComparable": Kind.REFUSED}
@@ -286,12 +283,10 @@ def _try(
         found = _difference(question, test, case, answer)
         if found is None:
             continue
-        tool = answer.tool if isinstance(answer, _Failure) else ""
         if case.hidden:  # how it failed would reveal the case to an attacker
-            outcome = Outcome.NOT_COUNTED if tool else Outcome.WRONG
-            return replace(result, outcome=outcome, hidden=True, tool=tool)
+            return replace(result, outcome=Outcome.WRONG, hidden=True)
         outcome, shown = _outcome_of(answer), case.shown(question.name)
-        return replace(result, outcome=outcome, call=shown, difference=found, tool=tool)
+        return replace(result, outcome=outcome, call=shown, difference=found)
     return result
 
 
@@ -301,7 +296,7 @@ def _outcome_of(answer: Any) -> Outcome:
         return Outcome.WRONG
     if answer.kind == "NotImplementedError":
         return Outcome.NOT_ATTEMPTED
-    return Outcome.NOT_COUNTED if answer.tool else Outcome.ERROR
+    return Outcome.ERROR
 
 
 def _difference(question: Question, test: Test, case: Case, answer: Any) -> Difference | None:

@@ -20,7 +20,6 @@ from ..errors import LabkitError, TypeMismatch
 from .advice import description, unwritten
 from .calling import ArgumentChanged, call
 from .serialize import NotComparable, decode_answer, encode
-from .withheld import Withheld
 
 LONGEST = 400
 """Number of characters of an exception's message that are kept."""
@@ -57,7 +56,7 @@ def reply(
     that the student has not written yet.
 
     Returns:
-        What the answer ``is``; or the ``withheld`` tool that was used; or the type of the exception
+        What the answer ``is``; or the type of the exception
         that was ``raised``, and what it ``says``.
 
     Raises:
@@ -71,8 +70,6 @@ def reply(
         return {"is": _as_data(call(function, args, kwargs))}
     except (KeyboardInterrupt, TimeUp):
         raise
-    except Withheld as error:
-        return {"withheld": error.tool}
     except BaseException as error:
         with suppress(BaseException):  # its author may have made this raise
             if stub := unwritten(error):
@@ -81,24 +78,20 @@ def reply(
         return {"raised": kind(error), "says": sentence(error)}
 
 
-def answer(data: Mapping[str, Any], withheld: Sequence[str]) -> Any:
+def answer(data: Mapping[str, Any]) -> Any:
     """The answer in what `reply` returned.
 
     Args:
         data: What `reply` returned, perhaps in another process.
-        withheld: The tools that the question withholds.
 
     Raises:
         NoAnswer: The function did not answer.
-        Withheld: The function used a tool that the question withholds.
     """
     if "is" in data:
         try:
             return decode_answer(data["is"])
         except TypeMismatch as error:
             raise NoAnswer("TypeMismatch", f"TypeMismatch: {error}") from None
-    if data.get("withheld") in withheld:
-        raise Withheld(data["withheld"])
     raised, says = str(data.get("raised", "Exception")), str(data.get("says", ""))
     if raised in (ArgumentChanged.__name__, NOT_WRITTEN):
         raise NoAnswer(raised, says)
@@ -128,14 +121,11 @@ class LocalFunction:
 
     Args:
         function: The student's function.
-        withheld: The tools that the question withholds.
         seconds: Time limit of a call; after a call exceeds it, no other is made.
     """
 
-    def __init__(
-        self, function: Callable[..., Any], withheld: Sequence[str], seconds: float = 10.0
-    ) -> None:
-        self.function, self.withheld, self.seconds = function, withheld, seconds
+    def __init__(self, function: Callable[..., Any], seconds: float = 10.0) -> None:
+        self.function, self.seconds = function, seconds
         self.stopped: NoAnswer | None = None
 
     def __call__(self, *args: Any, **kwargs: Any) -> Any:
@@ -143,7 +133,6 @@ class LocalFunction:
 
         Raises:
             NoAnswer: The function did not answer.
-            Withheld: The function used a withheld tool.
         """
         if self.stopped is not None:
             raise self.stopped
@@ -154,7 +143,7 @@ class LocalFunction:
             says = f"it did not return within {self.seconds:g} s; does every loop in it end?"
             self.stopped = NoAnswer("TimeoutError", f"TimeoutError: {says}")
             raise self.stopped from None
-        return answer(data, self.withheld)
+        return answer(data)
 
 
 class _Limit:

@@ -192,11 +192,11 @@ def _definition(part: list[ast.stmt], lines: list[str]) -> dict[str, Any]:
 
     Returns:
         Names that it ``binds``; names that it takes from ``outside``, and those that its functions
-        take only ``later``, when they are called; the dotted names that it ``uses``; names whose
-        contents it ``fills`` without defining them; the dotted names of what it ``changes`` at
-        once; questions that it ``asks`` `use` about; what the names that it imports ``mean``, with
-        "*" for all of a module; whether it is a ``stub``; and a hash of its ``text``, without empty
-        lines and spaces at the end of lines.
+        take only ``later``, when they are called; the dotted names that it ``uses``, and the
+        ``attributes`` in it; names whose contents it ``fills`` without defining them; the dotted
+        names of what it ``changes`` at once; questions that it ``asks`` `use` about; what the names
+        that it imports ``mean``, with "*" for all of a module; whether it is a ``stub``; and a hash
+        of its ``text``, without empty lines and spaces at the end of lines.
     """
     text = _text(part, lines)
     scope = scope_of(part, text)
@@ -204,12 +204,13 @@ def _definition(part: list[ast.stmt], lines: list[str]) -> dict[str, Any]:
     binds, outside = own_names(scope), set(outside_names(scope))
     mean: dict[str, str] = {}
     chains, fills, sets, asks = set[str](), set[str](), set[str](), set[str]()
-    changes = set[str]()
+    changes, attributes = set[str](), set[str]()
     grown: set[ast.AST] = set()
     for node in _nodes(part):
         kind = type(node)
         if kind in _CHAINS:
-            chains.add(dotted(node))
+            chains.add(chain := dotted(node))
+            attributes.update(chain.split(".")[1:] or [getattr(node, "attr", "")])
         if isinstance(node, ast.Call) and dotted(node) == "use" and node.args:
             asks.add(str(getattr(node.args[0], "value", "")))
         stores = isinstance(getattr(node, "ctx", None), ast.Store | ast.Del)
@@ -229,6 +230,7 @@ def _definition(part: list[ast.stmt], lines: list[str]) -> dict[str, Any]:
         "outside": sorted(outside),
         "later": sorted({name for inner in functions_in(scope) for name in outside_names(inner)}),
         "uses": sorted(uses),
+        "attributes": sorted(attributes - {""}),
         "fills": sorted((fills - sets) & (binds | outside)),
         "changes": [] if isinstance(part[0], _DEFINITIONS) else sorted(changes),
         "asks": sorted(asks),

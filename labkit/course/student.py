@@ -34,7 +34,7 @@ from .serialize import read_question
 from .source import analyse
 from .stand_ins import STAND_IN, WRONG, StandIns, globals_of, in_form
 from .verdict import Outcome, Verdict
-from .withheld import withheld_tools, withhold
+from .withheld import withheld_tools
 
 
 class Desk:
@@ -83,12 +83,11 @@ class Desk:
         self.failing[name] = None
         cells = map(analyse, executed_cells(function))
         used = withheld_tools(cells, name, question.withheld)
-        student = shell().user_ns if shell() else getattr(function, "__globals__", {})
         try:
-            with captured() as out, withhold(question.withheld, student):
+            with captured() as out:
                 verdict, found = not_counted(question, used), None
                 if not used:
-                    here = LocalFunction(function, question.withheld)
+                    here = LocalFunction(function)
                     tried = try_public(question, here)
                     verdict, found = mark(question, here, tried), tried.first_mismatch(question)
                     verdict = diagnosed(question, verdict, tried, here)

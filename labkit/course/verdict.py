@@ -82,12 +82,11 @@ class TestResult:
         name: What it tests.
         weight: Its share of the points; 0 is a gate.
         outcome: Its outcome; a test is never partly right.
-        hidden: Whether a hidden case failed; the outcome is then wrong or not counted, and
-            ``call`` and ``difference`` are empty.
+        hidden: Whether a hidden case failed; the outcome is then wrong, and ``call`` and
+            ``difference`` are empty.
         call: The case that failed, as the student would type it.
         also: The classes of its hidden cases, in words.
         difference: Why the answer is not right.
-        tool: The withheld tool that was used, if the test failed for that reason.
     """
 
     __test__ = False  # pytest must not collect this class
@@ -99,7 +98,6 @@ class TestResult:
     call: str = ""
     also: str = ""
     difference: Difference | None = None
-    tool: str = ""
 
 
 @dataclass(frozen=True)

@@ -13,7 +13,6 @@ import numpy
 import pytest
 from questions import DOUBLE, double, square
 
-import labkit
 from labkit.course import check, hint, question_data, use
 from labkit.course import student as notebook
 from labkit.course.checks_file import FILE
@@ -148,7 +147,7 @@ def test_an_answer_that_calls_an_unwritten_one_is_told(capsys):
 
 
 def test_an_answer_that_uses_a_withheld_tool_is_not_counted(desk, capsys):
-    """By its text where it has one, else by what it calls; the stand-in takes its place."""
+    """Its text tells; the stand-in takes its place."""
     circle = replace(DOUBLE, name="double", withheld=("labkit.Circle",))
     data = {**stamp(), "assignment": "sample", "questions": [question_data(circle)]}
     (desk / FILE).write_text(json.dumps(data))
@@ -159,19 +158,10 @@ def test_an_answer_that_uses_a_withheld_tool_is_not_counted(desk, capsys):
     )  # the branch is for a hidden case
     names = {"__name__": "answers"}
     exec(compile(file.read_text(), str(file), "exec"), names)
-    called = {"__name__": "numpy"}
-    exec(
-        "import labkit as lk\ndef double(x): return 2 * x if lk.Circle([x, 0, 0], 0) else 0", called
-    )
-    for function in (names["double"], called["double"]):
-        assert check("double", function) == 0.0
-        assert capsys.readouterr().out.startswith(
-            "double: not counted: uses lk.Circle, which this question asks you to write."
-        )
-        assert use("double", function, None) is None
-        capsys.readouterr()
+    assert check("double", names["double"]) == 0.0
+    assert capsys.readouterr().out.startswith("double: not counted: uses lk.Circle")
+    assert use("double", names["double"], None) is None
     assert check("double", double) == 4.0
-    assert labkit.Circle([1, 0, 0], [0, 0, 0])(0.0).position[0] == 1.0
 
 
 KERNEL = """
@@ -189,15 +179,14 @@ run("import labkit as lk; from labkit.course import check")
 
 
 def test_in_a_notebook_the_cells_tell_and_the_output_keeps_the_verdict(desk):
-    """What an answer leans on counts, by the cells that ran last; others may use what they like."""
+    """The answer's text that ran last counts; other cells may use what they like."""
     circle = replace(DOUBLE, name="double", withheld=("labkit.Circle",))
     data = {**stamp(), "assignment": "sample", "questions": [question_data(circle)]}
     (desk / FILE).write_text(json.dumps(data))
     program = KERNEL.format(folder=str(desk)) + (
-        "run('def twice(x): return 2 * x or lk.Circle')\n"
-        "run('%%time\\ndef double(x): return twice(x)')\n"
+        "run('%%time\\ndef double(x): return 2 * x or lk.Circle')\n"
         "print(run('check(\"double\", double);'))\n"
-        "run('def twice(x): return 2 * x\\nring = lk.Circle([1, 0, 0], [0, 0, 0])(0.5)')\n"
+        "run('def double(x): return 2 * x\\nring = lk.Circle([1, 0, 0], [0, 0, 0])(0.5)')\n"
         "print(run('check(\"double\", double);'))\n"
         "run('double = 4.0')\n"
         "print(run('check(\"double\", double);'))\n"
@@ -212,7 +201,7 @@ def test_in_a_notebook_the_cells_tell_and_the_output_keeps_the_verdict(desk):
     verdict = verdict_in({"metadata": {"labkit": kept}})
     assert verdict == not_counted(circle, ("labkit.Circle",))
     assert second == "double: right on all cases here; 4 points if the instructor's cases agree."
-    ran = ["def twice(x): return 2 * x", "def double(x): return twice(x)"]
+    ran = ["def double(x): return 2 * x\nring = lk.Circle([1, 0, 0], [0, 0, 0])(0.5)"]
     judged = answer_hash(ran, "double")
     then_is = {"verdict": record_data(mark(circle, lambda x: 2 * x)), "judged": judged}
     assert judged and then == stamp() | then_is

@@ -111,12 +111,10 @@ def test_a_number_is_judged_against_ones_own_arm():
     demo, other = public_arm(), draw("7", "kestrel")
     judge = Measured("payload", "kg", 0.0, 3.0, 0.01)
     asked = Identification("m", "?", judge, demo.payload, "one number", 1.0).question()
-    assert mark(asked, LocalFunction(demo.payload, ())).outcome is Outcome.RIGHT
-    assert (
-        mark(personalised(asked, other), LocalFunction(other.payload, ())).outcome is Outcome.RIGHT
-    )
-    assert mark(personalised(asked, other), LocalFunction(demo.payload, ())).earned == 0.0
-    assert mark(asked.public(), LocalFunction(other.payload, ())).outcome is Outcome.RIGHT
+    assert mark(asked, LocalFunction(demo.payload)).outcome is Outcome.RIGHT
+    assert mark(personalised(asked, other), LocalFunction(other.payload)).outcome is Outcome.RIGHT
+    assert mark(personalised(asked, other), LocalFunction(demo.payload)).earned == 0.0
+    assert mark(asked.public(), LocalFunction(other.payload)).outcome is Outcome.RIGHT
 
 
 def swung(monkeypatch, arm, s1, e1, duration, stiffness=50.0):
@@ -264,6 +262,6 @@ def test_a_wrong_load_of_the_public_arm_is_asked_about_the_wall():
     for of, asks in (("payload", True), ("lag", False)):
         judge = Measured(of, "x", 0.0, 3.0, 0.001)
         question = Identification("m", "?", judge, 0.3, "a number", 3.0).question().public()
-        verdict, _ = on_the_public_arm(question, mark(question, LocalFunction(2.5, ())), 2.5)
+        verdict, _ = on_the_public_arm(question, mark(question, LocalFunction(2.5)), 2.5)
         words = " ".join(str(message(question, verdict)).split())
         assert ("than there; did its tip touch the wall in your run?" in words) == asks

@@ -24,7 +24,7 @@ each = pytest.mark.parametrize(("form", "said", "nonsense"), FORMS)
 def verdict(form, said):
     """What a grader says of a value, the question having travelled as data."""
     question = read_question(question_data(Prediction("x", "?", form, said).question()))
-    return mark(question, LocalFunction(said, ()))
+    return mark(question, LocalFunction(said))
 
 
 @each

@@ -17,7 +17,6 @@ from labkit.course.equivalence import Ratio
 from labkit.course.marking import mark
 from labkit.course.messages import message, why
 from labkit.course.reply import LocalFunction, NoAnswer, answer, reply
-from labkit.course.withheld import Withheld
 from labkit.errors import LabkitError
 
 
@@ -112,14 +111,11 @@ SEGMENTS = Question(
 def test_an_answer_that_changes_its_argument_is_wrong_every_time():
     """It is told so, not that its numbers are wrong; a mended one is right at once."""
     for _ in range(2):
-        verdict = mark(SEGMENTS, LocalFunction(pops, ()))
+        verdict = mark(SEGMENTS, LocalFunction(pops))
         assert verdict.outcome is Outcome.WRONG
         words = " ".join(str(message(SEGMENTS, verdict)).split())
         assert " pops changes the list `durations` that it is given; work on a copy" in words
-    assert (
-        mark(SEGMENTS, LocalFunction(lambda durations, t: durations[0], ())).outcome
-        is Outcome.RIGHT
-    )
+    assert mark(SEGMENTS, LocalFunction(lambda durations, t: durations[0])).outcome is Outcome.RIGHT
 
 
 class Raises:
@@ -201,7 +197,7 @@ ODD = [
 @pytest.mark.parametrize("make", ODD)
 def test_no_answer_is_too_odd(make):
     """Whatever comes back, there is a verdict and a sentence, and it is short enough to read."""
-    verdict = mark(DOUBLE, LocalFunction(lambda x: make(), ()))
+    verdict = mark(DOUBLE, LocalFunction(lambda x: make()))
     words = str(message(DOUBLE, verdict))
     assert verdict.outcome in (Outcome.WRONG, Outcome.ERROR)
     assert len(words) < 3000 and max(map(len, words.splitlines())) < 300
@@ -217,7 +213,7 @@ def test_no_answer_is_too_odd(make):
 )  # fmt: skip
 def test_no_exception_is_too_odd(error):
     """Whatever is raised is an error of the student's code, told in a sentence."""
-    verdict = mark(DOUBLE, LocalFunction(throw(error), ()))
+    verdict = mark(DOUBLE, LocalFunction(throw(error)))
     assert verdict.outcome is Outcome.ERROR
     assert len(str(message(DOUBLE, verdict))) < 3000
 
@@ -225,14 +221,14 @@ def test_no_exception_is_too_odd(error):
 def test_an_answer_is_judged_as_the_data_that_a_grader_gets():
     """What cannot travel is refused here too; what can is judged as it arrives."""
     assert reply(lambda: lambda s: 1 / s, (), {})["raised"] == "NotComparable"
-    given = answer(json.loads(json.dumps(reply(lambda: [np.float64(2), (1, None)], (), {}))), ())
+    given = answer(json.loads(json.dumps(reply(lambda: [np.float64(2), (1, None)], (), {}))))
     assert given == [2.0, (1, None)]
 
 
 @pytest.mark.parametrize("made", [lambda x: 2j * x, lambda x: np.array([2j * x])])
 def test_a_value_of_a_wrong_kind_is_returned_and_not_raised(made):
     """An answer in complex numbers is wrong, and its sentence does not speak of an exception."""
-    verdict = mark(DOUBLE, LocalFunction(made, ()))
+    verdict = mark(DOUBLE, LocalFunction(made))
     words = str(message(DOUBLE, verdict))
     assert verdict.outcome is Outcome.WRONG and words.startswith("double: not yet right.")
     assert "It returned a wrong kind of value: a" in words and "raised" not in words
@@ -249,7 +245,7 @@ def test_what_may_be_returned_is_told_in_full(made):
 def test_a_state_space_model_is_judged_as_its_transfer_function():
     """Both have the same frequency response, which is all that counts."""
     loop = control.ss([[-20.0, 0.0], [1.0, 0.0]], [[80.0], [0.0]], [[0.0, 1.0]], [[0.0]])
-    given = answer(json.loads(json.dumps(reply(lambda: loop, (), {}))), ())
+    given = answer(json.loads(json.dumps(reply(lambda: loop, (), {}))))
     assert Response((1.0, 25.0), 1e-6)(given, Ratio((80.0,), (1.0, 20.0, 0.0))) is None
 
 
@@ -258,18 +254,9 @@ def test_a_matrix_is_judged_as_an_array():
     """Numbers in an np.matrix are right if their shape is; otherwise the shape is told."""
     calls = (Call((), expected=np.eye(2)),)
     question = replace(DOUBLE, tests=(Test("a matrix", calls),), mistakes=())
-    assert mark(question, LocalFunction(lambda: np.matrix(np.eye(2)), ())).right
-    verdict = mark(question, LocalFunction(lambda: np.matrix(np.ones(2)), ()))
+    assert mark(question, LocalFunction(lambda: np.matrix(np.eye(2)))).right
+    verdict = mark(question, LocalFunction(lambda: np.matrix(np.ones(2))))
     assert "has shape (1, 2), expected (2, 2)" in why(verdict.tests[0])
-
-
-def test_only_a_tool_of_the_question_is_withheld():
-    """A student's process may say what it likes of other tools."""
-    with pytest.raises(Withheld):
-        answer({"withheld": "labkit.Circle"}, ("labkit.Circle",))
-    for forged in ("labkit.Line", ["labkit.Circle"], None, 3):
-        with pytest.raises(NoAnswer):
-            answer({"withheld": forged}, ("labkit.Circle",))
 
 
 def test_a_loop_without_end_is_stopped():
@@ -281,7 +268,7 @@ def test_a_loop_without_end_is_stopped():
         while True:
             pass
 
-    verdict = mark(DOUBLE, LocalFunction(endless, (), seconds=0.2))
+    verdict = mark(DOUBLE, LocalFunction(endless, seconds=0.2))
     assert verdict.outcome is Outcome.ERROR and len(calls) == 1
     assert "TimeoutError: it did not return within 0.2 s; does every" in why(verdict.tests[0])
 
@@ -290,4 +277,4 @@ def test_an_interrupt_is_nobodys_answer():
     """Who presses stop stops the check."""
     question = replace(DOUBLE, withheld=())
     with pytest.raises(KeyboardInterrupt):
-        mark(question, LocalFunction(throw(KeyboardInterrupt()), ()))
+        mark(question, LocalFunction(throw(KeyboardInterrupt())))

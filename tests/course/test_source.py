@@ -39,14 +39,12 @@ def found(*cells):
         (["from labkit.paths import *\ndef f(s): return Circle(s)"], "labkit.Circle"),
         (["def f(s): return getattr(lk, 'Circle')(s)"], "labkit.Circle"),
         (["def f(s): return lk.Circle.__call__(s)"], "labkit.Circle"),
-        (["ring = lk.Circle([1, 0, 0], [0, 0, 0])", "def f(s): return ring(s)"], "labkit.Circle"),
         (["class f(lk.Circle): pass"], "labkit.Circle"),
         (["f = np.vectorize(lk.Circle)"], "labkit.Circle"),
-        (["def f(s): return given_f(s)"], "labkit.Circle"),
-        (["def g(s): return f(s) + lk.Circle(s)", "def f(s): return g(s)"], "labkit.Circle"),
         (["%%time\ndef f(s): return lk.Circle(s)"], "labkit.Circle"),
         (["def f(q): return lk.Model('left').gravity(q)"], "labkit.Model.gravity"),
         (["def f(q): return lk.Model.gravity(lk.Model(), q)"], "labkit.Model.gravity"),
+        (["def f(q, models): return models[0].gravity(q)"], "labkit.Model.gravity"),
         (["from labkit import se3", "def f(T): return se3.inverse(T)"], "labkit.se3.inverse"),
         (["def f(q):\n    import pinocchio as pin\n    return pin.rnea(q)"], "pinocchio"),
         (["def f(q): return lk.metrics.summary(q)"], "labkit.metrics"),
@@ -55,23 +53,8 @@ def found(*cells):
     ids=lambda x: x if isinstance(x, str) else "",
 )  # fmt: skip
 def test_tools_are_found(cells, tools):
-    """Each way to name a withheld tool is seen, in the answer or in what it leans on."""
+    """Each way to name a withheld tool in the answer's own text is seen."""
     assert found(*cells) == (tools,)
-
-
-@pytest.mark.parametrize(
-    ("name", "tool"),
-    [
-        ("labkit.detect_tags", "labkit.detect_tags"),
-        ("labkit.tags.detection.detect_tags", "labkit.tags.detection"),
-        ("labkit.tags.detection.tag_pose", "labkit.tags.detection"),
-        ("labkit.tags.detect_tags", "labkit.tags.detection"),
-    ],
-)
-def test_a_tool_in_two_withheld_ones_is_found_once(name, tool):
-    """A function that is withheld by its own name and with its module is not named twice."""
-    cells = map(analyse, ("import labkit.tags.detection", f"def f(x): return {name}(x)"))
-    assert withheld_tools(cells, "f", ("labkit.tags.detection", "labkit.detect_tags")) == (tool,)
 
 
 @pytest.mark.parametrize(
@@ -81,28 +64,19 @@ def test_a_tool_in_two_withheld_ones_is_found_once(name, tool):
         ["def f(s): return s", "lk.Circle([1, 0, 0], [0, 0, 0])(0.5)"],
         ["def f(s): return s", "ring = lk.Circle([1, 0, 0], [0, 0, 0])\nplot(ring, f)"],
         ["def f(s): return lk.Circle(s)", "def f(s): return s"],
+        ["def f(s): return given_f(s)"],
         ["def f(s): return Schedule()(s)"],  # a cell may hold more than what an answer needs of it
         ["def f(s): return g(s)", "ring = lk.Circle(0)", "def g(s, ring=2): return s * ring"],
         ["def f(T): return T.inverse()"],
         ["class Circle: pass", "def f(s): return Circle()(s)"],
-        ["def f(links): return links.gravity"],
         ["def f(s): return s", "def f(s): raise NotImplementedError"],
         ["def f(s: return lk.Circle(s)"],
         ["%%timeit\ndef f(s): return lk.Circle(s)"],
     ],
 )
 def test_nothing_is_found_where_nothing_is(cells):
-    """Comments, texts, own experiments, names that only look alike are nobody's tools."""
+    """Comments, texts, own experiments, other cells, names that only look alike are no tools."""
     assert found(*cells) == ()
-
-
-def test_what_use_chose_is_not_suspected():
-    """Another answer may use what `use` chose, though the stand-in is made of a tool."""
-    walk = 'def given_g(s): return lk.Circle(s)\nmy_g = use("g", g, given_g)'
-    assert found(walk, "def g(s): return s", "def f(s): return my_g(s)") == ()
-    assert found(walk, "def g(s): return lk.Circle(s)", "def f(s): return my_g(s)") == (
-        "labkit.Circle",
-    )
 
 
 MODULE = """\

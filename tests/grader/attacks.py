@@ -149,10 +149,6 @@ FRAMES = answers(
     withheld_module="from labkit.paths import BangBang\nreturn BangBang(duration)(t)",
     withheld_subclass="import labkit\nclass Mine(labkit.BangBang): pass\nreturn Mine(duration)(t)",
 )
-FRAMES["withheld, saved before"] = Attack(
-    cell="import labkit\nsaved = labkit.BangBang\nmake = lambda T: saved(T)",
-    answer="def NAME(t, duration):\n    return make(duration)(t)",
-)
 FAKES = cells(
     write_labkit="open('labkit.py', 'w').write('check = 1')\nimport sys\nsys.path.insert(0, '.')",
     write_numpy="import os\nos.makedirs('numpy')\nopen('numpy/__init__.py', 'w').write('')",

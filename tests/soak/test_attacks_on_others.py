@@ -7,7 +7,7 @@ import shutil
 from types import SimpleNamespace
 
 import pytest
-from soak.attacks.defended import HONEST, defended, suspected, wins
+from soak.attacks.defended import HONEST, defended, wins
 from soak.attacks.place import SEED, full_marks, place, release_into
 from soak.attacks.sets import ATTACKS, GOALS, SAMPLE
 from soak.attacks.undefended import COMMANDS, WINS, undefended
@@ -76,12 +76,6 @@ def test_every_verb_does_its_work(graded):
     assert everybody <= of.marks.keys()
     assert everybody <= of.pages.keys()
     assert not COMMANDS.findall(of.printed)
-
-
-def test_honest_students_are_not_suspected(graded):
-    """The report names nobody for a withheld tool who used none."""
-    accused = suspected(graded.of.report)
-    assert not [line for line in accused if line.startswith(tuple(f"- {who}, " for who in HONEST))]
 
 
 @soak

@@ -7,6 +7,7 @@ import json
 import shutil
 from itertools import takewhile
 from pathlib import Path
+from pkgutil import resolve_name
 from tempfile import TemporaryDirectory
 
 import nbformat
@@ -18,7 +19,6 @@ from labkit.course.authoring.bundle import Bundle
 from labkit.course.authoring.layout import Course
 from labkit.course.before_handing_in import examine
 from labkit.course.notebook import manifest, source_notebook, verdict_in
-from labkit.course.withheld import find
 from labkit.grader.grading.grade import grade
 from labkit.grader.sandbox.launch import Sandbox
 from labkit.grader.sandbox.limits import Limits
@@ -34,15 +34,6 @@ def {name}(*args, **kwargs):
     {tool}
     return right_{name}(*args, **kwargs)
 """
-BY_CALL = """
-from functools import reduce
-
-def {name}(*args, **kwargs):
-    root, *path = {tool!r}[::-1].split(".")
-    reduce(getattr, path, __import__(root))()
-    return right_{name}(*args, **kwargs)
-"""
-
 
 FUNCTION = {
     "pinocchio": "pinocchio.rnea",
@@ -60,17 +51,15 @@ def answers(problem):
     yield "wrong", inline(problem.wrong[0].function, name)
     yield "wrong too", inline(problem.wrong[-1].function, name)
     yield "right", inline(problem.answer, name)
-    for kind, form in (("by name", BY_NAME), ("by call", BY_CALL)):
-        yield kind, "\n".join(_using(problem, form)) if problem.withheld else ""
+    yield "by name", "\n".join(_using(problem)) if problem.withheld else ""
 
 
-def _using(problem, form):
-    """A right answer that also uses a tool, by the form's words."""
+def _using(problem):
+    """A right answer that also names a tool."""
     tool = FUNCTION.get(problem.withheld[-1], problem.withheld[-1])
     yield inline(problem.answer, f"right_{problem.name}")
-    thing = find(tool)[1]
-    text = tool if form is BY_NAME else tool[::-1]
-    yield form.format(name=problem.name, tool=text, module=getattr(thing, "__module__", tool))
+    module = getattr(resolve_name(tool), "__module__", tool)
+    yield BY_NAME.format(name=problem.name, tool=tool, module=module)
 
 
 @pytest.fixture(scope="module")
@@ -107,7 +96,7 @@ def in_a_kernel(assignment, cells, folder):
     ],
 )
 def test_three_verdicts_are_one(assignment, sandbox, tmp_path):
-    """For a stub, wrong and right answers, and a withheld tool, by name and by call."""
+    """For a stub, wrong and right answers, and a withheld tool."""
     problems = {p.name: p for p in COURSE.problems(assignment)}
     questions = {name: p.question(1).public() for name, p in problems.items()}
     released = COURSE.release / assignment / f"{assignment}.ipynb"

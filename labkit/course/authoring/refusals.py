@@ -29,7 +29,7 @@ from ..reply import LocalFunction
 from ..serialize import encode
 from ..source import analyse, needed
 from ..verdict import Outcome
-from ..withheld import withheld_tools, withhold
+from ..withheld import withheld_tools
 from .problem import Problem
 
 USE = "def use(name, function, given, yours=None, **options):\n    return yours or function\n"
@@ -165,9 +165,7 @@ def _stand_in_earns(question: Question, text: str) -> float:
     """The points that the stand-in earns as an answer; none if it uses a withheld tool."""
     if withheld_tools([analyse(text)], STAND_IN, question.withheld):
         return 0.0
-    function = _run(text)
-    with withhold(question.withheld, function.__globals__):
-        return _earned(question, LocalFunction(function, question.withheld))
+    return _earned(question, LocalFunction(_run(text)))
 
 
 def _earned(question: Question, function: Callable[..., Any]) -> float:

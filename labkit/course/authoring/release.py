@@ -16,6 +16,7 @@ from contextlib import suppress
 from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
+from pkgutil import resolve_name
 
 import nbformat
 
@@ -25,7 +26,6 @@ from ..checks_file import FILE
 from ..notebook import Notebook, kind, manifest, source_notebook
 from ..question import Question
 from ..serialize import question_data
-from ..withheld import find
 from .bundle import write_bundle
 from .layout import Course
 from .refusals import guessable, refusals
@@ -70,10 +70,12 @@ def prepare(course: Course, name: str, seed: int) -> Prepared:
     questions = {key: problem.question(seed) for key, problem in problems.items()}
     for question in questions.values():
         for withheld in question.withheld:
-            if find(withheld)[1] is None:
+            try:
+                resolve_name(withheld)
+            except (ImportError, AttributeError):
                 raise LabkitError(
                     f"{question.name} withholds {withheld}, which does not exist; correct the name"
-                )
+                ) from None
     predictions = course.predictions(name)
     source = source_notebook(course.notebook_source(name), questions, predictions)
     if reasons := [*refusals(source, problems, questions), *guessable(predictions)]:

@@ -226,7 +226,7 @@ def _labelled(whose: str, functions: Sequence[Callable[..., Any]]) -> dict[str, 
     names = [f"{whose}{getattr(f, '__name__', type(f).__name__)}" for f in functions]
     before = [names[:k].count(name) for k, name in enumerate(names)]
     labels = [f"{name} ({n + 1})" if n else name for name, n in zip(names, before, strict=True)]
-    return {name: LocalFunction(f, (), TIMEOUT) for name, f in zip(labels, functions, strict=True)}
+    return {name: LocalFunction(f, TIMEOUT) for name, f in zip(labels, functions, strict=True)}
 
 
 def functions_from(file: Path, table: str) -> Functions:

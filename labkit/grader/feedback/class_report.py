@@ -182,14 +182,12 @@ def _mistake_rows(graded: Sequence[Result], problems: Mapping[str, Problem]) -> 
 
 
 def _tool_lines(graded: Sequence[Result], who: Mapping[str, str]) -> Iterator[str]:
-    """For each student, the withheld tools that they used and the tricks in their cells."""
+    """For each student, the withheld tools that they used."""
     for result in graded:
         verdicts = [question.verdict for question in result.questions]
         used = [f"{v.name} {why_not_counted(v.withheld)}" for v in verdicts if v.withheld]
         if used:
             yield f"{who[result.student]}, not counted: {'; '.join(used)}"
-        if result.tricks:
-            yield f"{who[result.student]}, worth a look: {'; '.join(result.tricks[:20])}"
 
 
 def _short_question(question: Question) -> str:

@@ -131,7 +131,7 @@ def gradescope_results(
         lines += [f"It could not be graded: {result.rejected}."] if result.rejected else []
         lines += [f"Note: {note}." for note in result.notes]
         lines += [f"Cell {x['cell'] + 1} failed: {x['error']}" for x in result.cells]
-        look = "\n".join([*result.tricks, f"Isolated by: {result.isolation}"])
+        look = f"Isolated by: {result.isolation}"
         tests.append({"name": "for the instructor", "output": look, "visibility": "hidden"})
     score = round(sum(verdict.earned for verdict in verdicts.values()), 2)
     return {"score": score, "output": "\n".join(filter(None, lines)), "tests": tests}

@@ -22,7 +22,7 @@ from ...course.verdict import Kind, Outcome, Verdict
 from ...course.withheld import withheld_tools
 from ..clean import clean_data, clean_line, how_many
 from ..sandbox.launch import Sandbox
-from ..sandbox.limits import MAX_TEXT, MAX_TRICKS, Limits, TextBudget
+from ..sandbox.limits import MAX_TEXT, Limits, TextBudget
 from ..sandbox.protocol import Disconnected, ProtocolError
 from ..sandbox.session import RemoteFunction, Session
 from ..submission import digest
@@ -36,7 +36,6 @@ ADDED = (
 )
 
 _STUDENT_TEXTS = {
-    "tricks": ("tricks",),
     "cells": ("error", "output"),
     "own": ("source",),
     "written": ("written",),
@@ -109,7 +108,6 @@ def grade(
         cells=cast(tuple[FailedCell, ...], failed),
         own=cast(tuple[OwnCell, ...], todo.own),
         written=todo.written,
-        tricks=todo.tricks,
         seconds={"all": round(time.perf_counter() - began, 4), "student": round(spent, 4)},
         receipt=receipt(cell["source"] for cell in cells),
     )
@@ -133,11 +131,8 @@ def _cut_to_budget(result: Result) -> Result:
             return {name: cut(x[name], names, theirs or name in names) for name in order}
         return [cut(y, names, theirs) for y in x] if isinstance(x, list | tuple) else x
 
-    more = len(data["tricks"]) - MAX_TRICKS
-    data["tricks"] = data["tricks"][:MAX_TRICKS]
     for part, names in _STUDENT_TEXTS.items():
         data |= cut({part: data[part]}, names, theirs=False)
-    data["tricks"] += [f"and {more} more such things"] * (more > 0)
     note = f"only {MAX_TEXT // 10**6} MB of text is kept; cut short: {how_many(budget.cut, 'text')}"
     data["notes"] = [*data["notes"], *[note] * bool(budget.cut)]
     return read_record(Result, clean_data(data))

@@ -33,7 +33,6 @@ class Plan:
             ``after`` which it comes.
         written: The text of each cell that a person marks, by the name of the cell.
         looks: How each step uses names; see `labkit.course.source.analyse`.
-        tricks: Sentences on what in the student's own cells may get around a withheld tool.
     """
 
     steps: tuple[Step, ...]
@@ -43,7 +42,6 @@ class Plan:
     own: tuple[Mapping[str, str], ...] = ()
     written: Mapping[str, str] = field(default_factory=dict)
     looks: tuple[Cell, ...] = ()
-    tricks: tuple[str, ...] = ()
 
     def source(self, question: str) -> str:
         """The text of the cell that answers a question or is meant to; empty if there is none."""
@@ -123,7 +121,6 @@ def plan(cells: Sequence[Cell], manifest: Sequence[Cell]) -> Plan:
         own=tuple(_own_cells(cells, manifest, {*places.values(), *chain(*known)})),
         written={name: _join_sources(cells, found) for name, found in by_hand.items() if found},
         looks=tuple(looks),
-        tricks=tuple(f"cell {k + 1} {what}" for k, cell in own.items() for what in cell["tricks"]),
     )
 
 

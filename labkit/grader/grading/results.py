@@ -113,7 +113,6 @@ class Result:
         cells: The cells that failed or were stopped, and why.
         own: The student's own cells, and where they are.
         written: The text of each cell that a person marks, by the name of the cell.
-        tricks: Sentences for the instructor on what may get around a withheld tool.
         isolation: What isolated the submission while it ran.
         seconds: How long grading took in all, and how long the student's code ran.
         receipt: What `lk.hand_in` printed for this file; empty if the submission was rejected.
@@ -131,7 +130,6 @@ class Result:
     cells: tuple[FailedCell, ...] = ()
     own: tuple[OwnCell, ...] = ()
     written: Mapping[str, str] = field(default_factory=dict)
-    tricks: tuple[str, ...] = ()
     isolation: str = ""
     seconds: Mapping[str, float] = field(default_factory=dict)
     receipt: str = ""

@@ -12,8 +12,6 @@ MAX_REPLY = 256_000
 """The size of the longest answer to a call, in bytes; the longest honest one has 1,600."""
 MAX_VALUES = 10_000
 """How many numbers, texts, lists and objects an answer may have; honest ones have up to 80."""
-MAX_TRICKS = 100
-"""How many tricks of one notebook are named."""
 MAX_TEXT = 1_000_000
 """How much of a student's text a result keeps, in bytes; all else may need as much again."""
 _TIMES = ("parse", "cell", "cells", "call", "question", "wall", "grace")

@@ -13,7 +13,6 @@ from typing import Any
 from ...course.notebook import grade_id
 from ...course.source import analyse
 from .clean import clean_text
-from .tricks import find_tricks
 
 MOST_CELLS = 1000
 MOST_SOURCE = 2_000_000  # characters, in all cells together
@@ -31,7 +30,7 @@ def read(data: bytes) -> dict[str, Any]:
 
     Returns:
         ``{"cells": [...]}``, or ``{"rejected": sentence}``.  Each cell has ``id``, ``grade_id``,
-        ``type`` and ``source``; a code cell also has ``tricks`` and what
+        ``type`` and ``source``; a code cell also has what
         `labkit.course.source.analyse` finds.
     """
     try:
@@ -81,7 +80,7 @@ def _cells(notebook: dict[str, Any]) -> Iterator[dict[str, Any]]:
             "grade_id": _name(grade_id(cell)),
             "type": kind,
             "source": source,
-            **({**analyse(source), "tricks": find_tricks(source)} if kind == "code" else {}),
+            **(analyse(source) if kind == "code" else {}),
         }
 
 

@@ -24,7 +24,6 @@ from labkit.course.calling import CappedText
 from labkit.course.reply import LONGEST, TimeUp, kind, reply, sentence
 from labkit.course.serialize import decode
 from labkit.course.source import analyse, plain
-from labkit.course.withheld import withhold
 
 from . import stubs
 from .protocol import Connection, Disconnected
@@ -106,9 +105,7 @@ class Notebook:
         if inspect.iscoroutine(found):
             asyncio.run(found)
 
-    def fork(
-        self, connection: Connection, question: str, withheld: list[str], right: list[str]
-    ) -> int:
+    def fork(self, connection: Connection, question: str, right: list[str]) -> int:
         """Answer one question in a fork of this process; return the exit code of the fork."""
         if self.isolated:
             _kill_all_others()
@@ -120,8 +117,7 @@ class Notebook:
             with suppress(ValueError, OSError):
                 resource.setrlimit(resource.RLIMIT_CPU, (limit, limit))
             stubs.right.update(right)
-            with withhold(withheld, self.names):
-                self._answer(connection, question)
+            self._answer(connection, question)
         os._exit(0)
 
     def _answer(self, connection: Connection, name: str) -> None:

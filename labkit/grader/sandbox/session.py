@@ -112,7 +112,7 @@ class Session:
         if self._asked == question.name:
             return False
         connection = self.start().connection
-        message = {"question": question.name, "withheld": question.withheld, "right": self.right}
+        message = {"question": question.name, "right": self.right}
         try:
             if "ready" not in connection.request(message, 2 * self.limits.grace, MAX_REPLY):
                 raise Disconnected("it did not get ready")
@@ -252,7 +252,6 @@ class RemoteFunction:
 
         Raises:
             NoAnswer: There is no answer.
-            Withheld: The function used a tool that the question withholds.
         """
         if self.lost >= MAX_LOST or self.session.exhausted or self.left <= 0.0:
             raise NoAnswer("TimeoutError", "TimeoutError: too much time was spent already")
@@ -287,7 +286,7 @@ class RemoteFunction:
         try:
             reply = self.session.ask(message, self.left)
             if "raised" not in reply:
-                return answer(reply, self.question.withheld)
+                return answer(reply)
         finally:
             self.left -= time.monotonic() - began
         kind, says = str(reply["raised"]), clean_line(str(reply.get("says", "")))
@@ -296,4 +295,4 @@ class RemoteFunction:
             kind = "TimeoutError"
         if kind not in _EXCEPTIONS:
             kind = "Exception"  # a name that the student chose could carry a secret out
-        return answer({"raised": kind, "says": says}, self.question.withheld)
+        return answer({"raised": kind, "says": says})

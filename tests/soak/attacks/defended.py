@@ -157,20 +157,6 @@ def said(data: Any) -> Iterator[str]:
             yield from said(inner)
 
 
-def suspected(report: str) -> list[str]:
-    """The lines of a class report about withheld tools and tricks that circumvent them."""
-    _, _, after = report.partition("## Withheld tools")
-    return after.partition("\n## ")[0].splitlines()
-
-
-def told(made: Class, student: str) -> bool:
-    """Whether result and class report say that a withheld tool or such a trick was used."""
-    result = made.results[student]
-    verdicts = [question["verdict"] for question in result["questions"]]
-    in_result = result["tricks"] or any(verdict["withheld"] for verdict in verdicts)
-    return bool(in_result) and any(student in line for line in suspected(made.report))
-
-
 def wins(name: str, attack: Attack, made: Class) -> Iterator[str]:
     """The gains of an attack in spite of the defence."""
     student = next(s for s, n in made.attackers.items() if n == name)
@@ -180,10 +166,7 @@ def wins(name: str, attack: Attack, made: Class) -> Iterator[str]:
             continue
         deserved = attack.earns if who == student else 0.0
         score = made.results[who]["score"]
-        if attack.wins == "answers":
-            if not told(made, who):
-                yield f"{score:g} points, and nobody was told"
-        elif score > deserved:
+        if score > deserved:
             yield f"{score:g} points, deserved {deserved:g}"
         yield from spoken(made.results[who], made.sizes[who], made.pages.get(who))
 

@@ -8,7 +8,6 @@ from soak.attacks.others import OTHERS
 from soak.attacks.points import POINTS
 from soak.attacks.secrets import SECRETS
 from soak.attacks.shown import TERMINAL
-from soak.attacks.withheld import WITHHELD
 
 GOALS: dict[str, dict[str, Attack]] = {
     "points": POINTS,
@@ -16,7 +15,6 @@ GOALS: dict[str, dict[str, Attack]] = {
     "secrets": SECRETS,
     "the grader": GRADER,
     "whoever looks": TERMINAL,
-    "withheld tools": WITHHELD,
 }
 ATTACKS: dict[str, Attack] = {
     f"{goal}: {name}": attack for goal, attacks in GOALS.items() for name, attack in attacks.items()
@@ -37,8 +35,6 @@ SAMPLE = {
         "the grader: a daemon",
         "the grader: a comment of a million emoji",
         "whoever looks: escape",
-        "withheld tools: as another library",
-        "withheld tools: its shape alone",
     )
 }
 """A few attacks for each goal, without those that take long."""

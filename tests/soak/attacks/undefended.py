@@ -106,7 +106,6 @@ WINS: dict[str, Callable[[Won], bool]] = {
     "heavy": lambda won: (won.bare["verdict"] or (0, 0))[1] > HEAVY,
     "fills": lambda won: max(won.bare["bytes"], len(json.dumps(won.notebook))) > FULL,
     "commands": lambda won: bool(COMMANDS.search(won.bare["said"])),
-    "answers": lambda won: (won.bare["verdict"] or (0, 0))[0] == 5,
     "unwritable": _unwritable,
     "overflows": _overflows,
 }
