@@ -70,7 +70,7 @@ def test_a_number_that_makes_no_sense_is_a_sentence(words, sentence, capsys):
         (["submit-check", "."], ". is a folder, a pipe or a device"),
         (["merge", PATHS, PATHS, "--to", "nowhere/x.ipynb"], "nowhere/x.ipynb: No such file"),
         (["merge", WARMUP, PATHS, "--to", "x.ipynb"], "releases of the same assignment?"),
-        (["term", "list", "--course", "nowhere"], "there is no "),
+        (["term", "new", "--course", "nowhere"], "there is no "),
         (["feedback", "99_dance", "--course", ROOT], "'01_paths'"),
         (["grade", "--course", ROOT], "which assignment? "),
         (["export", "--layout", "moodle", "--course", ROOT], "labkit export ASSIGNMENT --layout m"),

@@ -89,17 +89,6 @@ def test_an_arm_stays_when_others_join_and_after_a_new_release(course, capsys):
     assert before.items() < after.items() and len(after) == len(before) + 1
     release(course, NAME, 7)
     assert json.loads((course.release / NAME / FILE).read_text()) == after
-    students_zip = course.root / "dist/baxter-lab.zip"
-    students_zip.parent.mkdir()
-    students_zip.touch()
-    capsys.readouterr()
-    words = ["term", "forget", "--student", "zoe", "--yes", "--course", str(course.root)]
-    assert main(words) == 0
-    assert "zoe" not in (course.root / HANDLES).read_text()
-    assert json.loads((course.release / NAME / FILE).read_text()) == before
-    said = capsys.readouterr().out
-    assert f"no more in assignments/{NAME}/{FILE}\n" in said
-    assert "dist/baxter-lab.zip may still hold their arm; make it again: labkit student-b" in said
 
 
 def test_a_notebook_without_its_students_arms_is_named(course):

@@ -215,24 +215,6 @@ def test_another_answer_is_looked_at_though_the_gradebook_was_locked(written, mo
     assert "the answer has changed since; look at it again" in said
 
 
-def test_a_cell_by_hand_can_be_added_and_goes_only_unmarked(course, monkeypatch):
-    """Those who handed in before get an empty place for it; what was marked is never taken away."""
-    hand_in(course, NAME, "ada", notebook_of("ada"))
-    result = result_of(course, "ada")
-    Results(course, NAME).keep(result)
-    record(course, NAME, [result])
-    with monkeypatch.context() as patch:
-        author(patch)
-        release(course, NAME, 7)
-    record(course, NAME, [result])
-    with open_gradebook(course) as book:
-        assert book.find_submission(NAME, "ada").max_score == 28
-        assert book.find_grade(WHY, NAME, NAME, "ada").auto_score == 0.0
-    give(course, "ada", REPORT, 1.0, "see me")
-    with pytest.raises(Exception, match="report would go"):
-        release(course, NAME, 7)
-
-
 @pytest.mark.slow
 def test_nbgraders_autograde_agrees(authored, tmp_path):
     """Its own command leaves the same automatic scores and the same notebook as `labkit grade`."""

@@ -6,6 +6,7 @@ from datetime import UTC, datetime
 
 import pytest
 from downloaded import NAME, bare_course, counting, from_moodle, kept
+from labkit.grader.terms.by_hand import left_by_hand
 
 from labkit.__main__ import main
 from labkit.grader.students.class_list import Student
@@ -13,7 +14,6 @@ from labkit.grader.students.collect import collect
 from labkit.grader.students.enrol import import_list
 from labkit.grader.students.identity import lms_users
 from labkit.grader.students.roster import Roster, save_roster
-from labkit.grader.terms.by_hand import left_by_hand
 
 
 @pytest.fixture

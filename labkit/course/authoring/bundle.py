@@ -4,8 +4,7 @@ from __future__ import annotations
 
 import hashlib
 import json
-from collections.abc import Iterable, Mapping
-from contextlib import suppress
+from collections.abc import Mapping
 from dataclasses import dataclass, field
 from functools import cached_property
 from typing import Any
@@ -24,8 +23,7 @@ class Bundle:
     """The file of a release for graders.
 
     Attributes:
-        data: Assignment, seed, manifest, questions with their hidden cases, and hash; also the
-            questions ``added`` after the first students had handed in, if there are any.
+        data: Assignment, seed, manifest, questions with their hidden cases, and hash.
         arms: The students' own arms, if arms were given out.
     """
 
@@ -79,11 +77,6 @@ class Bundle:
         return tuple(map(read_question, self.data["questions"]))
 
     @property
-    def added(self) -> frozenset[str]:
-        """Names of the questions added after the first students had handed in."""
-        return frozenset(self.data.get("added", ()))
-
-    @property
     def points(self) -> float:
         """Full marks for the questions that are graded automatically."""
         return float(sum(q["points"] for q in self.data["questions"]))
@@ -105,9 +98,8 @@ def write_bundle(
     seed: int,
     cells: list[dict[str, Any]],
     questions: Mapping[str, Question],
-    added: Iterable[str],
 ) -> None:
-    """Write a release's bundle; added questions are marked as added until the next term.
+    """Write a release's bundle.
 
     Args:
         course: The course.
@@ -115,20 +107,14 @@ def write_bundle(
         seed: Seed of the hidden cases.
         cells: The manifest of its notebook.
         questions: The questions by name, with their hidden cases.
-        added: Names of the questions that are new to students who have handed in already.
     """
     path = course.bundle / f"{assignment}.json"
-    before: Mapping[str, Any] = {}
-    with suppress(OSError, TypeError, ValueError):  # a damaged one is made again
-        before = dict(json.loads(path.read_text(encoding="utf-8")))
-    late = sorted({*before.get("added", ()), *added} & set(questions))
     data: dict[str, Any] = {
         **stamp(),
         "assignment": assignment,
         "seed": seed,
         "cells": cells,
         "questions": [question_data(q) for q in questions.values()],
-        **({"added": late} if late else {}),
     }
     text = json.dumps(data, ensure_ascii=False, separators=(",", ":"), sort_keys=True)
     data["hash"] = hashlib.sha256(text.encode()).hexdigest()

@@ -11,7 +11,7 @@ import json
 import math
 import re
 import shutil
-from collections.abc import Iterable, Mapping
+from collections.abc import Mapping
 from contextlib import suppress
 from dataclasses import dataclass
 from functools import partial
@@ -86,7 +86,7 @@ def prepare(course: Course, name: str, seed: int) -> Prepared:
     return Prepared(course, name, seed, source, solved, questions)
 
 
-def write(made: Prepared, added: Iterable[str] = ()) -> None:
+def write(made: Prepared) -> None:
     """Write the source for nbgrader, the solved notebook and the graders' bundle.
 
     If the public cases differ from those of the last release only by rounding, the old ones stay,
@@ -94,13 +94,12 @@ def write(made: Prepared, added: Iterable[str] = ()) -> None:
 
     Args:
         made: What `prepare` made.
-        added: Questions that are new to students who have handed in already.
     """
     public = _checks(made)
     _write(made.course.source / made.name, _at_home(made.source), public)
     _write(made.course.solution / made.name, made.solved, public)
     cells = manifest(made.source)
-    write_bundle(made.course, made.name, made.seed, cells, made.questions, added)
+    write_bundle(made.course, made.name, made.seed, cells, made.questions)
 
 
 def _at_home(source: Notebook) -> Notebook:

@@ -1,8 +1,6 @@
-"""The command that begins, lists and forgets terms."""
+"""The command that begins a term, and deletes what is stored of old ones."""
 
 from __future__ import annotations
-
-import sys
 
 import click
 
@@ -10,17 +8,12 @@ from ...course.authoring.layout import Course
 from ...course.cli import verb
 from ...errors import LabkitError
 from .course import names, of_course
-from .pages import tell
 
 
 @verb("new 01_paths")
-@click.argument(
-    "action",
-    type=click.Choice(["new", "list", "return", "forget"]),
-    metavar="new|list|return|forget",
-)
+@click.argument("action", type=click.Choice(["new", "forget"]), metavar="new|forget")
 @names
-@click.option("--student", metavar="S", help="forget: everything of one student.")
+@click.option("--student", metavar="S", help="forget: everything of one student, in all terms.")
 @click.option(
     "--older",
     type=click.FloatRange(0),
@@ -42,31 +35,19 @@ def term(
     older: float | None,
     yes: bool,
 ) -> int:
-    """Begin a term, list terms, delete old records.
+    """Begin a term, or delete old records.
 
     \b
     new     archives the last term and releases each NAME, or all assignments,
             with a new secret; refuses, without --yes, if the last term has
             students, submissions or marks
-    list    lists the terms that are stored
-    return  returns to the archived term NAME; the term under way is archived
     forget  lists what it would delete: terms that ended some YEARS ago, or
-            everything of one student, in all terms or in those named (the
-            term under way is called now); with --yes it deletes them
+            everything in folders and files named after one student; with
+            --yes it deletes them. It lists what else names the student.
 
     The law may say how long marks must be kept.
     """  # noqa: D301
-    from ..terms.by_hand import left_by_hand, unknown
-    from ..terms.forget import (
-        entries_of,
-        files_of,
-        forget,
-        shared_work,
-        shorter_extensions,
-        terms_of,
-    )
-    from ..terms.older import relocate
-    from ..terms.term import about, archives, new_term, old_rules, refuse_running, restore, running
+    from ..terms.term import delete, ended, new_term, of_student, old_rules, refuse_running, running
 
     if action == "new":
         if not yes:
@@ -74,54 +55,25 @@ def term(
         there = running(course)
         record = new_term(course, names)
         if record["archived"]:
-            empty = "the last release, in which there were no students and no marks"
-            print(f"archived: {there or empty}")
-            print(f"to return to it, type: labkit term return {record['archived']}")
+            print(f"archived: {there or 'a release without students'}: {record['archived']}")
         print(f"a new term begins, released: {', '.join(record['bundles'])}")
         print("its secret is in course_private/term.json; keep a copy")
-        tell(filter(None, [old_rules(course)]), sys.stdout)
-    elif action == "list":
-        print("\n".join(about(course)))
-    elif action == "return":
-        stored = {one.folder.name: one.folder for one in archives(course)}
-        if len(names) != 1 or names[0] not in stored:
-            raise LabkitError(f"name one archive: {', '.join(stored) or 'there is none'}")
-        relocate(Course(stored[names[0]]), archived=True)
-        undone, released = restore(course, stored[names[0]])
-        if undone:
-            print(f"archived: course_private/{undone.name}")
-        print(f"the term of {names[0]} is under way again, released: {', '.join(released)}")
-    else:
-        if (student is None) == (older is None):
-            raise LabkitError("say what to forget: --older YEARS, or --student NAME")
-        if names and student is None:
-            raise LabkitError("--older YEARS chooses the terms; name none beside it")
-        terms, entries, by_hand, shared = [], [], [], []
-        if student is None:
-            found = [one.folder for one in archives(course, older or 0.0)]
-            by_hand = [str(one) for one in archives(course) if one.ended is None]
-        else:
-            terms = terms_of(course, student, names)
-            found, entries = files_of(terms, student), entries_of(terms, student)
-            if not (found or entries):
-                raise unknown(course, student, names)
-            by_hand = list(left_by_hand(course, terms, student))
-            shared = shared_work(terms, student)
-        if yes:
-            forget(course, found, terms, student or "")
-        done, changed = ("deleted", "no more in") if yes else ("would go", "would go from")
-        for one, name, mate in shared:
-            place = (one.submitted / str(student) / name).relative_to(course.root)
-            says = "moved" if yes else "would move"
-            print(f"{says} to {mate}, with its mark, which is the team's: {place}")
-        tell(shorter_extensions(course, str(student), shared), sys.stdout)
-        tell((f"{done}: {path.relative_to(course.root)}" for path in found), sys.stdout)
-        tell((f"{changed} {path.relative_to(course.root)}" for path in entries), sys.stdout)
-        tell(by_hand, sys.stdout)
-        if not found and student is None:
-            print("there is nothing to forget")
-        elif not yes:
-            print("nothing is deleted yet; add --yes")
+        print(old_rules(course), end="")
+        return 0
+    if names or (student is None) == (older is None):
+        raise LabkitError("say what to forget: --older YEARS, or --student NAME")
+    theirs, others = of_student(course, student) if student else (ended(course, older or 0), [])
+    if not theirs and not others:
+        raise LabkitError(f"there is nothing of {student}" if student else "no term is as old")
+    if yes:
+        delete(theirs)
+    for path in theirs:
+        print(f"{'deleted' if yes else 'would go'}: {path.relative_to(course.root)}")
+    for path in others:
+        print(f"names {student}, delete that by hand: {path.relative_to(course.root)}")
+    print("delete by hand what lies elsewhere: downloads, tables, zips, backups, the platform")
+    if not yes:
+        print("nothing is deleted yet; add --yes")
     return 0
 
 

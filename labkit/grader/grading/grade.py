@@ -30,11 +30,6 @@ from . import public_evidence
 from .plan import Plan, plan
 from .results import OTHER_NOTEBOOK, Answer, FailedCell, Hashes, OwnCell, Result, engine
 
-ADDED = (
-    "this question was added in a later release, and this notebook does not have it; it counts 0 "
-    "until the new notebook is handed in, into which `labkit merge` copies the work done so far"
-)
-
 _STUDENT_TEXTS = {
     "cells": ("error", "output"),
     "own": ("source",),
@@ -74,10 +69,8 @@ def grade(
         return rejection(cells, student, bundle, sandbox.level, data)
     todo = plan(cells, bundle.data["cells"])
     other = _other_notebook(cells, bundle)
-    absent = bundle.added - todo.places.keys()
-    todo = replace(todo, notes={**todo.notes, **dict.fromkeys(absent, (ADDED,))})
     tools = {q.name: withheld_tools(todo.looks, q.name, q.withheld) for q in bundle.questions}
-    absent |= todo.emptied()
+    absent = todo.emptied()
     questions = [q for q in bundle.questions if q.name not in absent and not tools[q.name]]
     with closing(Session(sandbox, todo.steps, limits)) as session:
         with suppress(Disconnected):

@@ -27,7 +27,7 @@ from ...course.source import analyse, parsed
 from ...errors import LabkitError
 from ..clean import how_many
 from ..grading.results import Results
-from ..nbgrader.migrate import migrate
+from ..nbgrader.gradebook import open_gradebook
 from ..nbgrader_api import nbgrader_api, reason
 from ..students.arms import lay_arms
 
@@ -92,12 +92,12 @@ def release(course: Course, name: str, seed: int) -> Released:
 
     Raises:
         UnknownName: There is no such assignment.
-        LabkitError: `prepare` or nbgrader refused, an answer would have leaked, or marks given by
-            hand would have been lost.
+        LabkitError: `prepare` or nbgrader refused, an answer would have leaked, or students have
+            handed in and the questions are others now.
     """
     made = prepared(course, name, seed)
-    added = migrate(course, name, made.source)  # after the last check that can refuse
-    write(made, added)
+    _refuse_other_questions(course, made)
+    write(made)
     generate(course, name)
     _verify(course.release / name)
     lay_arms(course, name)
@@ -112,6 +112,19 @@ def release(course: Course, name: str, seed: int) -> Released:
         if not result.rejected
     )
     return Released(name, course.release / name, len(questions), points, hidden, by_hand, outdated)
+
+
+def _refuse_other_questions(course: Course, made: Prepared) -> None:
+    """Raise a LabkitError if nbgrader would refuse the release, before anything is written."""
+    named = {grade_id(cell) for cell in made.source.cells} - {""}
+    with open_gradebook(course) as book:
+        there = [one for one in book.assignments if one.name == made.name and one.num_submissions]
+        known = {cell.name for one in there for x in one.notebooks for cell in x.source_cells}
+    if there and (other := known ^ named):
+        raise LabkitError(
+            f"students have handed in {made.name}, so it takes no other questions now "
+            f"({min(other)}); keep a question with 0 points, or wait for the next term"
+        )
 
 
 def generate(course: Course, name: str) -> None:

@@ -1,13 +1,13 @@
-"""A term: its secret, the record of what was released, and its archive."""
+"""A term: its secret, the record of what was released, its archive, what is deleted."""
 
 from __future__ import annotations
 
+import glob
 import json
 import secrets
 import shutil
-from collections.abc import Iterator
-from dataclasses import dataclass
-from datetime import UTC, date, datetime
+from collections.abc import Iterable
+from datetime import UTC, datetime, timedelta
 from pathlib import Path
 from typing import Any
 
@@ -22,6 +22,7 @@ from ..rules import FILE as RULES
 from ..rules import read_rules
 from ..seeds import seed_of
 from ..students import attempts, identity, roster
+from ..submission import is_name
 from .release import release
 
 PERSONAL_FILES = (
@@ -34,10 +35,22 @@ PERSONAL_FILES = (
 Git ignores all of them.
 """
 _TERM = "course_private/term.json"
-
-
-def _private(course: Course) -> Path:
-    return course.root / "course_private"
+_OF_A_STUDENT = (
+    *("submitted/{}", "attempts/{}", "autograded/{}", "feedback/{}"),
+    *("results/*/{}.json", "results/*/old/{}", "results/*/aside/{}.json", "results/*/aside/old/{}"),
+    *("build/course/defence/{}.html", "build/course/explain/{}"),
+)
+"""One student's files and folders within a term."""
+_OF_THE_CLASS = (
+    *(
+        RULES,
+        "gradebook.db",
+        "course_private/*.*",
+        "assignments/*/arms.json",
+        "feedback/*/*/*.html",
+    ),
+)
+"""Files that may name a student beside others."""
 
 
 def running(course: Course) -> str:
@@ -113,7 +126,7 @@ def archive(course: Course) -> Path | None:
     there = [name for name in PERSONAL_FILES if (course.root / name).exists()]
     if not there:
         return None
-    folder = _private(course) / datetime.now(UTC).strftime("archive-%Y-%m-%d-%H%M%S")
+    folder = course.root / "course_private" / datetime.now(UTC).strftime("archive-%Y-%m-%d-%H%M%S")
     while folder.exists():  # two in one second
         folder = folder.with_name(f"{folder.name}-2")
     folder.mkdir(parents=True)
@@ -125,88 +138,47 @@ def archive(course: Course) -> Path | None:
     return folder
 
 
-def restore(course: Course, old: Path) -> tuple[Path | None, list[str]]:
-    """Return to an archived term, and archive the current one.
-
-    Args:
-        course: The course.
-        old: The folder of the archive.
-
-    Returns:
-        The new archive, or None if there was nothing to archive; and the released assignments.
-    """
-    undone = archive(course)
-    for name in (*PERSONAL_FILES, _TERM, RULES):
-        if (old / name).exists():
-            (course.root / name).unlink(missing_ok=True)  # the rules, which `archive` copied
-            (course.root / name).parent.mkdir(parents=True, exist_ok=True)
-            shutil.move(old / name, course.root / name)
-    (Course(old).build / ".gradebook").unlink(missing_ok=True)  # a lock of `open_gradebook`
-    if not any(path.is_file() for path in old.rglob("*")):
-        shutil.rmtree(old)
-    released = sorted(path.stem for path in course.bundle.glob("*.json"))
-    for name in released:
-        release(course, name, seed_of(course))
-    return undone, released
-
-
 def old_rules(course: Course) -> str:
     """A sentence on rules of the last term that still apply; "" if there are none."""
     rules = read_rules(course)
     over = [x for x in rules.assignments if (due := rules.due(x)) and due < datetime.now(UTC)]
     said = [f"due dates that are over: {', '.join(over)}"] * bool(over)
     said += [f"extensions: {len(rules.extensions)}"] * bool(rules.extensions)
-    return f"{RULES} still has {'; '.join(said)}. Edit it before students hand in" if said else ""
+    return f"{RULES} still has {'; '.join(said)}. Edit it before students hand in\n" if said else ""
 
 
-@dataclass(frozen=True)
-class Archive:
-    """A term that is over.
+def ended(course: Course, years: float) -> list[Path]:
+    """The archives that were made at least ``years`` years ago, by the date in their names."""
+    last = (datetime.now(UTC) - timedelta(days=365.25 * years)).date().isoformat()
+    return [x for x in _archives(course) if x.name.removeprefix("archive-")[:10] <= last]
 
-    Attributes:
-        folder: The folder of the archive.
-        ended: The day on which the next term began; None if the folder's name has no date.
-        people: How many students handed in, including any who are not in the roster.
+
+def of_student(course: Course, student: str) -> tuple[list[Path], list[Path]]:
+    """What all terms hold about a student: files named after them, and files that name them.
+
+    Raises:
+        LabkitError: No student can have this name.
     """
+    if not is_name(student) or {"/", "."} & {student, student[:1]} or not student:
+        raise LabkitError(f"{student!a} is not the name of a student's folder")
+    theirs, others = list[Path](), list[Path]()
+    for term in (course.root, *_archives(course)):
+        for pattern in _OF_A_STUDENT:
+            theirs += sorted(term.glob(pattern.format(glob.escape(student))))
+        shared = [x for pattern in _OF_THE_CLASS for x in sorted(term.glob(pattern))]
+        shared = [x for x in shared if not set(theirs) & {x, *x.parents}]
+        others += [x for x in shared if student.encode() in x.read_bytes()]
+    return theirs, others
 
-    folder: Path
-    ended: date | None
-    people: int
 
-    def __str__(self) -> str:
-        if self.ended is None:
-            when = "its name has no date, so --older leaves it; rename it archive-YYYY-MM-DD"
+def delete(paths: Iterable[Path]) -> None:
+    """Delete files and folders; links are deleted, not followed."""
+    for path in paths:
+        if path.is_dir() and not path.is_symlink():
+            shutil.rmtree(path)
         else:
-            when = f"ended {self.ended}"
-        return f"{self.folder.name}: {when}, {self.people} handed in"
+            path.unlink(missing_ok=True)
 
 
-def archives(course: Course, older: float | None = None) -> list[Archive]:
-    """The terms that ended at least ``older`` years ago; by default all, even without a date."""
-    found = []
-    for folder in sorted(_private(course).glob("archive-*")):
-        people = len({path.parts[-3] for path in (folder / "submitted").glob("*/*/*")})
-        one = Archive(folder, _date(folder.name), people)
-        days = (datetime.now(UTC).date() - one.ended).days if one.ended else -1
-        if older is None or days >= 365.25 * older:
-            found.append(one)
-    return found
-
-
-def _date(name: str) -> date | None:
-    try:
-        return date.fromisoformat(name.removeprefix("archive-")[:10])
-    except ValueError:
-        return None
-
-
-def about(course: Course) -> Iterator[str]:
-    """A line for the current term and for each archived one."""
-    file = course.term
-    if file.exists():
-        record = json.loads(file.read_text(encoding="utf-8"))
-        released = ", ".join(sorted(record.get("bundles", ()))) or "nothing"
-        yield f"now: begun {record.get('begun', 'some day')}, released: {released}"
-    else:
-        yield "now: no term was begun; hidden cases have the public seed"
-    yield from map(str, archives(course))
+def _archives(course: Course) -> list[Path]:
+    return sorted((course.root / "course_private").glob("archive-*"))
