@@ -1,8 +1,8 @@
 """The course's rules, in one file that a person reads and edits: ``course.toml``.
 
-The file gives the name of the course, the due date and weight of each assignment, extensions, the
-penalty for late work, and which attempt counts.  Due dates and extensions are written into the
-gradebook, where formgrader shows them, and nbgrader's plugin for late work deducts the penalty.
+The file gives the name of the course, the due date and weight of each assignment, extensions and
+the penalty for late work.  Due dates and extensions are written into the gradebook, where
+formgrader shows them, and nbgrader's plugin for late work deducts the penalty.
 """
 
 from __future__ import annotations
@@ -14,7 +14,7 @@ import tomllib
 from collections.abc import Mapping
 from datetime import UTC, datetime, timedelta
 from pathlib import Path
-from typing import Annotated, Any, Literal
+from typing import Annotated, Any
 from zoneinfo import ZoneInfo, ZoneInfoNotFoundError
 
 import msgspec
@@ -32,7 +32,7 @@ _DAY = 86400.0
 
 
 _FORM = (
-    "The keys are name, id, zone and counts; in [late]: percent_per_day, at_most and "
+    "The keys are name, id and zone; in [late]: percent_per_day, at_most and "
     "grace_minutes; in [assignments.NAME]: due and weight; in [[extensions]]: student, days and "
     "assignment. A due date has no quotation marks: due = 2026-11-06T23:59:00"
 )
@@ -90,7 +90,6 @@ class Rules(_Table, frozen=True):
         name: The name of the course on pages.
         id: The name of the course in nbgrader's exchange, in one word.
         zone: The time zone of due dates that state none, such as "Europe/Berlin".
-        counts: Which attempt counts.
         late: The penalty for late work.
         assignments: The assignments by name.
         extensions: The extensions.
@@ -99,7 +98,6 @@ class Rules(_Table, frozen=True):
     name: str = ""
     id: Annotated[str, msgspec.Meta(pattern=r"^[\w-]+\Z")] = "trajectory_tracking"
     zone: str = "UTC"
-    counts: Literal["latest", "latest in time"] = "latest"
     late: Late = Late()
     assignments: Mapping[str, Assignment] = {}
     extensions: tuple[Extension, ...] = ()
@@ -123,11 +121,6 @@ class Rules(_Table, frozen=True):
             if x.student == student and x.assignment in {"", assignment}
         ]
         return timedelta(days=max(days, default=0.0))
-
-    def due_for(self, student: str, assignment: str) -> datetime | None:
-        """When an assignment is due for one student, including the grace period."""
-        due, grace = self.due(assignment), timedelta(minutes=self.late.grace_minutes)
-        return due and due + self.longer(student, assignment) + grace
 
 
 def read_rules(course: Course) -> Rules:
@@ -163,8 +156,6 @@ def rules_in(path: Path) -> Rules:
         return Rules()
     except (ValueError, RecursionError) as error:
         says = str(error)
-        if "$.counts" in says:
-            says = 'counts must be "latest" or "latest in time"'
         form = f". {_FORM}" if isinstance(error, msgspec.ValidationError) else ""
         raise LabkitError(f"{path}: {says}; correct that line{form}") from None
     try:

@@ -6,22 +6,27 @@ import os
 import re
 import shutil
 import zipfile
-from pathlib import Path
 
 from handmade import ROOT
 
 from labkit.course.authoring.layout import Course
-from labkit.grader.timestamp import read_time
+from labkit.grader.students.collect import collect
+from labkit.grader.students.roster import Roster, Student, save_roster
 
 NAME = "01_paths"
 MOODLE = "{}_{}_assignsubmission_file"
+CLASS = (
+    Student("ada", "Ada", "Lovelace", "ada@x.test", "42", "ada", "4711", "gh-ada"),
+    Student("eve", "Eve", "Mallory", "eve@x.test", "77", "eve", "4712", "gh-eve"),
+)
 
 
-def bare_course(root):
-    """A course without a release, which is enough for collecting."""
+def bare_course(root, *students):
+    """A course without a release, which is enough for collecting, with a roster."""
     root.mkdir(parents=True, exist_ok=True)
     (root / "solutions").symlink_to(ROOT / "solutions")
     shutil.copy(ROOT / "nbgrader_config.py", root)
+    save_roster(Course(root), Roster(students or CLASS))
     return Course(root)
 
 
@@ -59,17 +64,15 @@ def handed_in(inbound, user, data, when="2026-03-01 10:00:00 UTC", name=NAME, ow
     folder.mkdir(parents=True)
     (folder / f"{name}.ipynb").write_text(data)
     (folder / "submission_secret.txt").write_text(f"secret of {data}")
-    written_at(folder, when)
     if owner is not None:
         os.chown(folder, owner, owner)
     return folder
 
 
-def written_at(folder, when):
-    """Set the times of last writing of a folder and its files to `when`, if that is a time."""
-    if (time := read_time(when)) is not None:
-        for path in (*folder.iterdir(), folder):
-            os.utime(path, (time.timestamp(), time.timestamp()), follow_symlinks=False)
+def take(course, source, name=NAME, **options):
+    """Collect a source: what was taken, and the sentences that want a look."""
+    found = list(collect(course, name, source, **options))
+    return [str(x) for x in found if x.fine], [str(x) for x in found if not x.fine]
 
 
 def counting(course, name=NAME):
@@ -78,12 +81,6 @@ def counting(course, name=NAME):
     return {path.parents[1].name: path.read_text() for path in found}
 
 
-def sentences(found):
-    """The sentences of `collect` about students and files, and those that need attention."""
-    return [str(one) for one in found if one.student or one.file or not one.fine]
-
-
 def kept(course, student, name=NAME):
-    """The contents of a student's attempts."""
-    folder = Path(course.root, "attempts", student, name)
-    return {path.read_text() for path in folder.glob("*/*.ipynb")}
+    """The contents of all notebooks of a student that were collected."""
+    return {x.read_text() for x in (course.root / "attempts" / student / name).glob("*.ipynb")}

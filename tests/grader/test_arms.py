@@ -28,7 +28,7 @@ def course(tmp_path_factory):
     course = copied(root)
     release(course, NAME, 7)
     (root / "class.csv").write_text(CLASS)
-    assert main(["students", "import", str(root / "class.csv"), "--course", str(root)]) == 0
+    assert main(["roster", str(root / "class.csv"), "--course", str(root)]) == 0
     return course
 
 
@@ -84,7 +84,7 @@ def test_an_arm_stays_when_others_join_and_after_a_new_release(course, capsys):
     before = json.loads((course.release / NAME / FILE).read_text())
     late = course.root / "late.csv"
     late.write_text(CLASS + "zoe,Zoe,O,\n")
-    assert main(["students", "import", str(late), "--course", str(course.root)]) == 0
+    assert main(["roster", str(late), "--course", str(course.root)]) == 0
     after = json.loads((course.release / NAME / FILE).read_text())
     assert before.items() < after.items() and len(after) == len(before) + 1
     release(course, NAME, 7)

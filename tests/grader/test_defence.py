@@ -27,8 +27,7 @@ from labkit.grader.marks.mark import Mark
 from labkit.grader.marks.table import marks_of
 from labkit.grader.nbgrader.gradebook import record
 from labkit.grader.nbgrader_api import nbgrader_api
-from labkit.grader.students.class_list import Student
-from labkit.grader.students.roster import Roster, save_roster
+from labkit.grader.students.roster import Roster, Student, save_roster
 
 
 def accepted(course, student, notebook):

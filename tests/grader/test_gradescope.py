@@ -30,8 +30,7 @@ from labkit.grader.sandbox.isolation import processes_of
 from labkit.grader.sandbox.launch import Sandbox
 from labkit.grader.sandbox.limits import Limits
 from labkit.grader.sandbox.mounts import Isolation, NoIsolation
-from labkit.grader.students.class_list import Student
-from labkit.grader.students.roster import Roster
+from labkit.grader.students.roster import Roster, Student
 
 DAEMON = """
 import os, signal

@@ -15,8 +15,7 @@ from labkit.course.seed import PUBLIC_SEED
 from labkit.errors import UnknownName
 from labkit.grader import seeds
 from labkit.grader.nbgrader.gradebook import open_gradebook
-from labkit.grader.students.class_list import Student
-from labkit.grader.students.roster import Roster, save_roster
+from labkit.grader.students.roster import Roster, Student, save_roster
 from labkit.grader.terms import term
 from labkit.grader.terms.release import FORBIDDEN, prepared, release
 from labkit.grader.terms.student_bundle import export_course

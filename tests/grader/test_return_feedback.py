@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import os
+import pwd
 import zipfile
 
 import pytest
@@ -9,6 +11,7 @@ from handmade import hand_in, nbgrader, raw
 
 from labkit.__main__ import main
 from labkit.grader.students.exchange import SECRET
+from labkit.grader.students.roster import Roster, Student, save_roster
 
 NAME = "01_paths"
 
@@ -33,6 +36,8 @@ def test_the_exchange_carries_work_and_feedback(course, tmp_path, capsys):
     step(course.root, "release_assignment")
     step(home, "fetch_assignment", "--course=trajectory_tracking")
     step(home, "submit", "--course=trajectory_tracking")
+    me = pwd.getpwuid(os.getuid()).pw_name
+    save_roster(course, Roster((Student(me, login=me),)))
     inbound = exchange / "trajectory_tracking" / "inbound"
     ours("collect", inbound)
     ours("grade")
@@ -58,6 +63,7 @@ def test_moodle_gets_each_page_back_under_its_participants_number(course, blank,
     with zipfile.ZipFile(download, "w") as archive:
         archive.writestr(f"Ada Lovelace_101_assignsubmission_file/{NAME}.ipynb", raw(blank))
     where = ["--course", str(course.root)]
+    save_roster(course, Roster((Student("ada", "Ada", "Lovelace"),)))
     assert main(["collect", NAME, str(download), *where]) == 0
     hand_in(course, NAME, "brought-by-hand", blank)
     assert main(["grade", NAME, *where]) == 0

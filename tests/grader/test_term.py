@@ -27,8 +27,8 @@ from labkit.grader.marks.mark import Mark, MarkLine
 from labkit.grader.marks.table import mark_of, marks_of
 from labkit.grader.nbgrader.gradebook import record
 from labkit.grader.pseudonyms import pseudonyms
-from labkit.grader.students.class_list import Student
-from labkit.grader.students.platforms import LmsUser
+from labkit.grader.students.collect import Participant
+from labkit.grader.students.roster import Student
 from labkit.grader.submission import students
 from labkit.grader.terms.term import archive
 from tests.synthetic import make_class
@@ -218,19 +218,19 @@ def test_the_same_text_has_a_section_of_its_own(term):
 
 def test_canvas_layout():
     """Canvas' five columns in its order, full marks below, students by Canvas' own number."""
-    canvas = row("hoppergrace-7", known=LmsUser("canvas", "7", "hoppergrace"))
+    canvas = row("hoppergrace-7", lms="7")
     table = LAYOUTS["canvas"]("Paths (4711)", [canvas, row("ada", lms="42", first="A", last="L")])
     assert table[0] == ["Student", "ID", "SIS User ID", "SIS Login ID", "Section", "Paths (4711)"]
     assert "Points Possible" in table[1][0]
     assert table[1][5] == 2.0
-    assert table[2] == ["hoppergrace-7", "7", "", "", "", 1.0]
+    assert table[2] == ["hoppergrace-7", "7", "", "hoppergrace-7", "", 1.0]
     assert table[3] == ["L, A", "42", "", "ada", "", 1.0]
     assert not left_out("canvas", [canvas, row("ada")])
 
 
 def test_moodle_layouts():
     """The gradebook knows users by address, the worksheet by the number of the download."""
-    moodle = row("Ada-Lovelace", known=LmsUser("moodle", "101", "Ada Lovelace"))
+    moodle = row("Ada-Lovelace", known=Participant("101", "Ada Lovelace"))
     table = LAYOUTS["moodle-worksheet"]("Paths", [moodle, row("carl")])
     assert {"Identifier", "Grade", "Last modified (grade)"} <= set(table[0])
     assert table[1:] == [["Participant 101", "Ada Lovelace", 1.0, 2.0, ""]]
@@ -246,4 +246,4 @@ def test_moodle_layouts():
 
 def row(student, *, first="", last="", email="", lms="", known=None):
     who, line = Student(student, first, last, email, lms, id_number=lms), MarkLine("q", 2.0, 1.0)
-    return Mark(who, lines=(line,), raw=1.0, points=2.0, user=known)
+    return Mark(who, lines=(line,), raw=1.0, points=2.0, moodle=known)

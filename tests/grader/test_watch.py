@@ -16,8 +16,7 @@ from labkit.grader.grading import batch, worker
 from labkit.grader.grading.batch import GradeOptions, watch
 from labkit.grader.sandbox.limits import Limits
 from labkit.grader.students.arms import give_arms
-from labkit.grader.students.class_list import Student
-from labkit.grader.students.roster import Roster
+from labkit.grader.students.roster import Roster, Student
 from labkit.grader.submission import Submission
 
 

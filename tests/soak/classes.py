@@ -13,9 +13,8 @@ from functools import cached_property
 from pathlib import Path
 from typing import Any
 
-from downloaded import written_at
-
 from labkit.course.authoring.layout import Course
+from labkit.grader.students.roster import Roster, Student, save_roster
 
 from . import hostile
 from .attacks.place import handed_out, solved_code
@@ -26,8 +25,7 @@ SECRET = 1000
 HONEST = ("ada", "kim", "zoe", "carl")
 """Honest students whose folders have their names; carl hands in through the exchange.
 
-Mia Wong comes from Moodle as participant 101 and Ada Lovelace from Canvas as user 7; how their
-folders are called is decided by the collector.
+Mia Wong comes from Moodle as participant 101 and Ada Lovelace from Canvas as user 7.
 """
 HEAD = """import numpy as np
 import labkit as lk
@@ -147,14 +145,18 @@ def put(kind: Kind, course: Path, folder: Path, name: str = NAME) -> Path:
 
 
 def write_downloads(course: Path, hostiles: Sequence[Kind]) -> None:
-    """Write downloads of Moodle and Canvas, and an exchange, with an honest student in each.
+    """Write a roster, downloads of Moodle and Canvas, and an exchange, an honest student in each.
 
-    Students with odd names are honest too; the entries of `hostile.ENTRIES` are worth 0, so that a
-    mark shows if one of them has replaced an honest notebook.
+    Students with odd names are in no roster, so their work is left; the entries of
+    `hostile.ENTRIES` are worth 0, so that a mark shows if one has replaced an honest notebook.
     """
     solved = json.dumps(notebook(course, "solved"))
     folder = course / "downloads"
     folder.mkdir()
+    listed = [Student(who, login=who) for who in HONEST]
+    listed += [Student("Mia-Wong", "Mia", "Wong")]
+    listed += [Student("Ada-Lovelace", "Ada", "Lovelace", lms_user_id="7")]
+    save_roster(Course(course), Roster(tuple(listed)))
     entries = [k.thing for k in hostiles if k.table == "ENTRIES"]
     people = [_plain(k.thing) for k in hostiles if k.table == "PEOPLE"]
     with zipfile.ZipFile(folder / "moodle.zip", "w") as archive:
@@ -176,7 +178,6 @@ def write_downloads(course: Path, hostiles: Sequence[Kind]) -> None:
         if len(os.fsencode(who)) < 200:  # the whole name of a longer one is too long for a file
             path = folder / "inbound" / f"{who}+{NAME}+{when}" / f"{NAME}.ipynb"
             _put(path, json.loads(solved))
-            written_at(path.parent, when)
 
 
 def _plain(name: str | bytes) -> str:

@@ -142,10 +142,7 @@ def test_list(fresh, clean, kind):
     """A list of students is taken or refused in a sentence; nobody's mark changes."""
     course = fresh()
     (course / "list.csv").write_bytes(kind.thing)
-    more = ("--assignment", NAME) if b"Identifier" in kind.thing else ()
-    wrong = [
-        *laws.said(typed(course, "labkit", "students", "import", "list.csv", *more), (0, 1, 2))
-    ]
+    wrong = [*laws.said(typed(course, "labkit", "roster", "list.csv"), (0, 2))]
     for step in EXPORTS:
         ended = typed(course, *step.words(NAME))
         wrong += laws.said(ended, (0, 1))

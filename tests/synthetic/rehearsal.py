@@ -21,9 +21,8 @@ from labkit.grader.grading.current_results import current_results
 from labkit.grader.marks.export import LAYOUTS, as_csv
 from labkit.grader.marks.table import marks_of
 from labkit.grader.nbgrader.gradebook import record
-from labkit.grader.students.class_list import Student
 from labkit.grader.students.collect import collect
-from labkit.grader.students.roster import Roster, save_roster
+from labkit.grader.students.roster import Roster, Student, save_roster
 from labkit.grader.submission import students
 from labkit.grader.terms.release import release
 

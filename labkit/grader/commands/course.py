@@ -122,32 +122,25 @@ def student_bundle(
     return 0
 
 
-@verb("import participants.csv")
-@click.argument("action", type=click.Choice(["import"]), metavar="import")
-@click.argument("file", type=PATH, metavar="FILE.csv")
+@verb("participants.csv --teams Groups")
+@click.argument("file", type=PATH, metavar="LIST.csv")
 @click.option(
-    "--assignment",
-    metavar="NAME",
-    help="FILE is Moodle's grading worksheet of this assignment: it has the students' numbers.",
+    "--teams",
+    metavar="COLUMN",
+    default="",
+    help="The column of LIST.csv with teams, which share an arm and hand in one report.",
 )
 @of_course
-def students(course: Course, action: str, file: Path, assignment: str | None) -> int:
-    """Import a list of students into the roster.
+def roster(course: Course, file: Path, teams: str) -> int:
+    """Add the students of a list to the roster.
 
-    The list comes from Moodle or Canvas, or is any table with a row for each student.
-
-    Exit code: 0 if the list was imported, 1 if it was and somebody's row, work or hand-in time
-    needs a look (named at the end), 2 if the list was not imported.
+    The list comes from Moodle or Canvas, or is any table with a row for each student. Who has
+    another role is left out, and named. A student keeps the folder of the first list.
     """
-    from ..students.enrol import import_list
+    from ..students.roster import import_list
 
-    if assignment:
-        course.notebook_source(assignment)
-    summary, left = import_list(course, file, assignment)
-    print("\n".join(summary))
-    for sentence in left:
-        print(sentence, file=sys.stderr)
-    return 1 if left else 0
+    print("\n".join(import_list(course, file, teams)))
+    return 0
 
 
 @verb("01_paths moodle.zip")
@@ -162,12 +155,12 @@ def students(course: Course, action: str, file: Path, assignment: str | None) ->
 @click.option(
     "--named",
     metavar="PATTERN",
-    help="How to find the student in a file's path: 'paths-{student}/*.ipynb'.",
+    help="Where a file's path has a column of the roster: 'paths-{github}/*.ipynb'.",
 )
 @click.option(
     "--at",
     metavar="TIME",
-    help="Time of the download or clone: the hand-in time of files that come from no platform.",
+    help="Time of the hand-ins, where the download has none.",
 )
 def collect(
     course: Course,
@@ -181,10 +174,10 @@ def collect(
 
     A source is a zip from Moodle or Canvas, or the inbound folder of nbgrader's exchange. Clones
     of GitHub Classroom, and any other folder or zip of files, need --named. Every notebook that
-    was handed in is kept, in attempts/.
+    was taken is kept, in attempts/. A file that fits no one student of the roster is left.
 
-    Exit code: 0 if everything was collected, 1 if a file was not collected or its owner is not
-    certain (named at the end), 2 if nothing could be collected.
+    Exit code: 0 if everything was taken, 1 if a file was left (named at the end), 2 if nothing
+    could be collected.
     """
     from ..rules import read_rules
     from ..students.collect import collect
@@ -231,4 +224,4 @@ def doctor() -> int:
     return 1 if bad else 0
 
 
-COMMANDS = (doctor, release, student_bundle, students, collect)
+COMMANDS = (doctor, release, student_bundle, roster, collect)

@@ -62,9 +62,9 @@ def export(
     was graded, and the total with the weights of course.toml.
     """
     from ..marks.export import LAYOUTS, as_csv, of_term, remarks, unmatched
-    from ..marks.table import idle_extensions, marks_of, other_due_date
+    from ..marks.table import marks_of
     from ..rules import read_rules
-    from ..students.list_remarks import about_extensions
+    from ..students.roster import idle_extensions
 
     if column and layout not in NAMED:
         raise LabkitError(
@@ -74,14 +74,12 @@ def export(
     if layout == "gradescope":
         return _autograder(course, assignment, to)
 
-    doubts = list(about_extensions(course))
+    doubts = list(idle_extensions(course))
 
     def read(name: str) -> list[Mark]:
         if name != DEFENCE:
             course.notebook_source(name)
         found = list(marks_of(course, name))
-        doubts.extend(idle_extensions(course, name, found))
-        tell(other_due_date(course, name, found), sys.stderr)
         return [] if all(mark.absent for mark in found) else found
 
     def filled(name: str, marks: list[Mark]) -> list[Mark]:

@@ -6,7 +6,6 @@ import json
 import os
 import sys
 from collections.abc import Iterable, Iterator
-from contextlib import suppress
 from functools import partial
 from typing import TYPE_CHECKING, Any
 
@@ -67,7 +66,7 @@ def grade(course: Course, assignment: str, student: str | None, as_json: bool, *
     from ..grading.results import Results
     from ..lock import exclusive_run
     from ..nbgrader.gradebook import record, recorded
-    from ..students.list_remarks import about_extensions
+    from ..students.roster import idle_extensions
     from ..submission import misnamed
 
     diff, watching = how.pop("diff"), how.pop("watch")
@@ -82,9 +81,7 @@ def grade(course: Course, assignment: str, student: str | None, as_json: bool, *
         given = " and ".join(name for name, value in not_watched.items() if value)
         raise LabkitError(f"--watch grades whatever comes in; for {given} leave out --watch")
     with Failures(at_once=watching) as failures:
-        failures.add("ATTENTION", about_extensions(course))  # an error in the rules stops here
-        others = list(_settled(course, assignment, student, change=not diff))
-        tell(others, said)
+        failures.add("ATTENTION", idle_extensions(course))  # an error in the rules stops here
         if watching:
             failures.add("not graded", misnamed(course, assignment))
             for one in failures.sift(watch(course, assignment, options), "not graded"):
@@ -97,9 +94,6 @@ def grade(course: Course, assignment: str, student: str | None, as_json: bool, *
             with exclusive_run(Results(course, assignment).folder):
                 found = changes(course, assignment, who, options)
                 tell(summary(list(failures.sift(found, "not graded"))), sys.stdout)
-            if others:
-                says = f"{how_many(len(others), 'student')}, for whom another file would count"
-                print(f"not compared: {says} (see above)")
             tell(_on_top(course, assignment), sys.stdout)
             return failures.code
         graded: list[Result] = []
@@ -116,27 +110,6 @@ def grade(course: Course, assignment: str, student: str | None, as_json: bool, *
             tell(_on_top(course, assignment), sys.stdout)
             print(f"isolation: {graded[-1].isolation}\nresults: {course.results / assignment}")
     return failures.code
-
-
-def _settled(
-    course: Course, assignment: str, student: str | None, *, change: bool
-) -> Iterator[str]:
-    """A sentence for each student of whom another file counts than the one in ``submitted/``."""
-    from ..students.attempts import FOLDER
-    from ..students.identity import identity_lock
-    from ..students.installed import settle
-    from ..submission import students
-
-    if not (course.root / FOLDER).exists():  # then no file in submitted/ is of an attempt
-        return
-    with identity_lock(course):
-        for one in students(course, assignment):
-            with suppress(LabkitError):  # grading and collecting name what cannot be read
-                if student in {None, one} and (
-                    says := settle(course, one, assignment, change=change)
-                ):
-                    then = "" if change else f"; to grade it, type: labkit grade {assignment}"
-                    yield f"{one}: {says}{then}"
 
 
 def _other_notebooks(results: Iterable[Result]) -> Iterator[Failure]:

@@ -48,7 +48,7 @@ def feedback(
     waits.
     """
     from ..feedback.page import moodle_zip, write_feedback
-    from ..marks.table import marks_of, other_due_date
+    from ..marks.table import marks_of
     from ..students.exchange import for_exchange
 
     with Failures() as failures:
@@ -58,7 +58,6 @@ def feedback(
             raise nobody(assignment, student)
         if not unmarked:
             _wait_for_marks(marks)
-        tell(other_due_date(course, assignment, marks), sys.stderr)
         pages = write_feedback(course, assignment, marks)
         made = list(failures.sift(pages, "no page"))
         print(f"pages in {course.root / 'feedback'}: {len(made)}")

@@ -29,7 +29,7 @@ from ..sandbox.launch import Sandbox
 from ..sandbox.limits import Limits, slowness
 from ..sandbox.session import RemoteFunction, Session
 from ..seeds import key_of
-from ..students.roster import read_roster, same_name
+from ..students.roster import read_roster
 from ..submission import Submission, did_you_mean, is_name
 from ..whys import rank
 from .edits import Edit, edits, shown
@@ -163,11 +163,10 @@ def accepted(course: Course, student: str) -> tuple[list[Accepted], list[str]]:
         )
     if not worked:
         folders = [path.name for path in course.submitted.glob("*") if is_name(path.name)]
-        namesakes = [str(one) for one in people if same_name(one.name) == same_name(student)]
         raise LabkitError(
             f"there is no student {student!r}: not in the roster, and nothing of theirs is in "
             "submitted/ or results/; give the name of the student's folder"
-            f"{did_you_mean(student, namesakes or [*roster, *folders])}"
+            f"{did_you_mean(student, [*map(str, people), *folders])}"
         )
     return found, missing
 

@@ -36,7 +36,7 @@ from ..marks.table import mark_of
 from ..nbgrader.markup import markdown
 from ..pages import render_page
 from ..rules import read_rules
-from ..students.identity import lms_users
+from ..students.collect import participants
 from .drawing import curve, side_by_side
 
 MEASURES = {
@@ -183,11 +183,9 @@ def moodle_zip(course: Course, assignment: str, pages: Iterable[Path], to: Path)
     Raises:
         LabkitError: None of the pages is for a student named in Moodle's download.
     """
-    people = lms_users(course, assignment)
+    people = participants(course).get(assignment, {})
     mine = [
-        (people[student], page)
-        for page in pages
-        if (student := page.parents[1].name) in people and people[student].system == "moodle"
+        (people[student], page) for page in pages if (student := page.parents[1].name) in people
     ]
     if not mine:
         raise LabkitError(

@@ -12,8 +12,7 @@ from ...course.authoring.bundle import Bundle
 from ...course.authoring.layout import Course
 from ...course.own_arm import HANDLES, Arms
 from ..pages import TEMPLATES
-from ..students.class_list import Student
-from ..students.roster import read_roster
+from ..students.roster import Student, read_roster
 from ..terms.student_bundle import check_repository, wheel
 
 

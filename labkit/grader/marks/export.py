@@ -21,7 +21,6 @@ from __future__ import annotations
 import csv
 import io
 import re
-from collections import Counter
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from typing import Any
 
@@ -63,7 +62,7 @@ def canvas(column: str, marks: Sequence[Mark]) -> list[list[Any]]:
     for r in marks:
         name = ", ".join(filter(None, (r.person.last_name, r.person.first_name))) or r.student
         sis = r.person.id_number if r.listed else ""
-        table.append([name, r.canvas, sis, r.login, "", r.score])
+        table.append([name, r.person.lms_user_id, sis, r.login, "", r.score])
     return table
 
 
@@ -85,28 +84,20 @@ def moodle_worksheet(column: str, marks: Sequence[Mark]) -> list[list[Any]]:
     table: list[list[Any]] = [
         ["Identifier", "Full name", "Grade", "Maximum Grade", "Last modified (grade)"]
     ]
-    once = _participants(marks)
     table += [
-        [f"Participant {number}", r.user.name if r.user else "", r.score, r.full, ""]
+        [f"Participant {r.moodle.number}", r.moodle.name, r.score, r.full, ""]
         for r in marks
-        if (number := r.number("moodle")) in once
+        if r.moodle
     ]
     return table
 
 
 _NEEDS = {
-    "canvas": "ID or login (labkit students import CANVAS-LIST.csv)",
-    "moodle": "address, ID number or login (labkit students import LIST.csv)",
-    "moodle-worksheet": "participant's number (labkit collect NAME MOODLE.zip, or labkit students "
-    "import WORKSHEET.csv --assignment NAME)",
+    "canvas": "ID or login (labkit roster CANVAS-LIST.csv)",
+    "moodle": "address, ID number or login (labkit roster LIST.csv)",
+    "moodle-worksheet": "participant's number (labkit collect NAME MOODLE.zip)",
 }
 """What identifies a student on each platform, and the command that provides it."""
-
-
-def _participants(marks: Sequence[Mark]) -> set[str]:
-    """The participant numbers that belong to one student alone; others would get two marks."""
-    numbers = Counter(r.number("moodle") for r in marks)
-    return {number for number, count in numbers.items() if number and count == 1}
 
 
 def of_term(marks: Mapping[str, Sequence[Mark]], weights: Mapping[str, float]) -> list[list[Any]]:
@@ -150,7 +141,8 @@ def remarks(layout: str, marks: Sequence[Mark], assignment: str = "") -> Iterato
     if absent := [mark.student for mark in marks if mark.absent]:
         nothing = "with no defence yet" if assignment == DEFENCE else "handed in nothing"
         yield f"{len(absent)} {nothing}: {few(absent)}"
-    if layout == "canvas" and (lost := [m.student for m in marks if not (m.absent or m.canvas)]):
+    lost = [m.student for m in marks if not (m.absent or m.person.lms_user_id)]
+    if layout == "canvas" and lost:
         have = f"{len(lost)} {'has' if len(lost) == 1 else 'have'}"
         yield (
             f"{have} no Canvas ID, so Canvas must find them by SIS ID or login: "
@@ -172,11 +164,10 @@ def left_out(layout: str, marks: Sequence[Mark]) -> str:
 
 def unmatched(layout: str, marks: Sequence[Mark]) -> tuple[list[str], int]:
     """Students whom a platform cannot find from a table, and how many handed in."""
-    once = _participants(marks)
     ways: dict[str, Callable[[Mark], str]] = {
-        "canvas": lambda r: r.canvas or r.person.id_number or r.login,
+        "canvas": lambda r: r.person.lms_user_id or r.person.id_number or r.login,
         "moodle": lambda r: r.person.email or r.person.id_number or r.login,
-        "moodle-worksheet": lambda r: r.number("moodle") if r.number("moodle") in once else "",
+        "moodle-worksheet": lambda r: r.moodle.number if r.moodle else "",
     }
     if layout not in ways:
         return [], 0

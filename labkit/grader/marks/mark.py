@@ -6,8 +6,8 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 
 from ..grading.results import Result
-from ..students.class_list import Student
-from ..students.platforms import LmsUser
+from ..students.collect import Participant
+from ..students.roster import Student
 from ..submission import is_name
 
 
@@ -68,7 +68,7 @@ class Mark:
         penalty: Points deducted for lateness.
         points: Full marks; 0 if neither the gradebook nor the release says what they are.
         late: How late the work was, in words; empty if it was in time.
-        user: The student as the platform knows them from which the work was collected, or None.
+        moodle: The student as Moodle's download calls them, or None.
         result: The result of grading; None if there is no complete one.
         missing: Why no mark counts, and what to do; empty if one does, or nothing was handed in.
         remark: Anything else to know about the mark, such as that the file was rejected.
@@ -84,7 +84,7 @@ class Mark:
     penalty: float = 0.0
     points: float = 0.0
     late: str = ""
-    user: LmsUser | None = None
+    moodle: Participant | None = None
     result: Result | None = None
     missing: str = ""
     remark: str = ""
@@ -127,15 +127,6 @@ class Mark:
 
     @property
     def login(self) -> str:
-        """The login; else the folder's name, unless a download or the roster gave the folder."""
-        made = self.user or self.listed or not is_name(self.student)
-        return self.person.login or (self.number("exchange") if made else self.student)
-
-    @property
-    def canvas(self) -> str:
-        """The student's number in Canvas; empty if it is not known."""
-        return self.number("canvas") or self.person.lms_user_id
-
-    def number(self, system: str) -> str:
-        """The student's number on a platform; empty if it is not known."""
-        return self.user.number if self.user and self.user.system == system else ""
+        """The login; else the folder's name, unless the roster gave the folder."""
+        made = self.listed or not is_name(self.student)
+        return self.person.login or ("" if made else self.student)

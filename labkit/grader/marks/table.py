@@ -10,24 +10,18 @@ from __future__ import annotations
 import shlex
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
-from datetime import timedelta
 from typing import Any
 
 from ...course.authoring.bundle import Bundle
 from ...course.authoring.layout import DEFENCE, Course
 from ...course.notebook import question_of
-from ..clean import clean_line, clean_text, few, span
+from ..clean import clean_line, clean_text, span
 from ..each import Failure
 from ..grading.current_results import current_results, full_marks, how_to_grade
 from ..grading.results import Result
 from ..nbgrader.gradebook import apply_rules, open_gradebook
-from ..rules import FILE as RULES
-from ..rules import read_rules
-from ..students.attempts import or_another, perhaps_late
-from ..students.class_list import Student
-from ..students.identity import lms_users
-from ..students.installed import date_put_back
-from ..students.roster import read_roster
+from ..students.collect import participants
+from ..students.roster import Student, read_roster
 from ..submission import plain_name, students
 from .mark import Mark, MarkLine
 
@@ -47,7 +41,6 @@ def marks_of(course: Course, assignment: str, only: str | None = None) -> list[M
     Raises:
         LabkitError: The gradebook, the roster or the rules cannot be used.
     """
-    date_put_back(course, assignment, only)
     with open_gradebook(course) as book:
         apply_rules(course, book, assignment)
         submissions = {plain_name(s.student.id): s for s in book.assignment_submissions(assignment)}
@@ -68,7 +61,7 @@ def _of_teams(rows: Sequence[Mark]) -> Iterator[Mark]:
         if report is None:
             yield row
             continue
-        mine = replace(report, person=row.person, listed=row.listed, user=row.user)
+        mine = replace(report, person=row.person, listed=row.listed, moodle=row.moodle)
         remark = f"the team's report, handed in by {report.student}"
         yield replace(mine, author=report.student, remark=remark)
 
@@ -84,7 +77,7 @@ def _own_marks(
         submissions: The gradebook's submissions, by student.
         only: One student; by default all students.
     """
-    users, handed_in = lms_users(course, assignment), set(students(course, assignment))
+    called, handed_in = participants(course).get(assignment, {}), {*students(course, assignment)}
     results = {one.student: one for one in current_results(course, assignment, only)}
     roster = read_roster(course)
     listed = {student.id for student in roster.students}
@@ -94,53 +87,24 @@ def _own_marks(
     for student in sorted(everybody if only is None else everybody & {only}):
         submission, result = submissions.get(student), results.get(student)
         person = roster.get(student) or Student(student)
-        row = Mark(person, student in listed, points=full, user=users.get(student))
+        row = Mark(person, student in listed, points=full, moodle=called.get(student))
         if submission is None and result is None:
             nothing = "no defence yet" if assignment == DEFENCE else "nothing was handed in"
             yield replace(row, remark=nothing)
             continue
         row = _marked(row, submission, result, assignment)
-        late = perhaps_late(course, student, assignment)
-        other = or_another(course, student, assignment)
-        yield replace(row, remark=_remark(row, student in handed_in, other) or late)
+        yield replace(row, remark=_remark(row, student in handed_in))
 
 
-def _remark(row: Mark, handed_in: bool, other: str) -> str:
+def _remark(row: Mark, handed_in: bool) -> str:
     """Why the mark is as it is, if it was rejected, is empty, or outlived its submission."""
     if row.missing or row.result is None:
         return ""
     if row.result.unanswered:
         if row.result.rejected:
-            return f"rejected: {row.result.rejected}; ask for the file again{other}"
-        return f"{row.result.unanswered}; ask for the right one{other}"
+            return f"rejected: {row.result.rejected}; ask for the file again"
+        return f"{row.result.unanswered}; ask for the right one"
     return "" if handed_in else "nothing of theirs is in submitted/; the mark stays as it was"
-
-
-def idle_extensions(course: Course, assignment: str, marks: Sequence[Mark]) -> Iterator[str]:
-    """A sentence for each extension without effect, as a mate handed in the team's report late."""
-    rules = read_rules(course)
-    for mark in marks:
-        author, longer = mark.author, rules.longer(mark.student, assignment)
-        if author and mark.late and longer > rules.longer(author, assignment):
-            yield (
-                f"{mark.student}'s extension of {longer / timedelta(days=1):g} days has no effect "
-                f"on {assignment}, which {author} handed in for the team, {mark.late} late; in "
-                f"{RULES}, give it to {author} too"
-            )
-
-
-def other_due_date(course: Course, assignment: str, marks: Sequence[Mark]) -> Iterator[str]:
-    """A sentence if late work is judged by a due date that is not in the file of rules."""
-    file = course.root / RULES
-    if not file.exists() or read_rules(course).due(assignment) is not None:
-        return
-    if late := [mark for mark in marks if mark.penalty]:
-        yield (
-            f"{RULES} has no due date for {assignment}, but late work loses points: "
-            f"{few([mark.student for mark in late])}. The date is in the gradebook, where "
-            f"formgrader or an earlier {RULES} put it. Write the right one into {RULES}, or delete "
-            f"it in formgrader (Manage Assignments, {assignment}), and type this again"
-        )
 
 
 def mark_of(result: Result) -> Mark:

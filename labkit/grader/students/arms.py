@@ -4,11 +4,14 @@ from __future__ import annotations
 
 import re
 from collections.abc import Sequence
+from typing import TYPE_CHECKING
 
 from ...course.authoring.layout import Course
 from ...course.own_arm import DEMO, FILE, HANDLES, Arms
 from ..atomic import write
-from .roster import Roster
+
+if TYPE_CHECKING:
+    from .roster import Roster
 
 
 def give_arms(course: Course, roster: Roster, key: str) -> None:
@@ -42,7 +45,7 @@ def without_arms(course: Course, names: Sequence[str]) -> str:
         return ""
     return (
         f"{', '.join(lacking)}: every student has the public arm {DEMO!r}; for an arm each, import "
-        "the list of students (labkit students import FILE.csv), then make the zip again"
+        "the list of students (labkit roster LIST.csv), then make the zip again"
     )
 
 

@@ -1,49 +1,127 @@
-"""Collect: downloads from Moodle and Canvas, or nbgrader's exchange, into ``submitted/``.
+"""Collect hand-ins from a platform's download into ``submitted/``, by one rule.
 
-The owner of a file follows from the platform's own field (``platforms``) and from the roster
-(``owner``, ``identity``); ``attempts`` decides which of a student's notebooks counts.
+Each file has an owner by what the platform itself says: Moodle a full name, Canvas its number of
+the user, nbgrader's exchange a login whose user owns the folder, other files the part of their path
+that the instructor names.  The owner is the one student of the roster with this value.  A file that
+fits none or several is listed and left where it is.
+
+The newest file counts.  Every file that was collected is kept in ``attempts/STUDENT/ASSIGNMENT/``.
+
+Moodle writes ``NAME_PARTICIPANT_assignsubmission_file`` and then ``/FILE`` or ``_FILE``, with no
+underscore in NAME (github.com/moodle/moodle, ``mod/assign/classes/downloader.php``).  Canvas writes
+``NAME_[LATE_]USER_ATTACHMENT_FILE``, where NAME may end in an underscore and a number; then there
+are two readings (github.com/instructure/canvas-lms, ``lib/content_zipper.rb``).  A student chooses
+nothing but FILE, so a name is read from its beginning.
 """
 
 from __future__ import annotations
 
+import lzma
+import os
+import re
+import stat
+import struct
 import zipfile
-from collections.abc import Iterator, Sequence
+import zlib
+from collections.abc import Callable, Iterator, Sequence
 from contextlib import ExitStack
 from dataclasses import dataclass, replace
 from datetime import UTC, datetime
+from functools import partial
 from pathlib import Path
+
+import msgspec
 
 from ...course.authoring.layout import Course
 from ...errors import LabkitError
-from ..clean import few
+from ..atomic import write
+from ..clean import clean_line
 from ..each import Failure, for_student
-from ..submission import digest
-from .attempts import (
-    HandIn,
-    counted_attempt,
-    named_for,
-    perhaps_late,
-    store,
+from ..lock import locked
+from ..rules import read_rules
+from ..submission import NOTEBOOK, check_size, digest, read_file
+from ..timestamp import TIMESTAMP, read_stamp, read_time
+from .exchange import SECRET, in_exchange
+from .roster import COLUMNS, Roster, Student, read_roster
+
+FOLDER = "attempts"
+PARTICIPANTS = "course_private/lms.json"
+"""Moodle's participants by assignment and student; their numbers go back with marks and pages."""
+_MOODLE = re.compile(
+    r"(?P<name>[^_/]*)_(?P<number>0|[1-9][0-9]{0,18})_assignsubmission_"
+    r"(?P<kind>[a-z]+)(?:_?/(?:[^/]+/)*|_)(?P<file>[^/]+)"
 )
-from .exchange import in_exchange
-from .identity import all_lms_users, assign_folders, identity_lock, record_users
-from .installed import in_place, install, instead, store_submitted
-from .move import move_to_owners
-from .owner import find_owner
-from .platforms import File, Named, in_folder, in_zip, open_zip, reader
-from .roster import read_roster
+_CANVAS = re.compile(
+    r"(?P<name>\w*?)_(?P<late>LATE_)?(?P<user>[0-9]+)_(?P<attachment>[0-9]+)_(?P<file>[^/]+)"
+)
+_NUMBER_FIRST = re.compile(r"[0-9]{3,}_([^/]+)")
+"""A file that begins with a number as large as an attachment's."""
+_OF_A_MAC = re.compile(r"(^|/)(__MACOSX/|\.DS_Store$|\._[^/]*$)")
+_REPEATED = re.compile(r" ?[(-](\d{1,9})\)?\.ipynb$")
+"""What a browser or a platform adds to the name of a file that is handed in again."""
+_DAMAGED = (
+    *(zipfile.BadZipFile, zlib.error, lzma.LZMAError, struct.error),
+    *(OSError, EOFError, RuntimeError, ValueError, IndexError),
+)
+_PARTS = {"**": ".*", "*": "[^/]*"}
+LONGEST = 1000
+"""The longest path of a file in a download."""
+
+
+class Participant(msgspec.Struct, frozen=True):
+    """What Moodle calls a student: the number in one assignment, and the name."""
+
+    number: str
+    name: str
+
+
+@dataclass(frozen=True)
+class Claim:
+    """Who a file says that it is from.
+
+    Attributes:
+        column: The column of the roster, or "name".
+        value: What the student's row has there.
+        file: The name that the student gave the file.
+        late: Whether the platform marks it as late.
+        moodle: Moodle's participant; None elsewhere.
+        name: The name by which Canvas calls the user.
+    """
+
+    column: str
+    value: str
+    file: str
+    late: bool = False
+    moodle: Participant | None = None
+    name: str = ""
+
+
+@dataclass(frozen=True)
+class File:
+    """One file of a download.
+
+    Attributes:
+        label: Its name there, safe to show.
+        claims: The possible readings of its owner.
+        when: When it was handed in, or when the download shows it.
+        read: Reads its bytes when called.
+        exact: Whether ``when`` is the time of the hand-in itself.
+        refused: Why it is not taken; "" if it can be.
+        secret: Reads the secret by which the exchange knows the hand-in.
+    """
+
+    label: str
+    claims: tuple[Claim, ...]
+    when: datetime
+    read: Callable[[], bytes]
+    exact: bool = False
+    refused: str = ""
+    secret: Callable[[], bytes | None] = lambda: None
 
 
 @dataclass(frozen=True)
 class Taken:
-    """A file, and what was done with it.
-
-    Attributes:
-        student: The name of the owner's folder; empty if the owner is not known.
-        file: The file's name in the download; empty if the remark concerns no single file.
-        says: What was done.
-        fine: Whether nobody needs to look at it.
-    """
+    """A file, or several, and what was done with them; ``fine`` if nobody needs to look."""
 
     student: str
     file: str
@@ -54,27 +132,14 @@ class Taken:
         return ": ".join(filter(None, (self.student, self.file, self.says)))
 
 
-_NO_LIST = (
-    "no class list, so students are known by the platform's numbers alone, which Moodle gives anew "
-    "in each assignment; for one folder a student all term, type: labkit students import LIST.csv"
-)
-_PERHAPS_LATE = (
-    "perhaps late: {who}; no late rule is applied to them until their hand-in times are known: "
-    "with Moodle, download the grading worksheet now and type: labkit students import "
-    "WORKSHEET.csv --assignment {of}; with files of your own, collect with --at"
-)
-_HandedIn = tuple[File, Named]
-"""A file, and the correct reading of its name."""
-
-
 def collect(
     course: Course,
     assignment: str,
     source: Path,
     *,
-    unverified: bool = False,
     named: str | None = None,
     at: datetime | None = None,
+    unverified: bool = False,
 ) -> Iterator[Taken]:
     """Collect notebooks from a download; collecting it again changes nothing.
 
@@ -82,170 +147,318 @@ def collect(
         course: The course.
         assignment: The assignment.
         source: A zip from Moodle or Canvas, or the inbound folder of nbgrader's exchange.
+        named: The pattern of the paths of other files, such as ``paths-{github}/*.ipynb``; the
+            source is then a folder or a zip of such files.
+        at: When the files were handed in, if the source does not say.
         unverified: Whether to collect from users of the exchange whom this machine does not know.
-        named: The pattern of the names of files that come from no platform, such as
-            ``paths-{student}/*.ipynb``; the source is then a folder or a zip of such files.
-        at: When the source was made, if that is known.  It is the hand-in time of files that come
-            from no platform, and the latest possible hand-in time for a platform's zip.
 
     Yields:
-        What was done with each file.
+        What was done with each file; at the end what was left.
 
     Raises:
-        LabkitError: The source is not of these kinds, is damaged, or holds nothing; or a record
-            of the course is damaged.
+        LabkitError: There is no roster, or the source is not of these kinds or holds nothing.
     """
-    if not source.exists():
-        raise LabkitError(f"there is no {source}")
+    roster = read_roster(course)
+    if not roster.students:
+        raise LabkitError("there is no list of students yet; first type: labkit roster LIST.csv")
     if not (source.is_file() or source.is_dir()):  # a device or pipe may never end
         raise LabkitError(f"{source} is neither a file nor a folder; give the download as it is")
-    now = datetime.fromtimestamp(int(source.stat().st_mtime), UTC)
-    with identity_lock(course):
-        if named is not None:
-            read = reader(named)
-            others = [x for x in course.names() if x != assignment]
-            with ExitStack() as stack:
-                if source.is_dir():
-                    files = list(in_folder(source, read))
-                else:
-                    files = list(in_zip(stack.enter_context(open_zip(source)), now, read))
-                mine = [
-                    x for x in files if not any(named_for(Path(x.label).name, y) for y in others)
-                ]
-                yield from _with_nothing_else(files, mine)
-                if not mine:
-                    raise LabkitError(f"nothing in {source} is for {assignment} and fits {named!r}")
-                yield from _collect(course, assignment, source, [_made(x, at, True) for x in mine])
-        elif source.is_dir():
-            files = list(in_exchange(source, assignment, unverified=unverified))
-            yield from _collect(course, assignment, source, files)
-        elif not zipfile.is_zipfile(source):
-            raise LabkitError(
-                f"{source} is neither a folder nor a zip file; give the download as it is"
-            )
+    busy = "another command is collecting; wait for it to end"
+    with locked(course.root / "course_private" / ".collecting", busy), ExitStack() as stack:
+        if source.is_file():
+            files = [*in_zip(stack.enter_context(open_zip(source)), source, named)]
+        elif named:
+            files = [*in_folder(source, named)]
         else:
-            with open_zip(source) as archive:
-                files = [_made(file, at, False) for file in in_zip(archive, now)]
-                yield from _collect(course, assignment, source, files)
+            files = [*in_exchange(source, assignment, unverified)]
+        if named:  # a clone or a folder of mails holds other assignments too
+            others = {f"{x}.ipynb" for x in course.names() if x != assignment}
+            files = [x for x in files if _REPEATED.sub(".ipynb", Path(x.label).name) not in others]
+        if not files:
+            raise LabkitError(
+                f"nothing in {source} was handed in for {assignment}; files that come from no "
+                "platform need --named, such as --named '{login}/*.ipynb'"
+            )
+        mine, left = _by_owner(course, assignment, roster, files)
+        for student, theirs in sorted(mine.items()):
+            dated = [(_dated(file, claim, at), claim) for file, claim in theirs]
+            done = for_student(student, partial(_keep, course, assignment, student, dated))
+            if isinstance(done, Failure):
+                done = [Taken(student, "", f"not taken; {done.why}", fine=False)]
+            yield from done
+        for why, labels in left.items():
+            yield Taken("", ", ".join(labels), f"left there; {why}", fine=False)
+        if read_rules(course).due(assignment) and not any(x.exact or at for x in files):
+            yield Taken("", "", "no hand-in times in it, so nobody is late; --at TIME gives one")
 
 
-def _with_nothing_else(files: Sequence[File], mine: Sequence[File]) -> Iterator[Taken]:
-    """Name files of other assignments if a student handed in nothing else.
-
-    Args:
-        files: All files.
-        mine: Those that are not named after another assignment.
-    """
-    known = {x.readings[0].who for x in mine if x.readings}
+def _by_owner(
+    course: Course, assignment: str, roster: Roster, files: Sequence[File]
+) -> tuple[dict[str, list[tuple[File, Claim]]], dict[str, list[str]]]:
+    """The files by the id of their owner, and the names of those that are left, by the reason."""
+    known = participants(course)
+    recorded = dict(known.get(assignment, {}))
+    mine: dict[str, list[tuple[File, Claim]]] = {}
     left: dict[str, list[str]] = {}
     for file in files:
-        if file.readings and file.readings[0].who not in known:
-            left.setdefault(file.readings[0].who.name, []).append(file.readings[0].file)
-    for who, names in left.items():
-        yield Taken(who, "", f"not taken; named after another assignment: {few(names)}")
-
-
-def _made(file: File, at: datetime | None, exact: bool) -> File:
-    """The file, dated by the time of its source if that is known, as an ``exact`` time or not."""
-    return file if at is None else replace(file, when=at, exact=exact)
-
-
-def _collect(
-    course: Course, assignment: str, source: Path, files: Sequence[File]
-) -> Iterator[Taken]:
-    if not files:
-        kind = "the inbound folder of nbgrader's exchange" if source.is_dir() else "a zip"
-        raise LabkitError(
-            f"nothing in {source} was handed in for {assignment}, read as {kind}; files that come "
-            "from no platform need --named, such as --named 'paths-{student}/*.ipynb'"
-        )
-    roster = read_roster(course)
-    for left in move_to_owners(course, roster):
-        yield Taken("", "", left.why, fine=False)
-    known = all_lms_users(course)
-    handed_in: list[_HandedIn] = []
-    for file in files:
-        named = find_owner(file, roster)
-        if isinstance(named, str):
-            yield Taken("", file.label, named, fine=False)
+        found = file.refused or _owner(roster, file.claims)
+        if isinstance(found, str):
+            left.setdefault(found, []).append(file.label)
         else:
-            handed_in.append((file, named))
-    people = {named.who.key: named.who for _, named in handed_in}
-    found = assign_folders(people.values(), assignment, known, roster)
-    by_folder = {place.folder: people[key] for key, place in found.items()}
-    if not roster.students:
-        yield Taken("", "", _NO_LIST)
-    for place in found.values():
-        if place.doubt:
-            yield Taken(place.folder, "", place.doubt, fine=False)
-    record_users(course, assignment, by_folder)
-    by_student: dict[str, list[_HandedIn]] = {}
-    for file, named in handed_in:
-        by_student.setdefault(found[named.who.key].folder, []).append((file, named))
-    for student, mine in sorted(by_student.items()):
-        yield from _store(course, assignment, student, mine)
-    if late := [x for x in sorted(by_student) if perhaps_late(course, x, assignment)]:
-        yield Taken("", "", _PERHAPS_LATE.format(who=f"{len(late)} ({few(late)})", of=assignment))
+            mine.setdefault(found[0].id, []).append((file, found[1]))
+    for student, theirs in [*mine.items()]:
+        called = {x.moodle.number: x.moodle for _, x in theirs if x.moodle}
+        before = recorded.get(student)
+        numbers = {*called, before.number} if called and before else {*called}
+        of_others = {one.number for name, one in recorded.items() if name != student}
+        if len(numbers) > 1 or numbers & of_others:
+            why = (
+                f"Moodle's numbers {', '.join(sorted(numbers))} are of two people, or {student} is"
+            )
+            left.setdefault(why, []).extend(file.label for file, _ in mine.pop(student))
+        elif called:
+            recorded[student] = next(iter(called.values()))
+    if recorded:
+        data = msgspec.json.encode(known | {assignment: recorded}, order="sorted")
+        write(course.root / PARTICIPANTS, msgspec.json.format(data, indent=1) + b"\n")
+    return mine, left
 
 
-def _store(
-    course: Course, assignment: str, student: str, mine: Sequence[_HandedIn]
-) -> Iterator[Taken]:
-    """Store one student's notebooks, and copy the one that counts to ``submitted/``."""
-    notebooks = [(file, named) for file, named in mine if not _no_notebook(named)]
-    for _, named in mine:
-        if says := _no_notebook(named):
-            yield Taken(student, named.file, f"not taken; {says}", fine=bool(notebooks))
-    done = for_student(student, lambda: list(_store_each(course, assignment, student, notebooks)))
-    if isinstance(done, Failure):
-        done = [Taken(student, "", f"not taken; {done.why}", fine=False)]
-    yield from done
+def _owner(roster: Roster, claims: Sequence[Claim]) -> tuple[Student, Claim] | str:
+    """The student who handed in a file, and the right reading of its name; or why it is left."""
+    found = [(one, x) for x in claims if (one := roster.known_as(x.column, x.value))]
+    if len(found) > 1:  # two readings of Canvas's, of which one has the student's name too
+        found = [(one, x) for one, x in found if _letters(x.name) == _letters(_canvas_name(one))]
+    if len(found) == 1:
+        return found[0]
+    if not claims:
+        return "their names do not say who handed them in"
+    return f"no one student of the roster has this {claims[0].column}; import a list that has it"
 
 
-def _no_notebook(named: Named) -> str:
-    file = named.file.lower()
-    if named.kind != "file":
-        return f"it came as Moodle's {named.kind} and not as a file"
-    if file.endswith(".zip"):
-        return "it is a zip; ask for the notebook itself"
-    return "" if file.endswith(".ipynb") else "it is not a notebook"
+def _canvas_name(one: Student) -> str:
+    return f"{one.last_name}{one.first_name}"
 
 
-def _store_each(
-    course: Course, assignment: str, student: str, notebooks: Sequence[_HandedIn]
-) -> Iterator[Taken]:
-    now = str(datetime.now(UTC))
-    there = store_submitted(course, student, assignment, now)
-    lies = in_place(course, student, assignment, there)
-    before = counted_attempt(course, student, assignment)
-    shown = max((file.when for file, _ in notebooks), default=datetime.now(UTC))
-    done: list[tuple[HandIn, str, bool]] = []
-    for file, named in notebooks:
+def _letters(name: str) -> str:
+    return "".join(c for c in name.casefold() if c.isalnum())
+
+
+def participants(course: Course) -> dict[str, dict[str, Participant]]:
+    """Moodle's participants whose work was collected, by assignment and student.
+
+    Raises:
+        LabkitError: The record is damaged.
+    """
+    path = course.root / PARTICIPANTS
+    try:
+        return msgspec.json.decode(path.read_bytes(), type=dict[str, dict[str, Participant]])
+    except FileNotFoundError:
+        return {}
+    except msgspec.DecodeError:
+        says = f"{path} is damaged; move it away, and collect the downloads again"
+        raise LabkitError(says) from None
+
+
+def _dated(file: File, claim: Claim, at: datetime | None) -> File:
+    """The file with the time of its hand-in, if the platform or the instructor says it."""
+    if file.exact or not (at or claim.late):
+        return file
+    return replace(file, when=at or file.when, exact=True)
+
+
+def _keep(
+    course: Course, assignment: str, student: str, theirs: Sequence[tuple[File, Claim]]
+) -> list[Taken]:
+    """Keep one student's files, and let the newest count."""
+    kept, said = course.root / FOLDER / student / assignment, list[Taken]()
+    folder = course.submitted / student / assignment
+    if any(x.is_symlink() for x in (folder.parent, folder, kept.parent, kept)):
+        raise LabkitError(f"{folder} or {kept} is a link; put a folder there")
+    read: list[tuple[File, Claim, bytes]] = []
+    for file, claim in theirs:
         try:
-            data, secret = file.read(), file.secret()
+            read.append((file, claim, _notebook(file, claim)))
         except LabkitError as error:
-            yield Taken(student, named.file, f"not taken; {error}", fine=False)
-            continue
-        when = file.when if file.exact else shown  # a download shows them all at once
-        hand_in = HandIn(when, *named.who.key, named.file, file.exact, named.late, now)
-        new = store(course, student, assignment, data, hand_in, secret, there)
-        done.append((hand_in, digest(data), new))
-    after = install(course, student, assignment)
-    beside = {x.when: x.file for x in after.attempt.hand_ins} if after else {}
-    for hand_in, sha256, new in done:
-        if after is None or after.attempt.sha256 != sha256:
-            which = beside.get(hand_in.when, "one")
-            if after and which in {hand_in.file, "one"}:
-                which = f"another {which}, of {after.came.when:%Y-%m-%d %H:%M %Z},"
-            says = f"{'kept' if new else 'there already'}, but {which} counts"
-        elif before is not None and before.attempt.sha256 == sha256:
-            says = "there already"
+            said.append(Taken(student, claim.file, f"not taken; {error}", fine=False))
+    if not read:
+        return said
+
+    *earlier, (file, claim, data) = sorted(read, key=partial(_rank, assignment))
+    known = {path.stem[-16:] for path in kept.glob("*.ipynb")}
+    for one, other, old in earlier:
+        _store(kept, one.when, old)
+        said.append(Taken(student, other.file, f"kept, but {claim.file} counts"))
+    path = folder / f"{assignment}.ipynb"
+    there = read_file(path) if path.exists() else b""
+    before = (read_time(read_stamp(folder)) or _written(path)) if there else file.when
+    _store(kept, file.when, data)
+    if there == data:
+        says = "there already"
+        if file.when >= before and (secret := file.secret()):
+            write(folder / SECRET, secret)  # of the hand-in that a student asks about
+    elif there and digest(there)[:16] not in known and digest(data)[:16] in known:
+        says = f"kept, but a person put another {path.name} into submitted/, which counts"
+    elif file.when < before:
+        says = f"kept, but the one of {before:%Y-%m-%d %H:%M} UTC counts"
+    else:
+        if there:
+            _store(kept, before, there)
+        _install(folder, path, file, data)
+        says = "taken" + ", in place of an earlier one, which is kept" * bool(there)
+    return [*said, Taken(student, claim.file, says + ", late" * claim.late)]
+
+
+def _rank(assignment: str, one: tuple[File, Claim, bytes]) -> tuple[datetime, bool, int]:
+    """The sort key of one student's files; the highest counts."""
+    file, claim, _ = one
+    match = _REPEATED.search(claim.file)
+    plain = _REPEATED.sub(".ipynb", claim.file) == f"{assignment}.ipynb"
+    return file.when, plain, int(match[1]) if match else 0
+
+
+def _notebook(file: File, claim: Claim) -> bytes:
+    if not claim.file.lower().endswith(".ipynb"):
+        raise LabkitError("it is not a notebook; ask for the notebook itself")
+    return file.read()
+
+
+def _written(path: Path) -> datetime:
+    return datetime.fromtimestamp(int(path.stat().st_mtime), UTC)
+
+
+def _store(kept: Path, when: datetime, data: bytes) -> None:
+    """Keep a notebook in ``attempts/``, if it is not there already."""
+    name = digest(data)[:16]
+    if not any(kept.glob(f"*-{name}.ipynb")):
+        write(kept / f"{when.astimezone(UTC):%Y-%m-%dT%H%M%SZ}-{name}.ipynb", data)
+
+
+def _install(folder: Path, path: Path, file: File, data: bytes) -> None:
+    """Put a notebook where nbgrader reads it, with its time and its secret."""
+    beside = {TIMESTAMP: str(file.when).encode() if file.exact else None, SECRET: file.secret()}
+    write(path, data)
+    os.utime(path, (file.when.timestamp(), file.when.timestamp()))
+    for name, content in beside.items():
+        if content is None:
+            (folder / name).unlink(missing_ok=True)
         else:
-            older = before is None or before.first.when < after.first.when
-            which = "an earlier one" if older else str(before).replace("the file", "the one")
-            says = "taken" + (f", in place of {which}, which is kept" if before else "")
-            says += "" if hand_in.file == f"{assignment}.ipynb" else f", as {assignment}.ipynb"
-        yield Taken(student, hand_in.file, says + (", late" if hand_in.late else ""))
-    new_one = before is None or after is None or before.attempt.sha256 != after.attempt.sha256
-    if not new_one and (says := instead(lies, after)):
-        yield Taken(student, "", says)
+            write(folder / name, content)
+
+
+def readings(entry: str) -> tuple[Claim, ...]:
+    """The possible owners of an entry of Moodle's or Canvas's zip; none if its name has none."""
+    if match := _MOODLE.fullmatch(entry):
+        file = clean_line(match["file"]) if match["kind"] == "file" else match["kind"]
+        who = Participant(match["number"], clean_line(match["name"], 200))
+        return (Claim("name", who.name, file, moodle=who),)
+    match = _CANVAS.fullmatch(entry)
+    if match is None or "assignsubmission" in match["name"]:
+        return ()
+    name, file, late = match["name"], clean_line(match["file"]), bool(match["late"])
+    first = Claim("lms_user_id", match["user"], file, late, name=name)
+    again = None if late else _NUMBER_FIRST.fullmatch(match["file"])
+    if again is None:
+        return (first,)
+    name = f"{name}_{match['user']}"
+    return first, replace(first, value=match["attachment"], file=again[1], name=name)
+
+
+def reader(pattern: str) -> Callable[[str], tuple[Claim, ...]]:
+    """Reads the owner of a file from its path, by a pattern such as ``paths-{github}/*.ipynb``.
+
+    Raises:
+        LabkitError: The pattern does not name exactly one column.
+    """
+    parts = re.split(r"(\{\w+\}|\*\*|\*)", pattern)
+    columns = [part[1:-1] for part in parts if part.startswith("{")]
+    if len(columns) != 1 or columns[0] not in {*COLUMNS, "name"}:
+        raise LabkitError(f"{pattern!r} needs one column of the roster, such as {{login}}, once")
+    form = ("(?P<who>[^/]+?)" if x[:1] == "{" else _PARTS.get(x, re.escape(x)) for x in parts)
+    whole = re.compile("".join(form), re.IGNORECASE)
+
+    def read(name: str) -> tuple[Claim, ...]:
+        match = whole.fullmatch(name)
+        file = clean_line(Path(name).name)
+        return (Claim(columns[0], clean_line(match["who"], 200), file),) if match else ()
+
+    return read
+
+
+def open_zip(path: Path) -> zipfile.ZipFile:
+    """Open a zip.
+
+    Raises:
+        LabkitError: It is damaged, or no zip.
+    """
+    try:
+        return zipfile.ZipFile(path)
+    except _DAMAGED as error:
+        raise LabkitError(f"{path} is no zip, or damaged: {clean_line(str(error))}") from None
+
+
+def in_zip(archive: zipfile.ZipFile, source: Path, named: str | None) -> Iterator[File]:
+    """The files of a zip, with the times at which the download shows them."""
+    read = reader(named) if named else readings
+    for entry in archive.infolist():
+        name = _name(entry)
+        if not entry.is_dir() and not _OF_A_MAC.search(name[-LONGEST:]):
+            refused = _refused(entry, name)
+            who = () if refused else read(name)
+            when = _when(entry, _written(source))
+            label = clean_line(name[-LONGEST:])[-120:]
+            yield File(label, who, when, partial(_read, archive, entry), refused=refused)
+
+
+def _name(entry: zipfile.ZipInfo) -> str:
+    """The entry's name; most programs write UTF-8 without saying so."""
+    if entry.flag_bits & 0x800:
+        return entry.orig_filename
+    try:
+        return entry.orig_filename.encode("cp437", "replace").decode()
+    except UnicodeDecodeError:
+        return entry.orig_filename
+
+
+def _refused(entry: zipfile.ZipInfo, name: str) -> str:
+    """Why an entry is refused, whoever owns it; "" if it is not."""
+    if stat.S_ISLNK(entry.external_attr >> 16) or entry.flag_bits & 1:
+        return "they are links, or locked with a password"
+    if "\\" in name or "\0" in name or {"", ".", ".."} & set(name.split("/")):
+        return "their names lead out of the download"
+    return "their names are too long" if len(name) > LONGEST else ""
+
+
+def _when(entry: zipfile.ZipInfo, made: datetime) -> datetime:
+    """An entry's time, which zips store as local time without a zone."""
+    try:
+        when = datetime(*entry.date_time)
+    except ValueError:
+        return made
+    return made if when == datetime(1980, 1, 1) else when.astimezone(UTC)
+
+
+def _read(archive: zipfile.ZipFile, entry: zipfile.ZipInfo) -> bytes:
+    """Unpack an entry in memory up to the size limit, whatever size it states."""
+    check_size(entry.file_size, NOTEBOOK)
+    try:
+        with archive.open(entry) as file:
+            data = file.read(NOTEBOOK * 2**20 + 1)
+    except _DAMAGED as error:
+        raise LabkitError(f"damaged: {clean_line(str(error))}") from None
+    check_size(len(data), NOTEBOOK)
+    return data
+
+
+def in_folder(folder: Path, named: str) -> Iterator[File]:
+    """The files in a folder and in those below it that fit a pattern, or are notebooks."""
+    read = reader(named)
+    for top, folders, names in os.walk(folder):
+        folders[:] = sorted(x for x in folders if not x.startswith("."))
+        for name in sorted(x for x in names if not x.startswith(".")):
+            path = Path(top, name)
+            label = str(path.relative_to(folder))
+            who = read(label)
+            if who or name.lower().endswith(".ipynb"):
+                when = datetime.fromtimestamp(int(path.lstat().st_mtime), UTC)
+                yield File(clean_line(label)[-120:], who, when, partial(read_file, path))

@@ -1,26 +1,103 @@
-"""The roster: the students of the class, and how platforms identify them.
+"""The roster: the students of the class, and by what each platform knows them.
 
 It is kept in ``course_private/roster.csv``, which git ignores, with the columns of nbgrader's own
 list of students and more; a person can read and edit it.  It is archived with the term.
+
+A list is a CSV file: Moodle's participants (select all, *Download table data as*), Canvas's grades
+(*Export*), or any table with a row for each student.
 """
 
 from __future__ import annotations
 
 import csv
 import io
+import re
 import unicodedata
-from dataclasses import asdict, dataclass, fields
-from functools import cache, cached_property
+from collections import Counter
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import asdict, dataclass, fields, replace
+from functools import cache
+from itertools import chain, count
+from pathlib import Path
 
 from ...course.authoring.layout import Course
 from ...errors import LabkitError
 from ..atomic import write
-from ..clean import from_no_formula, no_formula, safe_name
+from ..clean import clean_line, few, from_no_formula, how_many, no_formula, safe_name
 from ..nbgrader.gradebook import open_gradebook
-from .class_list import Student, read_table, refuse_long_rows
-from .platforms import LmsUser
+from ..rules import FILE as RULES
+from ..rules import read_rules
+from ..seeds import key_of
+from ..submission import check_size
+from .arms import give_arms
 
 FILE = "course_private/roster.csv"
+LARGEST = 20
+"""The largest list that is read, in [MiB]."""
+HEADS = {
+    "login": "login, username, user name, sis login id, anmeldename, benutzername",
+    "id_number": "id number, sis user id, student number, student id, matrikelnummer, id-nummer, "
+    "numéro d’identification, número de id",
+    "lms_user_id": "lms user id, canvas id",
+    "github": "github, github username",
+    "team": "team",
+    "email": "email, e-mail, email address, mail, e-mail-adresse, adresse de courriel, "
+    "dirección de correo",
+    "first_name": "first name, given name, vorname, prénom, nombre",
+    "last_name": "last name, surname, family name, nachname, nom, apellido(s)",
+    "name": "name, full name, student, vollständiger name, nom complet, nombre completo",
+    "role": "role, roles, rolle, rollen, rôles, roles",
+}
+"""The headings of each column; what "id" means depends on the others, see `_columns`."""
+_COLUMN = {head: column for column, heads in HEADS.items() for head in heads.split(", ")}
+_STUDENT = re.compile("student|teilnehme|étudiant|estudiante", re.IGNORECASE)
+"""What the role of a student says; who has another role is left out."""
+_NO_TEAM = {"no groups", "keine gruppen"}
+"""What Moodle writes for a student who is in no group."""
+KEYS = ("login", "email", "lms_user_id", "id_number", "github")
+"""What identifies a student."""
+
+
+@dataclass(frozen=True)
+class Student:
+    """One student; all but ``id`` may be empty.
+
+    Attributes:
+        id: The name of the student's folder, which is also the student's id in nbgrader.
+        first_name: First name.
+        last_name: Last name.
+        email: E-mail address.
+        lms_user_id: Canvas's number for the user.
+        login: Login name.
+        id_number: Student number at the university.
+        github: User name on GitHub.
+        team: Name of the team; the students of a team share an arm.
+    """
+
+    id: str
+    first_name: str = ""
+    last_name: str = ""
+    email: str = ""
+    lms_user_id: str = ""
+    login: str = ""
+    id_number: str = ""
+    github: str = ""
+    team: str = ""
+
+    @property
+    def name(self) -> str:
+        """First and last name."""
+        return f"{self.first_name} {self.last_name}".strip()
+
+    def __str__(self) -> str:
+        return f"{self.name} ({self.id})" if self.name else self.id
+
+    def agrees(self, other: Student) -> list[bool]:
+        """For each key that both students have, whether the two are alike."""
+        pairs = ((getattr(self, key), getattr(other, key)) for key in KEYS)
+        return [a.casefold() == b.casefold() for a, b in pairs if a and b]
+
+
 COLUMNS = tuple(field.name for field in fields(Student))
 
 
@@ -31,64 +108,25 @@ class Roster:
     students: tuple[Student, ...] = ()
 
     def __contains__(self, id: str) -> bool:
-        return id in self._by_id
+        return self.get(id) is not None
 
     def get(self, id: str) -> Student | None:
         """The student with this id, which is the name of their folder."""
-        return self._by_id.get(id)
+        return next((one for one in self.students if one.id == id), None)
 
-    def whose(self, one: LmsUser) -> tuple[Student, ...]:
-        """The students whom a platform may mean: none, one, or all with the same name."""
-        key = same_name(one.name) if one.system == "moodle" else one.number.casefold()
-        found = self._by_key.get((one.system, key), ())
-        if one.system == "files" and not found:
-            return self._by_key.get(("files", " ".join(same_name(one.name))), ())
-        return found
-
-    def identifies(self, one: LmsUser) -> bool:
-        """Whether a file is named by something that identifies one student, such as a login.
-
-        Names, and anything that students can choose for themselves, do not count.
-        """
-        students = self.whose(one) if one.system == "files" else ()
-        return len(students) == 1 and one.number.casefold() in _identifiers(students[0])
-
-    def namesakes(self) -> list[tuple[Student, ...]]:
-        """Groups of students who have the same name in the form that platforms write."""
-        groups = [group for (system, _), group in self._by_key.items() if system == "moodle"]
-        return [group for group in groups if len(group) > 1]
-
-    def alike(self, name: str) -> list[Student]:
-        """Students whose names share two words with ``name``, as after a change of surname."""
-        words = _words(name)
-        return [student for student in self.students if len(words & _words(student.name)) > 1]
-
-    @cached_property
-    def _by_id(self) -> dict[str, Student]:
-        return {student.id: student for student in self.students}
-
-    @cached_property
-    def _by_key(self) -> dict[tuple[str, object], tuple[Student, ...]]:
-        """The students by each key that a platform may use for them."""
-        found: dict[tuple[str, object], tuple[Student, ...]] = {}
-        for student in self.students:
-            login, email = student.login.casefold(), student.email.casefold()
-            keys = {("moodle", same_name(student.name)), ("canvas", student.lms_user_id)}
-            chosen = (email.partition("@")[0], student.github.casefold())
-            names = (*_identifiers(student), *chosen, " ".join(same_name(student.name)))
-            keys |= {("files", name) for name in names}
-            for key in keys | {("exchange", login), ("exchange", email)}:
-                if key[1]:
-                    found[key] = (*found.get(key, ()), student)
-        return found
+    def known_as(self, column: str, value: str) -> Student | None:
+        """The one student with this value in a column, or with this name; None if not one has."""
+        key = _plain(column, value)
+        found = [x for x in self.students if key and _plain(column, getattr(x, column)) == key]
+        return found[0] if len(found) == 1 else None
 
 
-def _identifiers(student: Student) -> tuple[str, ...]:
-    """The identifiers that a school gives to one student alone."""
-    known = (student.id, student.login, student.id_number, student.lms_user_id, student.email)
-    return tuple(x.casefold() for x in known)
+@cache
+def _plain(column: str, value: str) -> object:
+    return same_name(value) if column == "name" else value.casefold()
 
 
+@cache
 def same_name(name: str) -> tuple[str, ...]:
     """A key that is the same for all spellings of one person's name.
 
@@ -100,13 +138,147 @@ def same_name(name: str) -> tuple[str, ...]:
     return tuple(sorted(filter(None, words)))
 
 
-@cache
-def _words(name: str) -> frozenset[str]:
-    return frozenset(same_name(name.replace("-", " ")))
+def import_list(course: Course, file: Path, teams: str = "") -> list[str]:
+    """Add the students of a list to the roster; who is there keeps their folder.
+
+    Args:
+        course: The course.
+        file: A CSV file.
+        teams: The heading of the column with the teams; "" leaves teams as they are.
+
+    Returns:
+        Sentences on what was done.
+
+    Raises:
+        LabkitError: The file is no list, or a row could be several students.
+    """
+    rows, others = read_list(file, teams)
+    before = read_roster(course)
+    roster, listed = _merged(before, rows)
+    save_roster(course, roster)
+    tell_gradebook(course, roster)
+    give_arms(course, roster, key_of(course, "arms"))
+    new = [str(one) for one in roster.students if one.id not in before]
+    absent = [str(one) for one in before.students if one.id not in listed]
+    says = [f"{FILE}: {how_many(len(roster.students), 'student')}, {len(new)} of them new"]
+    says += [f"new: {few(new)}"] if new and before.students else []
+    says += [f"left out, as they are no students: {', '.join(others)}"] if others else []
+    says += [f"not in this list, and kept in the roster: {', '.join(absent)}"] if absent else []
+    return says
+
+
+def read_list(file: Path, teams: str = "") -> tuple[list[tuple[int, Student]], list[str]]:
+    """The students of a list, each with the number of its line, and who in it is no student.
+
+    Raises:
+        LabkitError: The file is not a table, or a column is missing.
+    """
+    heads, table = _read_table(file)
+    columns = _columns(heads)
+    if teams:
+        if teams.casefold() not in map(str.casefold, heads):
+            raise LabkitError(f"{file} has no column {teams!r}; it has {', '.join(heads)[:300]}")
+        columns["team"] = [*map(str.casefold, heads)].index(teams.casefold())
+    if not columns.keys() & {"login", "name", "last_name"}:
+        raise LabkitError(
+            f"{file} does not say who its students are; call a column 'name' or 'login', not "
+            f"{', '.join(heads)[:300]}"
+        )
+    rows, others = list[tuple[int, Student]](), list[str]()
+    for line, row in table:
+        cells = {k: row[at] if at < len(row) else "" for k, at in columns.items()}
+        role, name = cells.pop("role", ""), cells.pop("name", "")
+        if name and not (cells.get("first_name") or cells.get("last_name")):
+            last, comma, first = name.rpartition(",")  # "Lovelace, Ada", or "Ada Lovelace"
+            first, last = (first, last) if comma else (*name.rpartition(" ")[::2],)
+            cells |= {"first_name": first.strip(), "last_name": last.strip()}
+        if cells.get("team", "").casefold() in _NO_TEAM:
+            cells["team"] = ""
+        one = Student("", **cells)
+        test = one.name == "Test Student" and bool(one.lms_user_id)
+        if test or (role and not _STUDENT.search(role)):
+            others.append(f"{one.name or one.login} ({role or 'of Canvas'})")
+        elif (one.name or one.login) and name.casefold() != "points possible":
+            rows.append((line, one))
+    if not rows:
+        raise LabkitError(f"{file} names no student; choose all students, and download it again")
+    return rows, others
+
+
+def _columns(heads: Sequence[str]) -> dict[str, int]:
+    """The index of each known column."""
+    plain = [re.sub(r"[\s_]+", " ", head.casefold()).strip(' *"') for head in heads]
+    found = {_COLUMN[head]: at for at, head in reversed([*enumerate(plain)]) if head in _COLUMN}
+    if "id" in plain:
+        canvas = "student" in plain and bool({"section", "sis login id"} & set(plain))
+        other = "id_number" if "login" in found else "login"
+        found.setdefault("lms_user_id" if canvas else other, plain.index("id"))
+    return found
+
+
+def _read_table(path: Path) -> tuple[list[str], list[tuple[int, list[str]]]]:
+    """The first row of a CSV file, cleaned, and the others that are not empty, with their lines.
+
+    Raises:
+        LabkitError: The file is not a table in UTF-8 or UTF-16.
+    """
+    if not path.is_file():
+        raise LabkitError(f"there is no file {path}")
+    check_size(path.stat().st_size, LARGEST)
+    data = path.read_bytes()
+    try:
+        text = data.decode("utf-16" if data[:2] in (b"\xff\xfe", b"\xfe\xff") else "utf-8-sig")
+    except UnicodeDecodeError:
+        raise LabkitError(f"{path} is not in UTF-8; save it as CSV in UTF-8") from None
+    first = text.partition("\n")[0][:10_000]
+    mark = max(",;\t", key=lambda x: len(_columns(next(csv.reader([first], delimiter=x), []))))
+    lines = csv.reader(io.StringIO(text, newline=""), delimiter=mark, strict=True)
+    try:
+        rows = [(lines.line_num, [clean_line(cell, 200) for cell in row]) for row in lines]
+    except csv.Error as error:
+        raise LabkitError(f"{path}, line {lines.line_num}: {error}; correct the table") from None
+    (_, heads), *others = rows or [(0, [])]
+    if long := next((line for line, row in others if any(row[len(heads) :])), None):
+        raise LabkitError(f"{path}, line {long} has too many cells; put what has a comma in quotes")
+    return heads, [(line, row) for line, row in others if any(row)]
+
+
+def _merged(before: Roster, rows: Sequence[tuple[int, Student]]) -> tuple[Roster, set[str]]:
+    """The roster with the students of a list, and the ids of these."""
+    students = {one.id: one for one in before.students}
+    names, listed = Counter(same_name(row.name) for _, row in rows), set[str]()
+    for line, row in rows:
+        found = [x for x in students.values() if any(x.agrees(row))]
+        alike = [x for x in students.values() if same_name(x.name) == same_name(row.name) != ()]
+        alike = [x for x in alike if not found and not x.agrees(row)]
+        if len(found) + len(alike) > 1 or (alike and names[same_name(row.name)] > 1):
+            people = " or ".join(map(str, (*found, *alike)))
+            raise LabkitError(f"line {line} of the list could be {people}; correct the list")
+        one = next(iter((*found, *alike)), None) or Student(_folder(row, names, students))
+        said = {k: v for k, v in asdict(row).items() if v}
+        if one.first_name and one.last_name and not said.get("first_name"):
+            said.pop("last_name", None)
+        new = replace(one, **said)
+        if one.id in listed and new != one:
+            raise LabkitError(f"line {line} of the list is {one} again, and differs; correct it")
+        students[one.id] = new
+        listed.add(one.id)
+    return Roster(tuple(students.values())), listed
+
+
+def _folder(row: Student, names: Counter[tuple[str, ...]], students: Mapping[str, Student]) -> str:
+    """The name of a new student's folder: the login or, without one, the name."""
+    there = {id.casefold() for id in students}
+    plain = safe_name(row.login or row.name)
+    others = filter(None, (row.email.partition("@")[0], row.id_number, row.lms_user_id))
+    alone = row.login or names[same_name(row.name)] == 1
+    found: Iterator[str] = chain([plain] * bool(alone), (safe_name(f"{plain}-{x}") for x in others))
+    found = chain(found, (f"{plain}-{k}" for k in count(2)))
+    return next(x for x in found if x.casefold() not in there)
 
 
 def read_roster(course: Course) -> Roster:
-    """The course's roster; an empty one if none was imported.
+    """The course's roster; an empty one if no list was imported.
 
     Raises:
         LabkitError: The file is damaged.
@@ -114,22 +286,23 @@ def read_roster(course: Course) -> Roster:
     path = course.root / FILE
     if not path.exists():
         return Roster()
-    try:
-        heads, rows = read_table(path)
-        refuse_long_rows(path, heads, rows)
-    except LabkitError as error:
-        raise _damaged(path, str(error)) from None
-    if "id" not in heads:
-        raise _damaged(path, "it has no column 'id'")
+    heads, rows = _read_table(path)
     found: dict[str, Student] = {}
     for line, row in rows:
         cells = dict(zip(heads, map(from_no_formula, row), strict=False))
-        student = Student(**{column: cells.get(column, "") for column in COLUMNS})
-        if student.id != safe_name(student.id) or student.id.casefold() in found:
-            why = "is there twice" if student.id.casefold() in found else "cannot name a folder"
-            raise _damaged(path, f"line {line}: the id {student.id!r} {why}")
-        found[student.id.casefold()] = student
+        one = Student(**{column: cells.get(column, "") for column in COLUMNS})
+        if one.id != safe_name(one.id) or one.id.casefold() in found:
+            raise LabkitError(f"{path}, line {line}: the id {one.id!r} is twice there or no folder")
+        found[one.id.casefold()] = one
     return Roster(tuple(found.values()))
+
+
+def idle_extensions(course: Course) -> Iterator[str]:
+    """A sentence for each extension whose student is neither in the roster nor has handed in."""
+    known = {path.name for path in course.submitted.glob("*")}
+    known |= {one.id for one in read_roster(course).students}
+    for name in sorted({x.student for x in read_rules(course).extensions} - known):
+        yield f"{RULES} has an extension for {name[:60]!a}, whom nobody knows"
 
 
 def save_roster(course: Course, roster: Roster) -> None:
@@ -145,20 +318,8 @@ def save_roster(course: Course, roster: Roster) -> None:
 def tell_gradebook(course: Course, roster: Roster) -> None:
     """Write the students into nbgrader's gradebook, where formgrader reads their names."""
     with open_gradebook(course) as book:
-        there = {student.id: student for student in book.students}
-        for student in roster.students:
-            about = {
-                "first_name": student.first_name or None,
-                "last_name": student.last_name or None,
-                "email": student.email or None,
-                "lms_user_id": student.lms_user_id or student.id_number or None,
-            }
-            if any(getattr(there.get(student.id), k, "") != v for k, v in about.items()):
-                book.update_or_create_student(student.id, **about)
-
-
-def _damaged(path: object, why: str) -> LabkitError:
-    return LabkitError(
-        f"{path} is damaged: {why}; correct it, or move it away and type: "
-        "labkit students import FILE.csv"
-    )
+        for one in roster.students:
+            about = (one.first_name, one.last_name, one.email, one.lms_user_id or one.id_number)
+            names = ("first_name", "last_name", "email", "lms_user_id")
+            known = {name: value or None for name, value in zip(names, about, strict=True)}
+            book.update_or_create_student(one.id, **known)

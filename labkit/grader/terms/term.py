@@ -21,14 +21,14 @@ from ..clean import how_many
 from ..rules import FILE as RULES
 from ..rules import read_rules
 from ..seeds import seed_of
-from ..students import attempts, identity, roster
+from ..students import collect, roster
 from ..submission import is_name
 from .release import release
 
 PERSONAL_FILES = (
     *("submitted", "autograded", "feedback", "results", "gradebook.db", "build/course/bundle"),
     *("build/course/defence", "build/course/explain"),
-    *(attempts.FOLDER, roster.FILE, HANDLES, identity.FILE, pseudonyms.FILE),
+    *(collect.FOLDER, roster.FILE, HANDLES, collect.PARTICIPANTS, pseudonyms.FILE),
 )
 """The files that belong to one term, with students' names or keys to them, and hidden cases.
 

@@ -1,0 +1,130 @@
+"""Nobody is taken for somebody else, whatever they call themselves or their files.
+
+Ada Lovelace is participant 42 (Canvas: user 42; exchange: `ada`), and her work has been collected
+before.  Eve is participant 77 and hands in a file in each of these attacks.
+"""
+
+from __future__ import annotations
+
+import os
+import re
+
+import pytest
+from downloaded import NAME, bare_course, counting, kept, zipped
+
+from labkit.__main__ import main
+from labkit.grader.students.collect import participants
+
+M = "_assignsubmission_file_"
+FIRST = {
+    "moodle": f"Ada Lovelace_42{M}{NAME}.ipynb",
+    "canvas": f"lovelaceada_42_900_{NAME}.ipynb",
+}
+_GREEDY = re.compile(r"^.*?(?P<who>[^/+]*_42_|Ada Lovelace|lovelaceada|ada\b|42).*$", re.S | re.I)
+_UNSAFE = re.compile("[\x00-\x08\x0b-\x1f\x7f-\x9f\u2028-\u202e]")
+
+
+def believed(name):
+    """Whether a reader that trusts a name, or writes to its path, would be deceived."""
+    return _GREEDY.match(name) or ".." in name or not name.isprintable() or len(name) > 255
+
+
+def _write(folder, course):
+    (folder / f"{NAME}.ipynb").write_text("eve")
+
+
+def _link_folder(folder, course):
+    folder.rmdir()
+    folder.symlink_to(course / "submitted" / "ada" / "01_paths")
+
+
+def _link_file(folder, course):
+    (folder / "01_paths.ipynb").symlink_to(
+        course / "submitted" / "ada" / "01_paths" / "01_paths.ipynb"
+    )
+
+
+def _hard_link(folder, course):
+    os.link(course / "build/course/solution/01_paths/01_paths.ipynb", folder / "01_paths.ipynb")
+
+
+def _link_secret(folder, course):
+    (folder / "01_paths.ipynb").write_bytes(b"{}")
+    (folder / "submission_secret.txt").symlink_to(course / "gradebook.db")
+
+
+MOODLES = (
+    f"Eve Mallory_77{M}x_42{M}01_paths(9).ipynb",
+    f"Eve Mallory_77{M}_42{M}01_paths.ipynb",
+    f"Eve Mallory_77{M}Ada Lovelace_42{M}01_paths.ipynb",
+    f"Eve Mallory_77{M}x_42{M}y_42{M}01_paths.ipynb",
+    f"Eve Mallory_77{M}/Ada Lovelace_42{M}01_paths.ipynb",
+    f"Eve Mallory_77{M}/Ada Lovelace_42{M}/01_paths.ipynb",
+    f"Eve Mallory_77{M}..\\Ada Lovelace_42{M}01_paths.ipynb",
+    f"Eve Mallory_77{M}/../../Ada-Lovelace/01_paths/01_paths.ipynb",
+    f"Ada Lovelace_77{M}01_paths.ipynb",
+    f"Ada\u00a0 Lovelace_77{M}01_paths.ipynb",
+    f"Ada-Lovelace_77{M}01_paths.ipynb",
+    f"ada lovelace_77{M}01_paths.ipynb",
+    f"Ada Lovelace 42_77{M}01_paths.ipynb",
+    f"Ada Lovelace-42_77{M}01_paths.ipynb",
+    f"Ada-Lovelace-42_77{M}01_paths.ipynb",
+    f"Bob\x1b]0;owned\x07_77{M}\x1b[2J.ipynb",
+    f"Eve_77{M}x.ipynb\nAda-Lovelace: 01_paths.ipynb: taken.ipynb",
+    f"{'E' * 300}_77{M}{'x' * 300}.ipynb",
+    f"..._77{M}01_paths.ipynb",
+)
+CANVASES = (
+    "malloryeve_77_901_lovelaceada_42_900_01_paths.ipynb",
+    "malloryeve_LATE_77_901_42_900_01_paths.ipynb",
+    "lovelaceada_77_901_01_paths.ipynb",
+)
+EXCHANGES = (
+    ("ada+01_paths+2030-01-01 00:00:00 UTC+x", _write),
+    ("ada+01_paths+2030-01-01 00:00:00 UTC", _write),
+    ("Ada+01_paths+2030-01-01 00:00:00 UTC+x", _write),
+    ("ada +01_paths+2030-01-01 00:00:00 UTC+x", _write),
+    ("ada+01_paths+2030-01-01 00:00:00 UTC+y", _link_folder),
+    ("ada+01_paths+2030-01-01 00:00:00 UTC+z", _link_file),
+    ("ada+01_paths+2030-01-01 00:00:00 UTC+h", _hard_link),
+    ("ada+01_paths+2030-01-01 00:00:00 UTC+s", _link_secret),
+)
+IMPOSTORS = [
+    *(("moodle", name, _write) for name in MOODLES),
+    *(("canvas", name, _write) for name in CANVASES),
+    *(("exchange", *each) for each in EXCHANGES),
+]
+"""The platform, the name of the file or folder, and how a file gets into the exchange."""
+
+
+@pytest.mark.parametrize(("system", "name", "put"), IMPOSTORS)
+def test_nobody_is_taken_for_another(tmp_path, capsys, system, name, put):
+    """Ada's work stays hers under her number, and nothing of Eve's is hers, not even kept."""
+    where = tmp_path / "course"
+    course = bare_course(where)
+    assert believed(name), "a reader that believes it is led astray"
+    (course.root / "build/course/solution/01_paths").mkdir(parents=True)
+    (course.root / "build/course/solution/01_paths/01_paths.ipynb").write_text("the solution")
+    (course.root / "gradebook.db").touch()
+    first = zipped(tmp_path / "1.zip", [(FIRST.get(system, FIRST["moodle"]), "ada")])
+    assert main(["collect", NAME, str(first), "--course", str(where)]) == 0
+    assert counting(course) == {"ada": "ada"}
+    if system == "exchange":
+        source = tmp_path / "inbound"
+        (source / name).mkdir(parents=True)
+        put(source / name, course.root)
+    else:
+        entries = [(FIRST[system], "ada"), (name, "eve")]
+        source = zipped(tmp_path / "2.zip", entries, (2030, 1, 1, 12, 0, 0))
+    around = {*tmp_path.iterdir()}
+    capsys.readouterr()
+    code = main(["collect", NAME, str(source), "--course", str(where)])
+    out, err = capsys.readouterr()
+    assert code in (0, 1, 2) and not _UNSAFE.search(out + err)
+    assert counting(course)["ada"] == "ada" and kept(course, "ada") == {"ada"}
+    assert set(counting(course)) <= {"ada", "eve"}
+    numbers = {x: y.number for x, y in participants(course).get(NAME, {}).items()}
+    assert numbers.get("ada", "42") == "42" and numbers.get("eve", "77") == "77"
+    assert {*tmp_path.iterdir()} == around
+    files = [*course.submitted.rglob("*")]
+    assert not [p for p in files if p.is_symlink() or (p.is_file() and p.stat().st_nlink > 1)]

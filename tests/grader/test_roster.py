@@ -1,0 +1,175 @@
+"""The roster: any list of students, and whom it means."""
+
+from __future__ import annotations
+
+import pytest
+from downloaded import bare_course
+from hypothesis import given
+from hypothesis import strategies as st
+
+from labkit.__main__ import main
+from labkit.course.own_arm import Arms
+from labkit.errors import LabkitError
+from labkit.grader.clean import LONGEST, safe_name
+from labkit.grader.nbgrader.gradebook import open_gradebook
+from labkit.grader.students.roster import (
+    FILE,
+    Roster,
+    Student,
+    import_list,
+    read_list,
+    read_roster,
+    same_name,
+    save_roster,
+)
+
+MOODLE = (
+    "First name,Last name,ID number,Email address,Groups,Roles\n"
+    "Ada,Lovelace,4711,ada@x.test,Monday,Student\n"
+    "Grace,Hopper,,grace@x.test,No groups,Student\n"
+    "Alan,Turing,,alan@x.test,Monday,Non-editing teacher\n"
+)
+CANVAS = (
+    "Student,ID,SIS User ID,SIS Login ID,Section\n"
+    "    Points Possible,,,,\n"
+    '"Lovelace, Ada",7,4711,ada,A\n'
+    '"Student, Test",9,,,A\n'
+)
+
+
+@pytest.fixture
+def course(tmp_path):
+    made = bare_course(tmp_path / "course")
+    (made.root / FILE).unlink()
+    return made
+
+
+def imported(course, text, encoding="utf-8", **options):
+    path = course.root / "list.csv"
+    path.write_bytes(text.encode(encoding))
+    return import_list(course, path, **options)
+
+
+@pytest.mark.parametrize("encoding", ["utf-8", "utf-8-sig", "utf-16"])
+@pytest.mark.parametrize("mark", [",", ";", "\t"])
+def test_a_list_of_moodles(course, encoding, mark):
+    """Teachers are left out by their role and named; groups are no teams unless that is said."""
+    says = imported(course, MOODLE.replace(",", mark), encoding)
+    assert any("Alan Turing (Non-editing teacher)" in x for x in says)
+    ada, grace = read_roster(course).students
+    assert ada == Student("Ada-Lovelace", "Ada", "Lovelace", "ada@x.test", id_number="4711")
+    assert (grace.id, grace.team) == ("Grace-Hopper", "")
+    assert Arms.of(course.root).handles == {
+        "Ada-Lovelace": "Ada-Lovelace",
+        "Grace-Hopper": grace.id,
+    }
+    with open_gradebook(course) as book:
+        assert {x.id: x.email for x in book.students} == {ada.id: ada.email, grace.id: grace.email}
+
+
+def test_teams_come_from_the_column_that_is_named(course):
+    """Who is in no group has none; a column that is not there is an error."""
+    imported(course, MOODLE, teams="groups")
+    assert [x.team for x in read_roster(course).students] == ["Monday", ""]
+    with pytest.raises(LabkitError, match="has no column 'Team'"):
+        imported(course, MOODLE, teams="Team")
+
+
+def test_canvas_adds_its_numbers_to_who_is_there(course):
+    """By a number that both lists have; the folder stays, and the test student is nobody."""
+    imported(course, MOODLE)
+    says = imported(course, CANVAS)
+    assert any("Test Student" in x for x in says) and any("Grace Hopper" in x for x in says)
+    ada, grace = read_roster(course).students
+    assert (ada.id, ada.lms_user_id, ada.login, ada.email) == (
+        "Ada-Lovelace", "7", "ada", "ada@x.test"
+    )  # fmt: skip
+    assert grace.id == "Grace-Hopper", "who is not in a list stays"
+
+
+def test_a_plain_table_and_namesakes(course):
+    """The folder is the login or else the name; two of one name get what tells them apart."""
+    imported(course, "name,login\nAda Lovelace,ada\nBob Hope,\n")
+    imported(course, "name,email\nKim Lee,k1@x\nKim Lee,k2@x\nBob Hope,\n")
+    assert [x.id for x in read_roster(course).students] == [
+        *("ada", "Bob-Hope", "Kim-Lee-k1", "Kim-Lee-k2")
+    ]
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        "",
+        "phone\n1\n",
+        "name\n",
+        "name\nAda\nAda\n",  # nothing tells them apart
+        "name,login,email\nAda,ada,a@x\nBob,ada,b@x\n",  # one login for two
+        "name,login,email\nZoe,ada,g@x\n",  # the login of one and the address of another
+        'name,login\n"Ada,ada\n',
+        "name,login\nLovelace, Ada,ada\n",  # a comma without quotation marks
+    ],
+)
+def test_a_list_that_cannot_be_followed_changes_nothing(course, text):
+    """It is an error, and the roster stays as it was."""
+    imported(course, "name,login,email\nAda,ada,a@x\nGrace,grace,g@x\n")
+    before = (course.root / FILE).read_bytes()
+    with pytest.raises(LabkitError):
+        imported(course, text)
+    assert (course.root / FILE).read_bytes() == before
+
+
+def test_a_list_in_another_encoding_is_refused(course):
+    """A name would be wrong in every table."""
+    with pytest.raises(LabkitError, match="not in UTF-8"):
+        imported(course, "name,login\nZoë,zoe\n", "cp1252")
+
+
+def test_the_command(course, capsys):
+    """It says how many there are, and refuses what is no file."""
+    path = course.root / "list.csv"
+    path.write_text(MOODLE)
+    assert main(["roster", str(path), "--course", str(course.root)]) == 0
+    assert "2 students, 2 of them new" in capsys.readouterr().out
+    assert main(["roster", "nowhere.csv", "--course", str(course.root)]) == 2
+
+
+TEXT = st.text(st.characters(exclude_categories=("Cs", "Cc", "Cf", "Zl", "Zp")), max_size=12)
+
+
+@given(st.lists(st.tuples(TEXT, TEXT), max_size=4))
+def test_a_roster_is_read_as_it_was_written(tmp_path_factory, names):
+    """Whatever people are called, also what a spreadsheet would take for a formula."""
+    course = bare_course(tmp_path_factory.mktemp("roster"))
+    people = tuple(Student(f"s{k}", a.strip(), b.strip()) for k, (a, b) in enumerate(names))
+    save_roster(course, Roster(people))
+    found = read_roster(course).students
+    assert [(x.id, same_name(x.name)) for x in found] == [(x.id, same_name(x.name)) for x in people]
+    assert not any(cell[:1] in "=+-@" for line in (course.root / FILE).read_text().splitlines()
+                   for cell in line.split(",") if cell)  # fmt: skip
+
+
+@given(st.text())
+def test_names_of_folders_are_safe(name):
+    """Of any text: one level, not hidden, no option, short, the same when made again."""
+    made = safe_name(name)
+    assert made and made == safe_name(made) and len(made.encode()) <= LONGEST
+    assert not set(made) & set("/\\\0\n") and made[0] not in ".-"
+
+
+@pytest.mark.parametrize(
+    "other", ["Lovelace Ada", "Lovelace, Ada", "ADA LOVELACE", "Ada_Lovelace", "ada  lovelace"]
+)
+def test_spellings_of_a_name(other):
+    """Order, case and commas make no difference; another word does."""
+    assert same_name(other) == same_name("Ada Lovelace") != same_name("Ada B Lovelace")
+
+
+def test_only_one_student_is_meant(tmp_path):
+    """By a column, or by the name, in any spelling; nobody by an empty cell or two of a name."""
+    roster = Roster((Student("a", "Kim", "Lee", login="K1"), Student("b", "Lee", "Kim", "k@x")))
+    assert roster.known_as("login", "k1").id == "a" and roster.known_as("email", "K@x").id == "b"
+    assert not roster.known_as("name", "Kim Lee") and not roster.known_as("github", "")
+    path = tmp_path / "x.csv"
+    path.write_text("Full name,Identifier,Email address\nAda Lovelace,Participant 4,a@x\n")
+    ((line, one),), others = read_list(path)
+    assert (line, one.first_name, one.last_name, others) == (2, "Ada", "Lovelace", [])
