@@ -15,7 +15,7 @@ ROOT = Path(__file__).parents[1]
 STOREYS = {
     "lab": (r"labkit/(?!course/|grader/|__main__).*\.py", 5300),
     "course": (r"labkit/(course/|__main__).*\.py", 5429),
-    "grader": (r"labkit/grader/.*\.py", 9116),
+    "grader": (r"labkit/grader/.*\.py", 6820),
     "solutions": (r"solutions/.*\.py", 16300),
     "book": (r"book/.*\.py", 7350),
     "tests": (r"tests/.*\.py", 29493),
