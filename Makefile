@@ -21,7 +21,7 @@ SECOND := .venv-313/bin
 # Modules that the installation left uncompiled are compiled at their first import.
 unexport PYTHONDONTWRITEBYTECODE
 
-.PHONY: help demo test dev soak lab book book-zip film vendor campaign campaign-engines record count lint lock format clean
+.PHONY: help demo test dev soak lab book book-zip film vendor campaign record count lint lock format clean
 
 help: ## list the targets
 	@grep -hE '^[a-z0-9-]+:.*##' $(MAKEFILE_LIST) | awk -F':.*## ' '{printf "  make %-16s %s\n", $$1, $$2}'
@@ -60,9 +60,6 @@ vendor: .venv/.dev ## make the book's browser files again (node 20)
 
 campaign: .venv/.course ## run the compared controllers on every task: build/campaign.json
 	@$(BIN)/python -m solutions.study
-
-campaign-engines: .venv/.course ## run the campaign on every engine, and say where the engines differ
-	@$(BIN)/python -m solutions.study.both_engines
 
 record: .venv/.course ## make all recorded data again, and say which verdicts changed
 	@$(BIN)/python -m solutions.study.record

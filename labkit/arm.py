@@ -18,7 +18,6 @@ from .robot import Robot
 from .sensors import Reports, TorqueSensors
 from .shapes import Array, as_array, as_random, locked, shown
 from .sim import new_arm
-from .springs import Springs
 from .world import World
 
 
@@ -73,22 +72,14 @@ class Arm:
         """Create everything that depends on the plant."""
         robot, plant, dt = self.robot, model.plant, self.world.dt
         self.plant, self.model = plant, model
-        elastic = any(plant.joint_stiffness)
-        self._springs = Springs(plant, robot.n, dt) if elastic else None
-        # With elastic joints, rotors and friction are on the motor side of the springs, and the
-        # links have neither.  So there are up to four models: the true one, the arm's own (without
-        # the payload), that of the links, and the one with which the torque sensors compute.
-        links = replace(plant, armature=0.0, viscous=0.0, joint_stiffness=0.0)
-        links = links if elastic else plant
-        self._engine = new_arm(self.world.engine, robot, links, dt)
+        self._engine = new_arm(self.world.engine, robot, plant, dt)
         own = Model(robot, replace(plant, payload=0.0))  # the arm does not know its payload
-        self._viscous = links.each("viscous", robot.n)
+        self._viscous = plant.each("viscous", robot.n)
         self._patience = round(plant.command_timeout / dt)  # in physics steps
         self._motors = Motors(dt, plant, own)
-        self._joints = Joints(Model(robot, links) if elastic else self.model, dt)
+        self._joints = Joints(model, dt)
         self._reports = Reports(plant, robot.n, dt, self._random)
-        felt = Model(robot, replace(links, payload=0.0)) if elastic else own
-        self._sensors = TorqueSensors(felt, plant, dt)
+        self._sensors = TorqueSensors(own, plant, dt)
 
     def _check_place(self) -> None:
         if not isinstance(self.world, World):
@@ -161,8 +152,6 @@ class Arm:
     def _start(self, q: Array, dq: Array) -> None:
         self._engine.place(q, dq)
         self._joints.reset()
-        if self._springs is not None:
-            self._springs.reset(q, self.model.gravity(q))
         self._known: tuple[Array, Array] | None = None
         self._torque: Array = self.robot.zeros
         self._touches: list[Touch] = []
@@ -281,16 +270,12 @@ class Arm:
             self._report()
         q, dq = self._known or self._read()
         drive = self._motors.drive(self._reports.read(q), dq)
-        motors = drive.tau
-        if self._springs is not None:
-            motors, drive = self._springs.pull(q, dq, drive)
         outside = drive if self._pull is None else drive._replace(tau=drive.tau + self._pull)
         given = self._joints.solve(q, dq, outside, self._touches)
         if self.world.things or self.plant.payload:  # otherwise there is no external torque
             joint = drive.tau + given.held - self._viscous * dq
             self._sensors.begin(q, dq, joint, self.world.steps)
-        gives = self._springs is not None or self._motors.kind is JointTorque
-        self._torque = motors if gives else given.held
+        self._torque = drive.tau if self._motors.kind is JointTorque else given.held
         self._engine.step(given.tau, given.ddq)
         self._known, self._touches, self._pull = None, [], None
 

@@ -33,9 +33,6 @@ class Plant:
         viscous: Viscous friction, shape (n,) in [N m s/rad].
         stiction: Dry friction that a joint must overcome, shape (n,) in [N m].
         payload: A point mass held at the tip, unknown to the arm's gravity compensation, in [kg].
-        joint_stiffness: Stiffness of the spring between each motor and its joint, shape (n,) in
-            [N m/rad]; 0 is a rigid shaft.  Friction and rotor are on the motor side of a spring.
-        joint_damping: Damping of the same spring, shape (n,) in [N m s/rad].
         velocity_lag: Time constant with which the velocity mode follows its command, in [s].
         position_gain: How fast the position mode closes a gap, in [1/s]; 0 closes it as fast as
             the limits of speed and torque, braking included, allow.
@@ -58,8 +55,6 @@ class Plant:
     viscous: Any = 0.0
     stiction: Any = 0.0
     payload: float = 0.0
-    joint_stiffness: Any = 0.0
-    joint_damping: Any = 0.0
     velocity_lag: float = 0.0
     position_gain: float = 0.0
     state_rate: float = 0.0
@@ -85,10 +80,6 @@ class Plant:
                 as_number(value, field.name, least=0.0)
         if self.lost_ticks > 1.0:
             raise OutOfRange(f"lost_ticks is {self.lost_ticks:g}; it is a share, at most 1")
-        if any(self.joint_stiffness) and not all(self.armature):
-            raise OutOfRange(
-                "joint_stiffness is given, but armature has a 0: a spring needs a rotor behind it"
-            )
 
     def each(self, name: str, n: int) -> Array:
         """A property of each of ``n`` joints, such as "stiction", shape (n,).
@@ -104,8 +95,6 @@ _PER_JOINT = (
     "armature",
     "viscous",
     "stiction",
-    "joint_stiffness",
-    "joint_damping",
     "encoder_offset",
     "encoder_step",
     "velocity_noise",
@@ -152,12 +141,6 @@ class Evidence(NamedTuple):
     most: Any
 
 
-SPRINGS: dict[str, Any] = {
-    "joint_stiffness": (843.0, 843.0, 843.0, 843.0, 250.0, 250.0, 250.0),
-    "joint_damping": (4.0, 4.0, 4.0, 4.0, 0.5, 0.5, 0.5),
-}
-"""The springs in Baxter's joints, left out of `BAXTER`; ``replace(BAXTER, **SPRINGS)`` has them."""
-
 _MISSED = (0.005, -0.005, 0.005, 0.005, -0.005, -0.005, 0.005)  # 4.9 mm at the ready pose
 _FRICTION = np.array(BAXTER.stiction)
 _ROTORS = np.array(BAXTER.armature)
@@ -182,21 +165,6 @@ EVIDENCE = {
         tuple(2.0 * _FRICTION),
     ),
     "payload": Evidence("kg", "an empty gripper", False, 0.0, 0.0),
-    "joint_stiffness": Evidence(
-        "N m/rad",
-        "left out by default; 843 in shoulder and elbow, 250 in the wrist are what Rethink's "
-        "Hardware Specifications are remembered to say (not checked against the page)",
-        True,
-        0.0,
-        SPRINGS["joint_stiffness"],
-    ),
-    "joint_damping": Evidence(
-        "N m s/rad",
-        "left out with the springs; 4 damps the shoulder by 5 % of critical",
-        True,
-        0.0,
-        SPRINGS["joint_damping"],
-    ),
     "velocity_lag": Evidence("s", "not published", True, 0.01, 0.06),
     "position_gain": Evidence("1/s", "not published", True, 10.0, 100.0),
     "state_rate": Evidence("Hz", "Rethink's default joint_state_publish_rate", False, 100.0, 100.0),
@@ -233,6 +201,7 @@ EVIDENCE = {
 }
 """The evidence for each number of `BAXTER`, by the name of its field.
 
-The plant does not model the counter-springs at s1 and their hysteresis, the bandwidth of the
-motors' own torque loops, backlash, or errors in the gravity compensation of the arm itself.
+The plant does not model the springs in Baxter's joints, the counter-springs at s1 and their
+hysteresis, the bandwidth of the motors' own torque loops, backlash, or errors in the gravity
+compensation of the arm itself.
 """

@@ -77,7 +77,7 @@ class TorqueSensors:
 
     The sensors measure motor torque and friction together, so the estimate is free of friction.
     The terms of gravity, inertia and Coriolis forces come from the arm's model of itself, without
-    its payload and, behind springs, without its rotors.  The acceleration is that of the last step.
+    its payload.  The acceleration is that of the last step.
     """
 
     def __init__(self, own: Model, plant: Plant, dt: float) -> None:

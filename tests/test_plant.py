@@ -11,7 +11,7 @@ from labkit.errors import LabkitError
 from labkit.plant import EVIDENCE
 
 PER_JOINT = (
-    "armature", "viscous", "stiction", "joint_stiffness", "joint_damping", "encoder_step",
+    "armature", "viscous", "stiction", "encoder_step",
     "velocity_noise",
 )  # fmt: skip
 
@@ -47,12 +47,6 @@ def test_what_is_published_has_no_range_of_guesses():
             assert evidence.least == evidence.most, name
 
 
-def test_a_spring_needs_a_rotor_behind_it():
-    """A joint stiffness without armature is refused, and both are named."""
-    with pytest.raises(LabkitError, match="joint_stiffness is given, but armature has a 0"):
-        lk.Plant(joint_stiffness=800.0)
-
-
 def test_a_plant_is_a_value():
     """One number equals seven like it, equal plants have equal hashes, and none can be changed."""
     assert lk.Plant(stiction=1.0) == lk.Plant(stiction=[1.0] * 7)
@@ -82,8 +76,7 @@ def test_a_bad_effect_per_joint_is_named(field, value):
 def test_a_plant_of_another_number_of_joints_is_refused_by_the_arm(field):
     """The error for six numbers and seven joints names the effect."""
     with pytest.raises(LabkitError, match=f"{field}.*give 7 numbers, not 6"):
-        springs = {"armature": 0.1, "joint_stiffness": 100.0}
-        lk.Arm(plant=lk.Plant(**springs | {field: np.arange(1.0, 7.0)}))
+        lk.Arm(plant=lk.Plant(**{field: np.arange(1.0, 7.0)}))
 
 
 @pytest.mark.parametrize(

@@ -7,7 +7,7 @@ import pytest
 
 import labkit as lk
 from labkit.errors import Diverged, JointLimitExceeded, NotFinite, OutOfRange, ShapeError
-from labkit.plant import EVIDENCE, SPRINGS
+from labkit.plant import EVIDENCE
 from solutions.study.joint_torque import AugmentedPD, ComputedTorque
 from solutions.study.joint_velocity import JointVelocityPD
 
@@ -304,39 +304,6 @@ def test_an_impossible_plant_is_refused(field, value, error):
     """The sentence names the field."""
     with pytest.raises(error, match=field):
         replace(lk.IDEAL, **{field: value})
-
-
-# Springs and encoders
-
-SOFT = lk.Plant(
-    gravity_compensation=True,
-    armature=lk.BAXTER.armature,
-    joint_stiffness=SPRINGS["joint_stiffness"],
-    joint_damping=(12.0, 12.0, 12.0, 12.0, 0.5, 0.5, 0.5),  # the swing dies within the run
-)
-
-
-def test_an_arm_on_springs_rests_where_it_is_put():
-    """The springs are wound up to carry its weight, and nothing moves."""
-    with lk.Arm(plant=SOFT, q0=READY) as arm:
-        last = steps(arm, velocity(0.0), 200)[-1]
-        assert last.q == pytest.approx(READY, abs=1e-6)
-        assert arm.torque == pytest.approx(arm.model.gravity(READY), abs=1e-3)
-
-
-def test_a_push_winds_the_springs_up_while_the_motors_stand():
-    """In velocity mode with the command zero the hand gives way by J K^-1 J^T F."""
-    force = np.array((0.0, 5.0, 0.0))
-    world = lk.World(things=[lk.Push(force)])
-    with lk.Arm(plant=SOFT, q0=READY, world=world) as arm:
-        arm.apply(velocity(0.0))
-        for _ in range(12):  # the command is renewed before it times out
-            arm.apply(velocity(0.0))
-            arm.world.step(150)
-        J = arm.model.tip_jacobian(READY)
-        moved = arm.tip()[0] - arm.model.pose(READY)[:3, 3]
-        expected = J[:3] @ np.diag(1.0 / np.array(SOFT.joint_stiffness)) @ J[:3].T @ force
-    assert moved == pytest.approx(expected, abs=0.15 * np.linalg.norm(expected))
 
 
 def test_an_encoder_that_is_off_leaves_the_hand_off_and_the_controller_content():

@@ -27,7 +27,6 @@ DATA = (
     "solutions/study/baseline/baxter_collision.json",
     "labkit/data/campaign.json",
     "solutions/study/assumptions.json",
-    "solutions/study/report_gains.json",
 )
 ENGINES = (
     *filter(find_spec, ("pybullet", "mujoco")),

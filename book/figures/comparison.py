@@ -15,7 +15,7 @@ from myst_nb import glue
 
 import labkit as lk
 from labkit.shapes import Array
-from solutions.study import both_engines, campaign, tasks
+from solutions.study import campaign, tasks
 from solutions.study.campaign import BASELINE, CONTROLLERS, FEED_FORWARD, FIVE, TABLES
 from solutions.study.claims import IMPEDANCE, THREE, interval
 from solutions.study.grid import pick
@@ -65,15 +65,6 @@ def numbers_told() -> None:
     """Numbers and conclusions of the page."""
     rows = found()["rows"]
     holds(not [row for row in rows if row["failed"]], "every run was finished")
-    twice = json.loads(both_engines.KEPT.read_text())
-    claim(
-        "every verdict is the same, and no error in the tables differs by as much as a thousandth "
-        "of a millimetre",
-        lambda verdicts, runs, far: verdicts[0] == verdicts[1] > 0 < runs and abs(far) < 1e-3,
-        verdicts=[twice["alike"], twice["claims"]],
-        runs=twice["runs"],
-        far=twice["farthest_mm"],
-    )
     real = {controller: _on_paths(controller, "baxter") for controller in CONTROLLERS}
     ideal = {controller: _on_paths(controller, "ideal") for controller in CONTROLLERS}
     soft, stiff = IMPEDANCE, THREE

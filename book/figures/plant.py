@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import replace
 from typing import Any
 
 import matplotlib.pyplot as plt
@@ -11,14 +10,15 @@ import numpy as np
 from IPython.display import HTML
 
 import labkit as lk
-from labkit.plant import EVIDENCE, SPRINGS
+from labkit.plant import EVIDENCE
 from solutions.study import assumptions, report_gains
 from solutions.study.gains import KP
 from solutions.study.grid import Row, pick
 from solutions.study.report_procedure import OSCILLATES
+from solutions.study.tuning import tune
 
 from .claims import claim, shows
-from .page import figure, holds, number, numbers, shown, table
+from .page import figure, holds, numbers, shown, table
 
 SMALL = 0.5
 """Smaller differences on the line, in [mm], change their sign from seed to seed."""
@@ -95,9 +95,9 @@ def hangs() -> HTML:
         apart=max(abs(joint - e) for gain, e in error.items() if gain > where[0]),
     )
     named = {"stiction, least", "position_gain, least", "position_gain, most",
-             "joint_stiffness, most", "encoder_offset, most"}  # fmt: skip
+             "encoder_offset, most"}  # fmt: skip
     over = {n for c in claims if c.startswith("built-in") for n in turned[c]}
-    holds(over == named, "the ranking of the built-in method turns with these four numbers alone")
+    holds(over == named, "the ranking of the built-in method turns with these three numbers alone")
     by = dict(zip(claims, base, strict=True))
     torque_too = "built-in method over joint torque"
     claim(
@@ -113,12 +113,6 @@ def hangs() -> HTML:
         usual=[by[c] for c in velocity],
         d=[assumptions.difference(rows, c, assumption="encoder_offset, most") for c in velocity],
     )
-    springs = pick(rows, controller=assumptions.BASELINE, assumption="joint_stiffness, most")
-    claim(
-        "with the springs in the joints the built-in method is lost",
-        lambda lost: lost == len(springs),
-        lost=float(sum(bool(row["failed"]) for row in springs)),
-    )
     claim(
         "One decided verdict stands whatever is assumed",
         lambda least: least > 3.0,
@@ -132,12 +126,8 @@ def hangs() -> HTML:
     numbers(dict(zip(names_of, where, strict=True)), ".0f")
     ends = min(error), max(error)
     shows("With two seeds a difference below 0.5 mm", 0.5, SMALL)
-    shoulder = [SPRINGS[x][0] for x in ("joint_stiffness", "joint_damping")]
-    shows("at the shoulder 843 N m/rad and 4 N m s/rad", (843.0, 4.0), shoulder)
     shows("from 10 to 100 1/s the error of the built-in method falls", (10.0, 100.0), ends)
     numbers({"hang_low": error[ends[0]], "hang_high": error[ends[1]]}, ".2g")
-    spring = pick(rows, controller="joint velocity", assumption="joint_stiffness, most")
-    number("spring_velocity", spring[0]["late_rms_mm"], ".0f")
     words = "; ".join(f"{c}: {', '.join(t) or 'never'}" for c, t in turned.items())
     return figure(
         "Difference of the RMS errors on the line, in mm: positive where the claim above is true. "
@@ -169,100 +159,36 @@ def _crosses(error: dict[float, float], level: float) -> float:
 
 def table_1() -> HTML:
     """A table of runs with the report's gains as printed."""
-    rows = report_gains.recorded()["table_1"]
-
-    def shown(controller: str, task: str, plant: str) -> str:
-        (row,) = pick(rows, controller=controller, task=task, plant=plant)
-        return "lost" if row["failed"] else f"{row['late_rms_mm']:.3g}"
-
-    grid = [(task, plant) for plant in report_gains.PLANTS for task in ("line", "circle")]
-    body = [
-        (controller, *(shown(controller, *at) for at in grid))
+    found = {
+        controller: [report_gains.late_rms_mm(controller, task) for task in ("line", "circle")]
         for controller in report_gains.TABLE_1
-    ]
-    torque = [
-        pick(rows, controller="joint torque", task=task, plant="realistic")[0]["late_rms_mm"]
-        for task in ("line", "circle")
-    ]
+    }
+    torque = found["joint torque"]
     claim("centimetres, not millimetres", lambda e: all(x > 20.0 for x in e), e=torque)
-    soft = [
-        pick(rows, controller="joint velocity", task=task, plant="with joint springs")[0][
-            "late_rms_mm"
-        ]
-        for task in ("line", "circle")
-    ]
-    numbers({"spring_line": soft[0], "spring_circle": soft[1]}, ".2g")
     numbers({"printed_line": torque[0], "printed_circle": torque[1]}, ".2g")
     return table(
-        ("Controller", *(f"{task}, {plant}" for task, plant in grid)), body,
+        ("Controller", "line", "circle"),
+        [(controller, *(f"{x:.3g}" for x in errors)) for controller, errors in found.items()],
         "RMS error in mm after the first second, with the gains of the report's Table 1",
-    )  # fmt: skip
+    )
 
 
 def tuning() -> HTML:
-    """The report's tuning procedure for s0, on both arms."""
-    found = report_gains.recorded()["procedure"]
+    """The report's tuning procedure for s0."""
+    found = tune(0, lk.BAXTER)
+    steps = [s for s in found.steps if s.Kd == 0.0 < s.Kp and s.why != "half of that"]
     _, ax = plt.subplots(figsize=(6.2, 3.0))
-    ends = {}
-    for k, row in enumerate(found):
-        steps = [s for s in row["steps"] if s[1] == 0.0 and s[0] > 0.0 and s[3] != "half of that"]
-        ax.semilogx(
-            [s[0] for s in steps],
-            [s[2] for s in steps],
-            f"C{k}{'os'[k]}-",
-            markersize=4,
-            label=row["plant"],
-        )
-        ax.axvline(row["Kp"], color=f"C{k}", linestyle=":")
-        ends[row["plant"]] = row
+    ax.semilogx([s.Kp for s in steps], [s.decay for s in steps], "C0o-", markersize=4)
+    ax.axvline(found.Kp, color="C0", linestyle=":")
     ax.axhline(OSCILLATES, color="C5", linewidth=1.0)
     ax.set(xlabel="Kp [1/s]", ylabel="size of a swing,\nthe one before = 1")
-    ax.legend(fontsize="small")
-    stiff, soft = ends["realistic"]["Kp"], ends["with joint springs"]["Kp"]
-    claim(
-        "the springs bring the procedure to the report's order of magnitude",
-        lambda stiff, soft: stiff > 10.0 * 3.0 and 1.0 < soft < 6.0,
-        stiff=stiff,
-        soft=soft,
-    )
     shows("The report ended at $K_p$ = 3 1/s", 3.0, KP)
-    numbers({"procedure": stiff, "procedure_springs": soft, "factor": stiff / KP}, ".2g")
+    numbers({"procedure": found.Kp, "factor": found.Kp / KP}, ".2g")
     return figure(
         "The report's procedure on the shoulder s0: the gain rises until the joint oscillates, and "
         "half of that is taken (dotted). It counts as oscillating from the first gain on that "
         f"leaves more than {OSCILLATES:g} of the swing before (grey line); the gains rise "
         "in steps of 30 %.",
-        f"Swing left over against gain. The realistic arm oscillates at "
-        f"{ends['realistic']['ultimate']:.3g} 1/s, which gives {stiff:.2g}; with springs in its "
-        f"joints it does at {ends['with joint springs']['ultimate']:.2g} 1/s, which gives "
-        f"{soft:.2g}.",
-    )
-
-
-def swings() -> None:
-    """The exercise on an arm with springs in its joints, pushed while its drives hold."""
-    q0 = lk.robot("left").ready
-    push = lk.Push(force=(0.0, 20.0, 0.0), start=0.5, duration=0.2)
-    left = {}
-    for name, plant in (("stiff", lk.BAXTER), ("soft", replace(lk.BAXTER, **SPRINGS))):
-        with lk.Arm("left", plant, q0=q0, world=lk.World(things=[push])) as arm:
-            log = lk.run(arm, lk.Hold(q0, 4.0), lambda *_: lk.JointVelocity(np.zeros(7)))
-        y = np.array([pose[1, 3] for pose in lk.metrics.tip_poses(log)])
-        left[name] = 1e3 * (y - y[0])
-    turns = log.t[np.flatnonzero(np.diff(np.sign(np.diff(left["soft"])))) + 1]
-    turns = turns[turns > 0.8]
-    each = float(0.5 * (len(turns) - 1) / (turns[-1] - turns[0]))
-    number("swings", each, ".2g")
-    shoulder = (
-        SPRINGS["joint_stiffness"][0],
-        float(lk.Model("left", lk.BAXTER).mass_matrix(q0)[0, 0]),
-    )
-    alone = (shoulder[0] / shoulder[1]) ** 0.5
-    shows("This is near $\\sqrt{843/2.17} = 19.7$ rad/s, or 3.1 swings in a second",
-          (843.0, 2.17, 19.7, 3.1), (*shoulder, alone, alone / (2.0 * np.pi)), 0.02)  # fmt: skip
-    claim(
-        "the hand moves by less than a tenth of a millimetre",
-        lambda stiff, soft: 0.0 < stiff < 0.1 < 20.0 < soft,
-        stiff=float(np.abs(left["stiff"]).max()),
-        soft=float(np.abs(left["soft"]).max()),
+        f"Swing left over against gain. The arm oscillates at {found.ultimate:.3g} 1/s, which "
+        f"gives {found.Kp:.2g}.",
     )

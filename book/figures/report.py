@@ -8,7 +8,7 @@ import numpy as np
 
 import labkit as lk
 from labkit import metrics
-from solutions.study import report_gains
+from solutions.study.tuning import tune
 from solutions.study.workspace_impedance import WorkspaceImpedance
 
 from .claims import claim, shows
@@ -184,17 +184,9 @@ def impedance() -> None:
     moved = -metrics.tip_error(log)[-1, :3]
     stiffness = float(force[1] / moved[1])
     holds(abs(stiffness / 300.0 - 1.0) < 0.02, "the arm is as stiff as commanded, sensor or not")
-    rigid, soft = (row["Kp"] for row in report_gains.recorded()["procedure"])
-    numbers({"procedure_rigid": rigid, "procedure_soft": soft}, ".2g")
-    halved = [
-        next(step[2] for step in row["steps"] if step[3] == "half of that")
-        for row in report_gains.recorded()["procedure"]
-    ]
-    number("left_rigid", halved[0], ".2g")
-    claim(
-        "and the second does not swing at all: the rule's quarter is found on neither",
-        lambda rigid, soft: rigid > 0.4 and soft == 0.0,
-        rigid=halved[0],
-        soft=halved[1],
-    )
+    procedure = tune(0, lk.BAXTER)
+    number("procedure_rigid", procedure.Kp, ".2g")
+    (half,) = (step.decay for step in procedure.steps if step.why == "half of that")
+    number("left_rigid", half, ".2g")
+    claim("the rule's quarter is not found", lambda half: half > 0.4, half=half)
     numbers({"felt": stiffness, "moved_mm": 1e3 * moved[1]})

@@ -17,7 +17,7 @@ from typing import Any
 import numpy as np
 
 from labkit import BAXTER, Arm, Model, Plant, metrics, run
-from labkit.plant import EVIDENCE, SPRINGS
+from labkit.plant import EVIDENCE
 
 from .campaign import BASELINE, FIVE, joints, task_of
 from .claims import IMPEDANCE, THREE
@@ -26,8 +26,6 @@ from .grid import Meter, Row, cells, pick, work_through
 
 KEPT = Path(__file__).with_name("assumptions.json")
 CONTROLLERS = (*FIVE, BASELINE)
-TOGETHER = ("joint_damping",)
-"""Numbers that change together with another one."""
 GAINS = (10.0, 14.0, 20.0, 30.0, 45.0, 60.0, 100.0)
 """Gains of the position mode, in [1/s], which no source gives and on which much depends."""
 CLAIMS: Mapping[str, tuple[Sequence[str], Sequence[str]]] = {
@@ -43,12 +41,10 @@ def plants() -> dict[str, Plant]:
     """`BAXTER`, and each plant that differs from it in one assumption, by name."""
     made = {"as assumed": BAXTER}
     for name, evidence in EVIDENCE.items():
-        if not evidence.assumed or name in TOGETHER:
+        if not evidence.assumed:
             continue
         for end in ("least", "most"):
             changed: dict[str, Any] = {name: getattr(evidence, end)}
-            if name == "joint_stiffness" and end == "most":
-                changed = SPRINGS
             plant = replace(BAXTER, **changed)
             if plant != BAXTER:
                 made[f"{name}, {end}"] = plant

@@ -33,7 +33,6 @@ MAKERS = (
     ("solutions.study.trials",),
     ("solutions.study", "--seeds", "5", "--no-pictures", "--keep"),
     ("solutions.study.assumptions",),
-    ("solutions.study.report_gains",),
 )
 """Modules that record runs; ``labkit release`` comes after them."""
 
