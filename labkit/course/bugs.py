@@ -18,7 +18,7 @@ from ..plant import Plant
 from ..run import run
 from ..shapes import Array, as_array
 from ..trajectory import Chain, Hold, Sample, Trajectory
-from .forms import Choose, RightOrWrong
+from .forms import Choose, RightOrWrong, shown
 from .verdict import Difference, Kind
 
 PLANT = Plant(name="textbook", armature=0.05, viscous=0.7, velocity_noise=0.01)
@@ -189,9 +189,9 @@ class Found(RightOrWrong):
         try:
             cause, seconds = answer
             seconds = float(seconds)
-        except (TypeError, ValueError):
+        except (TypeError, ValueError, OverflowError):
             what = 'a letter and a time in s, such as ("b", 1.25)'
-            return Difference(Kind.REFUSED, found=f"it is {answer!r}; write {what}")
+            return Difference(Kind.REFUSED, found=f"it is {shown(answer)}; write {what}")
         if found := CHOICE.problem(cause):
             return Difference(Kind.REFUSED, found=found)
         if expected is None or (cause == expected[0] and abs(seconds - expected[1]) <= NEAR):

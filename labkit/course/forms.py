@@ -28,6 +28,14 @@ def letters(said: Any) -> str:
     return "".join(said.lower().replace(",", " ").split()) if isinstance(said, str) else ""
 
 
+def shown(said: Any) -> str:
+    """What a student wrote down, cut short."""
+    try:
+        return f"{said!r:.200}"
+    except ValueError:
+        return "an integer of thousands of digits"
+
+
 class RightOrWrong:
     """The base of judges without a tolerance: an answer is right or wrong, equal or not."""
 
@@ -82,7 +90,7 @@ class Choose(_Form):
         """What is wrong with the form of a prediction, or ""."""
         if letters(said) in self.options:
             return ""
-        return f"it is {said!r}; choose one of {', '.join(map(repr, self.options))}"
+        return f"it is {shown(said)}; choose one of {', '.join(map(repr, self.options))}"
 
     def words(self, said: Any) -> str:
         """The prediction in words, as the object of a sentence."""
@@ -111,7 +119,7 @@ class Rank(_Form):
         if sorted(letters(said)) == sorted(self.options):
             return ""
         every = "".join(self.options)
-        return f"it is {said!r}; write a text with each of the letters {every} once"
+        return f"it is {shown(said)}; write a text with each of the letters {every} once"
 
     def words(self, said: Any) -> str:
         """The prediction in words, as the object of a sentence."""
@@ -143,9 +151,9 @@ class Number(_Form):
             example = "with a point, such as 8.5" if "," in str(said) else f"({self.unit})"
             if isinstance(said, str) and said.replace(".", "", 1).lstrip("-").isdecimal():
                 example = "without quotes"
-            return f"it is {said!r}; write one number {example}"
+            return f"it is {shown(said)}; write one number {example}"
         if not self.least <= said <= self.most:
-            return f"it is {said:g} {self.unit}; write {self.how}"
+            return f"it is {shown(said)} {self.unit}; write {self.how}"
         return ""
 
     def words(self, said: Any) -> str:
@@ -181,7 +189,7 @@ class Curve(_Form):
     def problem(self, said: Any) -> str:
         """What is wrong with the form of a prediction, or ""."""
         if not isinstance(said, list | tuple) or len(said) != len(self.at):
-            return f"it is {said!r}; write {self.how}"
+            return f"it is {shown(said)}; write {self.how}"
         one = Number(self.height, self.least, self.most)
         return next(filter(None, map(one.problem, said)), "")
 

@@ -24,4 +24,4 @@ def pseudonyms(course: Course) -> Callable[[str], str]:
 
 def pseudonym(key: bytes, student: str) -> str:
     """The pseudonym of a student under a term's key."""
-    return f"S-{hmac.new(key, student.encode(), 'sha256').hexdigest()[:6]}"
+    return f"S-{hmac.new(key, student.encode(), 'sha256').hexdigest()[:8]}"

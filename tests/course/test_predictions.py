@@ -5,7 +5,18 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from labkit.course import Choose, Close, Curve, Number, Outcome, Prediction, Rank, mark, predict
+from labkit.course import (
+    Choose,
+    Close,
+    Curve,
+    Found,
+    Number,
+    Outcome,
+    Prediction,
+    Rank,
+    mark,
+    predict,
+)
 from labkit.course import student as desk
 from labkit.course.reply import LocalFunction
 from labkit.course.serialize import question_data, read_question
@@ -109,6 +120,16 @@ def test_a_number_of_numpys_is_a_number(said):
     """In the notebook as in a grader."""
     assert Number("mm", 0.0, 9.0).problem(said) == ""
     assert verdict(Number("mm", 0.0, 9.0), said).earned == 1.0
+
+
+@pytest.mark.parametrize("said", [16**5000, -(10**400), [16**5000], {16**5000: 1}], ids="abcd")
+def test_a_number_of_any_size_is_refused_in_a_sentence(said):
+    """Python gives no text for an integer of thousands of digits, and no float for a large one."""
+    for form, right, _ in FORMS:
+        assert len(form.problem(said)) < 500
+        asked = Prediction("x", "?", form, right).question()
+        assert mark(asked, LocalFunction(said)).earned == 0.0
+    assert Found(0)(("b", said), None) and Found(0)(said, None)
 
 
 def test_one_run_after_the_mouse_commits_and_writes_it_down(place, monkeypatch, capsys):

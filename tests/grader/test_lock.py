@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
+import stat
+
 import pytest
 from made import NAME, handed_in
 
 from labkit.__main__ import main
 from labkit.errors import LabkitError
 from labkit.grader import lock
+from labkit.grader.atomic import write
 from labkit.grader.grading.batch import GradeOptions, grade_class
 from labkit.grader.lock import exclusive_run
 
@@ -37,3 +40,10 @@ def test_verbs_that_grade_exclude_each_other(course, capsys, words):
         assert "another run is grading" in capsys.readouterr().err
         with pytest.raises(LabkitError, match="another run"):
             next(grade_class(course, NAME, ["ada"], GradeOptions()))
+
+
+def test_what_is_written_is_its_owners_alone(tmp_path):
+    """Marks, names and keys: on a hub with a shell nobody else reads them."""
+    write(tmp_path / "private/file", "marks")
+    assert stat.S_IMODE((tmp_path / "private/file").stat().st_mode) == 0o600
+    assert stat.S_IMODE((tmp_path / "private").stat().st_mode) == 0o700

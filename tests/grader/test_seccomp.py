@@ -149,6 +149,8 @@ def test_what_the_labs_packages_call_passes(what, run):
     [
         "import os\nos.memfd_create('x')",
         "import os\nos.pidfd_open(os.getpid())",
+        "import os\nos.posix_fadvise(0, 0, 1, os.POSIX_FADV_DONTNEED)",
+        "import os\nos.sendfile(1, 0, 0, 1)",
         "import fcntl\nfcntl.flock(open('/dev/null'), fcntl.LOCK_SH)",
         "import ctypes, os\nlibc = ctypes.CDLL(None, use_errno=True)\n"
         "if libc.inotify_init() < 0: raise OSError(ctypes.get_errno(), 'no')",

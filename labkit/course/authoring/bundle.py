@@ -118,7 +118,8 @@ def write_bundle(
     }
     text = json.dumps(data, ensure_ascii=False, separators=(",", ":"), sort_keys=True)
     data["hash"] = hashlib.sha256(text.encode()).hexdigest()
-    path.parent.mkdir(parents=True, exist_ok=True)
+    path.parent.mkdir(0o700, parents=True, exist_ok=True)
     new = path.with_suffix(".new")
+    new.touch(0o600)
     new.write_text(json.dumps(data) + "\n", encoding="utf-8")
     new.replace(path)  # so that a grading under way reads the old one or the new one

@@ -8,7 +8,7 @@ from __future__ import annotations
 import fcntl
 import warnings
 from collections.abc import Iterable, Iterator, Mapping, Set
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from datetime import datetime
 from functools import partial
 from pathlib import Path
@@ -158,6 +158,8 @@ def open_gradebook(course: Course) -> Iterator[Any]:
             fcntl.flock(writer, fcntl.LOCK_EX)
             if book.db.execute(sql("PRAGMA quick_check(1)")).scalar() != "ok":
                 raise _damaged("parts of it are lost")
+            with suppress(OSError):
+                (course.root / "gradebook.db").chmod(0o600)
             try:
                 yield book
             except BaseException:

@@ -53,6 +53,11 @@ def _notebook(data: bytes) -> dict[str, Any]:
         raise Rejected("the file is not a notebook of format 4: it has no cells")
     if notebook.get("nbformat") != 4:
         raise Rejected(f"the notebook's format is {str(notebook.get('nbformat'))[:20]}, not 4")
+    about = notebook.get("metadata")
+    kernel = about.get("kernelspec") if isinstance(about, dict) else None
+    language = kernel.get("language") if isinstance(kernel, dict) else None
+    if language not in (None, "python", "sage"):
+        raise Rejected(f"the notebook's kernel runs {str(language)[:20]}, not Python")
     if len(notebook["cells"]) > MOST_CELLS:
         raise Rejected(f"it has {len(notebook['cells'])} cells; the limit is {MOST_CELLS}")
     return notebook

@@ -1,5 +1,8 @@
 """System calls by name, with their numbers on x86-64 and on aarch64, None if there is none.
 
+What asks or moves the page cache, such as preadv2 and fadvise64, is not among them: one submission
+could tell another by it.
+
 The numbers are from the kernel's own headers, ``asm/unistd_64.h`` and ``asm-generic/unistd.h``.
 """
 
@@ -40,10 +43,9 @@ ALLOWED: dict[str, tuple[int | None, int | None]] = {
     "sched_get_priority_min": (147, 126),
     # reading and writing
     "read": (0, 63), "write": (1, 64), "readv": (19, 65), "writev": (20, 66), "pread64": (17, 67),
-    "pwrite64": (18, 68), "preadv": (295, 69), "pwritev": (296, 70), "preadv2": (327, 286),
-    "pwritev2": (328, 287), "lseek": (8, 62), "sendfile": (40, 71), "copy_file_range": (326, 285),
-    "fsync": (74, 82), "fdatasync": (75, 83), "ftruncate": (77, 46), "truncate": (76, 45),
-    "fallocate": (285, 47), "fadvise64": (221, 223), "dup": (32, 23), "dup2": (33, None),
+    "pwrite64": (18, 68), "preadv": (295, 69), "pwritev": (296, 70),
+    "lseek": (8, 62), "fsync": (74, 82), "fdatasync": (75, 83), "ftruncate": (77, 46),
+    "truncate": (76, 45), "fallocate": (285, 47), "dup": (32, 23), "dup2": (33, None),
     "dup3": (292, 24), "close": (3, 57), "close_range": (436, 436), "pipe": (22, None),
     "pipe2": (293, 59), "select": (23, None), "pselect6": (270, 72), "poll": (7, None),
     "ppoll": (271, 73), "epoll_create": (213, None), "epoll_create1": (291, 20),

@@ -36,6 +36,7 @@ def lay_arms(course: Course, name: str) -> None:
     arms, folder = Arms.of(course.root), course.release / name
     if arms.handles and _asks(course, name) and folder.is_dir():
         write(folder / FILE, arms.table())
+        (folder / FILE).chmod(0o644)
 
 
 def without_arms(course: Course, names: Sequence[str]) -> str:
