@@ -148,7 +148,7 @@ class Number(_Form):
     def problem(self, said: Any) -> str:
         """What is wrong with the form of a prediction, or ""."""
         if isinstance(said, bool) or not isinstance(said, int | float | np.integer | np.floating):
-            example = "with a point, such as 8.5" if "," in str(said) else f"({self.unit})"
+            example = "with a point, such as 8.5" if "," in shown(said) else f"({self.unit})"
             if isinstance(said, str) and said.replace(".", "", 1).lstrip("-").isdecimal():
                 example = "without quotes"
             return f"it is {shown(said)}; write one number {example}"

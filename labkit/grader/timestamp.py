@@ -2,11 +2,8 @@
 
 from __future__ import annotations
 
-import re
-import time
 from datetime import UTC, datetime, tzinfo
 from pathlib import Path
-from zoneinfo import ZoneInfo
 
 TIMESTAMP = "timestamp.txt"
 """The name of the file, which nbgrader's exchange writes."""
@@ -21,28 +18,14 @@ def read_stamp(folder: Path) -> str:
         return file.read(200).strip()
 
 
-_TWO_DATES = re.compile(r"(?<!\d)\d{1,2}([./-])\d{1,2}\1\d{2,4}(?!\d)")
-"""Dates such as 01.03.2026 and 3/1/26, whose order of day and month is not certain."""
-
-
 def read_time(text: str, zone: tzinfo = UTC) -> datetime | None:
-    """The time in a text, in ``zone`` if the text names none; None if it is not clear."""
-    from dateutil.parser import parse
+    """The time in a text, in ``zone`` if the text names none; None if it is not clear.
 
-    if _TWO_DATES.search(text) or not re.search(r"\d{4}", text):  # without a year it is today
-        return None
+    It is ISO 8601 or nbgrader's own form, ``2026-11-06 10:00:00.000000 UTC``.
+    """
     try:
-        when: datetime = parse(text, tzinfos=_zone)
+        when = datetime.fromisoformat(text.removesuffix(" UTC") + "Z" * text.endswith(" UTC"))
         when = (when if when.tzinfo else when.replace(tzinfo=zone)).astimezone(UTC)
-    except (ValueError, OverflowError, KeyError):
+    except (ValueError, OverflowError):
         return None
     return when if 2000 <= when.year < 2100 else None
-
-
-def _zone(name: str | None, offset: int | None) -> tzinfo | int | None:
-    """The zone that a time names; an unknown name is an error, and never local time."""
-    from dateutil.tz import tzlocal
-
-    if name is None or offset is not None:
-        return offset
-    return tzlocal() if name in time.tzname else ZoneInfo(name)

@@ -482,6 +482,7 @@ FILES = {
     "time of no time": _beside("timestamp.txt", b"\x1b[2J yesterday \xff"),
     "time far off": _beside("timestamp.txt", b"99999-13-45 99:99:99 +99:99"),
     "time of the first year": _beside("timestamp.txt", b"0001-01-01 00:00:00 +14:00"),
+    "time in a folder of zones": _beside("timestamp.txt", b"2026-11-06 10:00:00 US"),
     "time as a number": _beside("timestamp.txt", b"1" * 150),
     "time as a folder": _folder_beside("timestamp.txt"),
     "time as a link": _link_beside("timestamp.txt", "/etc/passwd"),
