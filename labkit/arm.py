@@ -53,7 +53,7 @@ class Arm:
             UnknownName: Baxter has no such arm.
             TypeMismatch: ``plant``, ``seed`` or ``world`` has the wrong type.
             Closed: The world is closed.
-            LabkitError: The world already has this arm.
+            LabkitError: The world already has this arm, or the plant fits other robots alone.
             JointLimitExceeded: q0 is outside the joints' range.
             ShapeError: The plant belongs to an arm with a different number of joints.
         """

@@ -16,7 +16,7 @@ import pinocchio as pin
 
 from . import se3
 from .baxter import as_robot
-from .errors import TypeMismatch
+from .errors import LabkitError, TypeMismatch, listed
 from .kinematics import Kinematics
 from .plant import IDEAL, Plant
 from .robot import Robot
@@ -60,6 +60,7 @@ class Model(Kinematics):
         Raises:
             UnknownName: Baxter has no such arm.
             TypeMismatch: The plant is not a `Plant`.
+            LabkitError: The plant fits other robots alone.
             ShapeError: The plant belongs to an arm with a different number of joints.
         """
         if not isinstance(plant, Plant):
@@ -67,6 +68,11 @@ class Model(Kinematics):
                 f"plant is {shown(plant)}, expected lk.IDEAL, lk.BAXTER or an lk.Plant(...)"
             )
         robot = as_robot(robot)
+        if plant.fits and robot.name not in plant.fits:
+            raise LabkitError(
+                f"the plant {plant.name!r} fits {listed(plant.fits)}, not {robot.name!r}; "
+                "dataclasses.replace(plant, fits=()) fits any robot"
+            )
         super().__init__(robot, robot.urdf(plant))
         self._pin.armature = plant.each("armature", robot.n)
         self._lower = np.tril_indices(robot.n, -1)

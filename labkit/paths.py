@@ -56,38 +56,45 @@ class Line:
 
 @dataclass(frozen=True, eq=False)
 class Circle:
-    """The level circle through ``start`` about the vertical axis through ``centre``.
+    """The circle through ``start`` about an axis through ``centre``, by default the vertical one.
 
-    It keeps the start's height, so its radius is the horizontal distance, and it closes exactly.
+    It stays in the plane of the start across the axis, and closes exactly.
 
     Attributes:
         start: Where it begins and ends, shape (3,) in [m].
-        centre: A point on its axis, shape (3,) in [m]; its height does not matter.
-        turns: Number of turns, counter-clockwise seen from above; negative is clockwise.
+        centre: A point on its axis, shape (3,) in [m]; where on the axis does not matter.
+        turns: Number of turns, counter-clockwise seen against the axis; negative is clockwise.
+        axis: Direction of the axis, shape (3,); a level one, such as (1, 0, 0), makes an upright
+            circle.
     """
 
     start: Array
     centre: Array
     turns: float = 1.0
+    axis: Any = (0.0, 0.0, 1.0)
 
     def __post_init__(self) -> None:
-        lock_vectors(self, 3, "start", "centre")
+        lock_vectors(self, 3, "start", "centre", "axis")
         object.__setattr__(self, "turns", as_number(self.turns, "turns"))
+        if not self.axis.any():
+            raise OutOfRange("axis is the zero vector; (0, 0, 1) makes a level circle")
         if self.radius < 1e-9:
-            x, y = self.centre[:2]
             raise OutOfRange(
-                f"the start lies on the circle's axis (x = {x:g}, y = {y:g}), so the circle has no "
-                "radius; move the start or the centre sideways"
+                "the start lies on the circle's axis, so the circle has no radius; move the start "
+                "or the centre sideways"
             )
 
     @cached_property
-    def _spoke(self) -> Array:
-        return (self.start - self.centre)[:2]
+    def _parts(self) -> tuple[Array, Array, Array]:
+        """The middle, the spoke to the start, and the spoke that is a quarter of a turn later."""
+        n, away = self.axis / np.linalg.norm(self.axis), self.start - self.centre
+        spoke = away - (away @ n) * n
+        return self.start - spoke, spoke, np.cross(n, spoke)
 
     @property
     def radius(self) -> float:
         """Its radius, in [m]."""
-        return float(np.linalg.norm(self._spoke))
+        return float(np.linalg.norm(self._parts[1]))
 
     @property
     def length(self) -> float:
@@ -99,13 +106,9 @@ class Circle:
         rate = 2.0 * pi * self.turns
         # A whole number of turns ends exactly where it began.
         c, d = (1.0, 0.0) if s == 1.0 and self.turns % 1 == 0 else (cos(rate * s), sin(rate * s))
-        (x, y), (cx, cy, _) = self._spoke, self.centre
-        out, on = (c * x - d * y, d * x + c * y), (-d * x - c * y, c * x - d * y)
-        return Sample(
-            np.array([cx + out[0], cy + out[1], self.start[2]]),
-            np.array([rate * on[0], rate * on[1], 0.0]),
-            np.array([-rate * rate * out[0], -rate * rate * out[1], 0.0]),
-        )
+        middle, spoke, next_spoke = self._parts
+        out, on = c * spoke + d * next_spoke, c * next_spoke - d * spoke
+        return Sample(middle + out, rate * on, -rate * rate * out)
 
 
 @dataclass(frozen=True, eq=False)

@@ -26,6 +26,7 @@ class Plant:
 
     Attributes:
         name: Its name in figures and tables.
+        fits: Names of the robots whose numbers these are; empty if it fits any.
         gravity_compensation: Whether the arm itself adds the torque that holds it against gravity,
             in every mode, as Baxter does; a torque controller then adds none.
         armature: Inertia of each motor's rotor as felt at its joint, which is the rotor's inertia
@@ -50,6 +51,7 @@ class Plant:
     """
 
     name: str = "custom"
+    fits: tuple[str, ...] = ()
     gravity_compensation: bool = False
     armature: Any = 0.0
     viscous: Any = 0.0
@@ -76,6 +78,8 @@ class Plant:
                 object.__setattr__(self, field.name, value)
                 if field.name != "encoder_offset":
                     as_number(min(value), field.name, least=0.0)
+            elif field.name == "fits":
+                object.__setattr__(self, "fits", tuple(value))  # a list, where a log was read
             elif field.name not in ("name", "gravity_compensation"):
                 as_number(value, field.name, least=0.0)
         if self.lost_ticks > 1.0:
@@ -107,6 +111,7 @@ IDEAL = Plant(name="ideal")
 
 BAXTER = Plant(
     name="baxter",
+    fits=("left", "right"),
     gravity_compensation=True,
     armature=(0.1, 0.1, 0.08, 0.08, 0.05, 0.05, 0.05),
     viscous=0.7,
@@ -120,7 +125,9 @@ BAXTER = Plant(
     torque_lag=0.01,
     lost_ticks=0.02,
 )
-"""Baxter's arm as far as its properties are known; see `EVIDENCE`."""
+"""Baxter's arm as far as its properties are known; see `EVIDENCE`.
+
+No other robot takes it, unless it is asked to by ``replace(BAXTER, fits=())``."""
 
 
 class Evidence(NamedTuple):

@@ -56,25 +56,35 @@ class Robot:
         return f"<Robot {self.name!r} with {self.n} joints>"
 
     @classmethod
-    def from_urdf(cls, file: Any, *, tip: str, ready: Any, name: str | None = None) -> Robot:
+    def from_urdf(
+        cls,
+        file: Any,
+        *,
+        tip: str = "",
+        ready: Any = (),
+        base: str | None = None,
+        name: str | None = None,
+    ) -> Robot:
         """Read an arm from a URDF file with Pinocchio.
 
-        The arm consists of the joints between the root of the file and the tip.  All other joints,
-        such as those of a gripper, are fixed at zero, and each link is lumped with the links fixed
-        to it.  A continuous joint is limited to one turn in each direction.
+        The arm consists of the joints between the base and the tip.  All other joints, such as
+        those of wheels, a torso or a gripper, are fixed at zero, and each link is lumped with the
+        links fixed to it.  A continuous joint is limited to one turn in each direction.
 
         Args:
             file: The URDF file; its meshes are not needed.
-            tip: The link whose frame is the arm's tip.
+            tip: The link whose frame is the arm's tip; without it the error lists the links.
             ready: Joint angles at which exercises may start, shape (n,) in [rad], from the base to
                 the tip.
+            base: The last link that stands still; None takes the root of the file, whose frame is
+                the world's in any case.
             name: What to call the arm; None takes the file's own name.
 
         Returns:
             The robot.
 
         Raises:
-            UnknownName: The file has no link ``tip``.
+            UnknownName: The file has no link ``tip`` or ``base``.
             LabkitError: There is no such file, it is not a URDF, or the arm has a feature that is
                 not supported, such as a prismatic joint; the message says what to do.
             ShapeError: ``ready`` has a different number of joints.
@@ -82,7 +92,7 @@ class Robot:
         """
         from .urdf import read_urdf
 
-        made = read_urdf(file, tip, ready, name)
+        made = read_urdf(file, tip, ready, base, name)
         if made["name"] in SIDES:
             raise LabkitError(f"{made['name']!r} is a Baxter's arm; give this robot another name=")
         robot = cls(**made)

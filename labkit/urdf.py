@@ -23,7 +23,9 @@ The ratio of a real body is at least 1, but files round their numbers, by 0.2 % 
 the largest moment is then replaced by the sum of the others."""
 
 
-def read_urdf(file: Any, tip: str, ready: Any, name: str | None) -> dict[str, Any]:
+def read_urdf(
+    file: Any, tip: str, ready: Any, base: str | None, name: str | None
+) -> dict[str, Any]:
     """The arguments of `Robot`, read from a URDF file; see `Robot.from_urdf`."""
     try:
         path = Path(file)
@@ -32,13 +34,13 @@ def read_urdf(file: Any, tip: str, ready: Any, name: str | None) -> dict[str, An
     root = _parsed(path)
     name = str(name or root.get("name") or path.stem)
     root.set("name", name)  # Pinocchio requires a name
-    chain = [joint for joint in _chain(root, tip, path.name) if joint.get("type") != "fixed"]
+    chain = [joint for joint in _chain(root, base, tip, path.name) if joint.get("type") != "fixed"]
     limits = [_limits(joint, path.name) for joint in chain]
     if len(chain) < 2:
         many = "one joint that moves" if chain else "no joint that moves"
         raise LabkitError(
             f"{path.name} has {many} the link {tip!r}, and an arm has at least two; take another "
-            "tip"
+            "tip or base"
         )
     for joint in root.iter("joint"):
         if joint not in chain:
@@ -74,19 +76,21 @@ def _parsed(path: Path) -> _Element:
     return root
 
 
-def _chain(root: _Element, tip: str, file: str) -> list[_Element]:
-    """The joints from the root of the tree to the tip."""
+def _chain(root: _Element, base: str | None, tip: str, file: str) -> list[_Element]:
+    """The joints from the base, or else from the root of the tree, to the tip."""
     links = {str(link.get("name")) for link in root.iter("link")}
-    if tip not in links:
-        raise UnknownName(f"link in {file}", tip, sorted(links))
+    for name in (tip, base):
+        if name is not None and name not in links:
+            raise UnknownName(f"link in {file}", name, sorted(links))
     above = {child.get("link"): joint for joint, child in _ends(root, "child")}
     parent = {joint: end.get("link") for joint, end in _ends(root, "parent")}
     found: list[_Element] = []
     link: str | None = tip
-    while link in above:
-        joint = above[link]
-        if joint in found or joint not in parent:
-            raise LabkitError(f"{file} has no chain of joints from a base to the link {tip!r}")
+    while link != base and (base or link in above):
+        joint = above.get(link)
+        if joint is None or joint in found or joint not in parent:
+            start = repr(base) if base else "a base"
+            raise LabkitError(f"{file} has no chain of joints from {start} to the link {tip!r}")
         found.append(joint)
         link = parent[joint]
     return found[::-1]
@@ -103,8 +107,8 @@ def _limits(joint: _Element, file: str) -> dict[str, Any]:
     what, kind = f"joint {joint.get('name')} of {file}", joint.get("type")
     if kind not in ("revolute", "continuous"):
         raise LabkitError(
-            f"{what} is {kind}, but an arm here may only have joints that turn; take a tip before "
-            'it, or make it type="fixed"'
+            f"{what} is {kind}, but an arm here may only have joints that turn; take a base "
+            "behind it or a tip before it"
         )
     if joint.find("mimic") is not None:
         raise LabkitError(

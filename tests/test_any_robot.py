@@ -3,12 +3,13 @@
 import pickle
 import re
 from contextlib import suppress
+from dataclasses import replace
 from importlib.util import find_spec
 
 import numpy as np
 import pinocchio as pin
 import pytest
-from arms import FILES, READY, TIPS, arm
+from arms import DATA, FILES, READY, TIPS, arm
 from curves import slope_along
 from numpy.testing import assert_allclose, assert_array_equal
 
@@ -82,6 +83,51 @@ def test_each_link_is_where_pinocchio_puts_it_and_weighs_what_it_says(robot, mod
         assert_allclose(
             model.bias(q, dq), pin.nonLinearEffects(full, data, x, v)[at], rtol=0, atol=1e-9
         )
+
+
+@pytest.mark.parametrize(
+    ("file", "base", "tip"),
+    [
+        ("tiago_description/robots/tiago.urdf", "torso_lift_link", "arm_tool_link"),
+        ("pr2_description/urdf/pr2.urdf", "torso_lift_link", "r_gripper_tool_frame"),
+        ("g1_description/urdf/g1_29dof_rev_1_0.urdf", "torso_link", "left_wrist_yaw_link"),
+    ],
+)
+def test_an_arm_of_a_larger_robot_begins_at_its_base(file, base, tip):
+    """Tiago's, PR2's and a humanoid's: seven joints, each where it is with the others at zero."""
+    middle = [(m["lower"] + m["upper"]) / 2 for m in lk.Robot.from_urdf(
+        DATA / file, base=base, tip=tip, ready=np.zeros(7), name="free").bodies]  # fmt: skip
+    robot = lk.Robot.from_urdf(DATA / file, base=base, tip=tip, ready=middle, name="an arm")
+    full = pin.buildModelFromUrdf(str(DATA / file))
+    data, q = full.createData(), pin.neutral(full)
+    for name, angle in zip(robot.joint_names, middle, strict=True):
+        joint = full.joints[full.getJointId(name)]
+        turned = (np.cos(angle), np.sin(angle)) if joint.nq == 2 else angle
+        q[joint.idx_q : joint.idx_q + joint.nq] = turned
+    pin.framesForwardKinematics(full, data, q)
+    T_wt = data.oMf[full.getFrameId(tip)].homogeneous
+    assert_allclose(lk.Model(robot).pose(middle), T_wt, rtol=0, atol=1e-9)
+
+
+def test_without_a_tip_the_error_lists_the_links_and_a_wrong_base_is_a_sentence():
+    """Also a base that is not behind the tip."""
+    with pytest.raises(UnknownName) as caught:
+        lk.Robot.from_urdf(FILES["panda"])
+    assert {"panda_link0", "panda_hand_tcp"} <= set(caught.value.known)
+    with pytest.raises(UnknownName):
+        lk.Robot.from_urdf(FILES["panda"], tip=TIPS["panda"], base="torso")
+    with pytest.raises(LabkitError, match="panda_rightfinger"):
+        lk.Robot.from_urdf(FILES["panda"], tip=TIPS["panda"], base="panda_rightfinger")
+
+
+def test_baxters_plant_fits_another_arm_only_when_asked_to():
+    """A Panda has seven joints too."""
+    panda = arm("panda")
+    for make in (lk.Arm, lk.Model):
+        with pytest.raises(LabkitError, match="fits="):
+            make(panda, lk.BAXTER)
+    with lk.Arm(panda, replace(lk.BAXTER, fits=())) as asked:
+        assert asked.plant.stiction == lk.BAXTER.stiction
 
 
 def test_the_mass_matrix_is_symmetric_and_positive_definite(model, motions):
@@ -411,5 +457,5 @@ def test_bad_arguments_are_sentences(tmp_path):
     with pytest.raises(UnknownName, match="no arm 'ur5'; there is 'left', 'right'"):
         lk.Model("ur5")
     with pytest.raises(ShapeError, match=r"armature.*give 6 numbers, not 7"):
-        lk.Arm(arm("ur5"), lk.BAXTER)
+        lk.Arm(arm("ur5"), replace(lk.BAXTER, fits=()))
     assert len(READY["panda"]) == arm("panda").n

@@ -19,7 +19,7 @@ PER_JOINT = (
 def test_every_effect_is_off_by_default_and_on_the_ideal_arm():
     """All but name and command timeout are zero or False, and equal in both."""
     for field in dataclasses.fields(lk.Plant):
-        if field.name in ("name", "command_timeout"):
+        if field.name in ("name", "fits", "command_timeout"):
             continue
         value = getattr(lk.IDEAL, field.name)
         assert not np.any(value), field.name
@@ -28,7 +28,7 @@ def test_every_effect_is_off_by_default_and_on_the_ideal_arm():
 
 def test_every_number_of_baxter_has_evidence_and_lies_in_its_range():
     """A source, or the word that it is assumed; and the value is one of the plausible ones."""
-    names = {field.name for field in dataclasses.fields(lk.Plant)} - {"name"}
+    names = {field.name for field in dataclasses.fields(lk.Plant)} - {"name", "fits"}
     assert set(EVIDENCE) == names
     for name, evidence in EVIDENCE.items():
         value, least, most = (

@@ -83,6 +83,7 @@ def robot_data(robot: lk.Robot) -> dict[str, Any]:
 def plant_data(plant: lk.Plant, n: int) -> dict[str, Any]:
     """A plant, with n numbers for each property of the joints."""
     made = asdict(plant)
+    del made["fits"]
     return {k: plant.each(k, n).tolist() if isinstance(v, tuple) else v for k, v in made.items()}
 
 

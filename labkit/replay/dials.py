@@ -11,7 +11,7 @@ from ..errors import OutOfRange, TypeMismatch, UnknownName
 from ..plant import EVIDENCE, Plant
 from ..shapes import as_number, shown
 
-_OF_PLANT = {f.name for f in fields(Plant)} - {"name", "gravity_compensation"}
+_OF_PLANT = {f.name for f in fields(Plant)} - {"name", "fits", "gravity_compensation"}
 _UNITS = {name: source.unit for name, source in EVIDENCE.items()}
 
 
