@@ -29,11 +29,21 @@ except ModuleNotFoundError:  # a script, without the extra `notebook`
         """Say that there is no notebook."""
 
 
-STYLES = ("-", "--", "-.", ":")
 AXES = ("x", "y", "z")
 
 drawn_by: Callable[[], Iterable[str]] = tuple
 """Returns what captions must name, such as "a stand-in for circle"; a course may replace it."""
+
+
+def curve(k: int) -> dict[str, Any]:
+    """The look of curve ``k``, from 0, for `plot`: up to eight differ without their colours."""
+    return {
+        "color": f"C{k}",
+        "linestyle": ("-", "--", "-.", ":")[k % 4],
+        "marker": "o" if k > 3 else "",
+        "markersize": 4,
+        "markevery": 0.12,  # of the axes' diagonal
+    }
 
 
 def as_drawn(caption: str) -> str:
@@ -84,7 +94,7 @@ def scaling(*scalings: Any, axes: Any = None) -> Any:
         t = np.linspace(-0.1, 1.1, 601) * s_of_t.duration
         rows = np.array([s_of_t(x) for x in t])
         for ax, column in zip(axes, rows.T, strict=True):
-            ax.plot(t, column, f"C{k}{STYLES[k % 4]}", label=name)
+            ax.plot(t, column, **curve(k), label=name)
     for ax, label in zip(axes, ("s", "ds/dt [1/s]", "d²s/dt² [1/s²]"), strict=True):
         ax.set_ylabel(label)
     axes[0].legend(frameon=False)
@@ -96,7 +106,7 @@ def curves(ax: Any, log: Log, actual: Any, target: Any, label: str) -> None:
     """Plot three coordinates over time, each on top of its target, a broad grey line."""
     for k, name in enumerate(AXES):
         ax.plot(log.t, target[:, k], "0.6", linewidth=4, label="target" if k == 0 else None)
-        ax.plot(log.t, actual[:, k], f"C{k}{STYLES[k]}", label=name)
+        ax.plot(log.t, actual[:, k], **curve(k), label=name)
     ax.set_ylabel(label)
 
 

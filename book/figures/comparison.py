@@ -15,7 +15,7 @@ from myst_nb import glue
 
 import labkit as lk
 from labkit.shapes import Array
-from solutions.study import campaign, tasks
+from solutions.study import campaign, native, tasks
 from solutions.study.campaign import BASELINE, CONTROLLERS, FEED_FORWARD, FIVE, TABLES
 from solutions.study.claims import IMPEDANCE, THREE, interval
 from solutions.study.grid import pick
@@ -27,6 +27,7 @@ from .page import figure, holds, number, numbers, replay, shown, table
 FOUND = Path(__file__).parents[2] / "build/book/campaign.json"
 ARMS = {"ideal": "ideal", "baxter": "realistic"}
 """The names of the arms in the text."""
+WITH_TORQUES = ("joint torque", "joint impedance")
 SHOWN = ("late_rms_mm", "late_max_mm")
 SIGNS = {"held": "✓", "did not hold": "✗", "undecided": "?"}
 
@@ -139,6 +140,33 @@ def numbers_told() -> None:
     told("seeds", count)
     glue("runs", f"{len(rows)}", display=False)
     glue("seeds", _seeds(), display=False)
+
+
+def checked() -> HTML:
+    """The errors with the lab's friction and with MuJoCo's own, at a full and at half a step."""
+    steps = (1e-3, 5e-4)
+    own = {w: [native.lab(w, dt) for dt in steps] for w in ("joint velocity", *WITH_TORQUES)}
+    other = {w: [native.mujoco_alone(w, dt) for dt in steps] for w in WITH_TORQUES}
+    apart = {w: 1e3 * np.abs(own[w][0].q - other[w][0].q).max() for w in WITH_TORQUES}
+    late = [1e3 * lk.metrics.rms(lk.metrics.tip_error(log)[log.t >= 1.0, :3])
+            for log in own["joint velocity"]]  # fmt: skip
+    moved = abs(late[1] - late[0])
+    holds(0.0 < max(apart.values()) < 0.5, "MuJoCo's own friction moves the arm alike")
+    holds(0.002 < moved / late[0] < 0.012, "half the step moves an error by about a hundredth")
+    number("native_apart", apart["joint torque"], ".2f")
+    number("step_mm", moved, ".2g")
+    number("step_share", 100.0 * moved / late[0], ".1g")
+    rows = [
+        (f"{name}, step of {1e3 * dt:g} ms", *(
+            f"{native.rms(logs[w][k]):.3f}" if w in logs else "–" for w in own))
+        for name, logs in (("the lab's friction", own), ("MuJoCo's friction", other))
+        for k, dt in enumerate(steps)
+    ]  # fmt: skip
+    return table(
+        ("Physics", *own), rows,
+        "RMS error of the tip on the line in mm, the start included; realistic arm without noise "
+        "and delay, seed 0",
+    )  # fmt: skip
 
 
 def _seeds() -> str:

@@ -14,7 +14,7 @@ from IPython.display import HTML
 
 import labkit as lk
 from labkit import metrics
-from labkit.plotting import AXES, STYLES
+from labkit.plotting import AXES, curve
 from solutions.study import campaign
 from solutions.study.campaign import BASELINE, FIVE
 
@@ -34,7 +34,7 @@ def all_methods(task: str) -> HTML:
     for k, controller in enumerate(SHOWN):
         log = run_of(controller, task)
         thin = slice(None, None, max(1, len(log) // 300))
-        ax.plot(log.t[thin], _off(log)[thin], f"C{k}{STYLES[k % 4]}", label=controller)
+        ax.plot(log.t[thin], _off(log)[thin], **curve(k), label=controller)
     ax.set(xlabel="time [s]", ylabel="error of the tip [mm]", yscale="log")
     ax.set_ylim(bottom=max(ax.get_ylim()[0], 0.02))
     ax.legend(fontsize="small", ncols=2, loc="lower left", bbox_to_anchor=(0.0, 1.0))
@@ -125,7 +125,7 @@ def everything(controller: str, task: str) -> HTML:
                     linewidth=4,
                     label="" if k else "target",
                 )
-            ax.plot(log.t[thin], values[thin, k], f"C{k}{STYLES[k % 4]}", label=name,
+            ax.plot(log.t[thin], values[thin, k], **curve(k), label=name,
                     linewidth=1.8 if names is AXES else 1.2)  # fmt: skip
         ax.set(ylabel=label, ylim=limits)
         ax.legend(fontsize="small", ncols=7, loc="lower right", bbox_to_anchor=(1.0, 1.0),

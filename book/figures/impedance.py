@@ -13,7 +13,7 @@ from scipy.linalg import expm, sqrtm
 
 import labkit as lk
 from labkit import metrics
-from labkit.plotting import STYLES
+from labkit.plotting import curve
 from labkit.scene import contact_stiffness
 from solutions.study import experiments
 from solutions.study.gains import TIP_SPRING
@@ -42,7 +42,7 @@ def one_mass() -> HTML:
             return [y[1], (push * (s < 1.5) - b * y[1] - k * y[0]) / m]
 
         x = solve_ivp(slope, (0.0, 3.0), [0.0, 0.0], t_eval=t, max_step=0.005).y[0]
-        ax.plot(t, 1e3 * x, f"C{j}{STYLES[j]}", label=f"ζ = {zeta:g}")
+        ax.plot(t, 1e3 * x, **curve(j), label=f"ζ = {zeta:g}")
         told.append(f"{zeta:g}: {1e3 * x.max():.0f} mm at most")
     ax.axhline(1e3 * push / k, color="C5", linestyle=":")
     ax.text(2.7, 1e3 * push / k + 2, "F / k", fontsize="small")
@@ -97,7 +97,7 @@ def push() -> HTML:
         y = _sideways(log)
         felt = 1e3 * PUSH / float(np.interp(read_at, log.t, y))
         found.append(felt)
-        ax.plot(log.t, y, f"C{k}{STYLES[k]}", label=f"{stiffness:g} N/m")
+        ax.plot(log.t, y, **curve(k), label=f"{stiffness:g} N/m")
         told.append(f"commanded {stiffness:g} N/m, felt {felt:.4g} N/m")
         number(f"felt_{stiffness:.0f}", felt, ".4g")
         number(f"linear_{stiffness:.0f}", _linear(stiffness, read_at - BEGINS), ".4g")
@@ -199,7 +199,7 @@ def wall() -> HTML:
     ends = {}
     for k, one in enumerate(met):
         force = -one.wrench[:, 0]
-        ax.plot(one.t, force, f"C{k}{STYLES[k]}", label=one.name)
+        ax.plot(one.t, force, **curve(k), label=one.name)
         ends[one.name] = float(-one.force_at_rest[0])
     ax.set(xlabel="time [s]", ylabel="force on the wall [N]")
     ax.legend(fontsize="small")

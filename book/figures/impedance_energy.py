@@ -12,7 +12,7 @@ from scipy.linalg import eigh
 
 import labkit as lk
 from labkit import metrics, se3
-from labkit.plotting import STYLES
+from labkit.plotting import curve
 from labkit.shapes import Array
 from solutions.study import tasks
 from solutions.study.gains import TIP_SPRING
@@ -57,7 +57,7 @@ def elbow() -> HTML:
         with lk.Arm("left", ROTORS, q0=start) as arm:
             log = lk.run(arm, lk.Hold(model.pose(ready), 6.0), one, rate=1000.0)
         off = log.q[:, 2] - ready[2]
-        ax.plot(log.t, off, f"C{k}{STYLES[k]}", label=name)
+        ax.plot(log.t, off, **curve(k), label=name)
         late.append(float(np.abs(off[log.t > 4.0]).max()))
         moved.append(1e3 * float(np.linalg.norm(metrics.tip_error(log)[:, :3], axis=1).max()))
     claim(

@@ -104,6 +104,10 @@ def figure(caption: str, alt: str, words: str = "", fig: Any = None) -> HTML:
         fig: The figure; None means the current one.
     """
     fig = fig or plt.gcf()
+    for ax in fig.axes:
+        drawn = [x for x in ax.get_lines() if not str(x.get_label()).startswith("_")]
+        looks = {(x.get_linestyle(), x.get_marker(), x.get_linewidth()) for x in drawn}
+        holds(len(looks) == len(drawn), f"curves differ by more than colour: {caption}")
     with mpl.rc_context({"svg.hashsalt": caption}):
         text = io.StringIO()
         fig.savefig(text, format="svg", metadata={"Date": None, "Creator": None})

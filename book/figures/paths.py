@@ -90,7 +90,7 @@ def scaling_demo() -> HTML:
     length, t = 0.4, np.linspace(0.0, 2.0, 81)
     _, ax = plt.subplots(figsize=(5.0, 2.6))
     for k, (name, s) in enumerate(_scalings()):
-        ax.plot(t, [length * s(x)[1] for x in t], f"C{k}{plotting.STYLES[k]}", label=name)
+        ax.plot(t, [length * s(x)[1] for x in t], **plotting.curve(k), label=name)
     ax.set(xlabel="time [s]", ylabel="speed [m/s]", title=f"{length:g} m in {t[-1]:g} s")
     ax.legend(fontsize="small")
     caption = "Live: choose a length and a duration, and compare the peaks."

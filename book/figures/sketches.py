@@ -9,7 +9,7 @@ import numpy as np
 from IPython.display import HTML
 
 import labkit as lk
-from labkit.plotting import STYLES
+from labkit.plotting import curve
 from solutions.study.singular import damped_inverse
 from solutions.study.workspace_velocity import WorkspaceVelocityPD
 
@@ -163,7 +163,7 @@ def null_space() -> HTML:
         bend = np.arccos(reach / (2.0 * rod))
         course = np.arctan2(gap[1], gap[0]) + bend
         two = one + rod * np.array((np.cos(course), np.sin(course)))
-        ax.plot(*np.array(((0.0, 0.0), one, two, hand)).T, f"C{k}o{STYLES[k]}", markersize=5)
+        ax.plot(*np.array(((0.0, 0.0), one, two, hand)).T, **curve(k) | {"marker": "o"})
     ax.plot(*hand, "*", color=FRAME, markersize=13)
     ax.plot(0.0, 0.0, "s", color=FRAME, markersize=9)
     ax.text(hand[0] + 0.03, -0.05, "the hand stays", fontsize="small")

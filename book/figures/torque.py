@@ -10,7 +10,7 @@ from IPython.display import HTML
 
 import labkit as lk
 from labkit import metrics
-from labkit.plotting import STYLES
+from labkit.plotting import curve
 from solutions.study.joint_torque import AugmentedPD, ComputedTorque
 
 from .claims import claim, shows
@@ -44,7 +44,7 @@ def responses() -> HTML:
             ax.plot(
                 log.t,
                 e[:, k],
-                f"C{k}{STYLES[k % 4]}",
+                **curve(k),
                 label=joint.removeprefix("left_"),
                 linewidth=1.4,
             )
@@ -83,9 +83,9 @@ def sampled() -> HTML:
     bare = float(lk.Model("left", lk.IDEAL).mass_matrix(lk.robot("left").neutral)[6, 6])
     real = float(lk.Model("left", lk.BAXTER).mass_matrix(lk.robot("left").neutral)[6, 6])
     _, ax = plt.subplots(figsize=(6.0, 3.2))
-    for k, (rate, style) in enumerate(zip(RATES, ("-", "--"), strict=True)):
-        curve = [radius(i, REPORT_KP, REPORT_KD, 1.0 / rate) for i in inertia]
-        ax.plot(inertia, curve, f"C{k}{style}", label=f"{rate:.0f} Hz")
+    for k, rate in enumerate(RATES):
+        radii = [radius(i, REPORT_KP, REPORT_KD, 1.0 / rate) for i in inertia]
+        ax.plot(inertia, radii, **curve(k), label=f"{rate:.0f} Hz")
     ax.axhline(1.0, color="C5", linewidth=1.0)
     for x, name in ((bare, "w2 without rotor"), (real, "w2 with rotor")):
         ax.axvline(x, color="C5", linestyle=":")
@@ -144,7 +144,7 @@ def weight() -> HTML:
     ends = {}
     for k, (name, log) in enumerate(weight_runs().items()):
         e = 1e3 * metrics.tip_error(log)[:, 2]
-        ax.plot(log.t, -e, f"C{k}{STYLES[k]}", label=name)
+        ax.plot(log.t, -e, **curve(k), label=name)
         ends[name] = -float(e[-1])
     ax.set(xlabel="time [s]", ylabel="height gained [mm]")
     ax.legend()

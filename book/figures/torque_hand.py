@@ -14,7 +14,7 @@ from scipy.optimize import fsolve
 
 import labkit as lk
 from labkit import metrics
-from labkit.plotting import STYLES
+from labkit.plotting import curve
 from solutions.study import tasks
 from solutions.study.joint_torque import ComputedTorque, IntegralTorque
 
@@ -256,7 +256,7 @@ def payload() -> HTML:
             log = lk.run(arm, lk.Hold(q0, 1.5), law, rate=1000)
         sag = 1e3 * metrics.tip_error(log)[:, 2]
         expected = 1e3 * force * mobility[2, 2] / gain
-        ax.plot(log.t, sag, f"C{k}{STYLES[k]}", label=f"Kp = {gain:g} 1/s²")
+        ax.plot(log.t, sag, **curve(k), label=f"Kp = {gain:g} 1/s²")
         ax.axhline(expected, color="#999999", linestyle=":")
         ends.append((float(sag[-1]), float(expected)))
         said.append(f"{sag[-1]:.3g} mm for Kp = {gain:g}")

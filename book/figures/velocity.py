@@ -15,7 +15,7 @@ from scipy.optimize import brentq
 
 import labkit as lk
 from labkit import metrics
-from labkit.plotting import STYLES
+from labkit.plotting import curve
 from solutions.study import speed_gains
 from solutions.study.joint_velocity import JointVelocityPD
 from solutions.study.workspace_velocity import WorkspaceVelocityPD
@@ -57,7 +57,7 @@ def damping() -> HTML:
         log = step_run(2.0, kd)
         e = _error(log)
         rate = -np.log(e[200] / e[0]) / log.t[200]
-        ax.plot(log.t, e, f"C{k}{STYLES[k]}", label=f"Kd = {kd:g}")
+        ax.plot(log.t, e, **curve(k), label=f"Kd = {kd:g}")
         told.append(f"Kd = {kd:g}: {rate:.2f} per second")
         number(f"rate_{k}", rate, ".2f")
         rates.append(float(rate))
@@ -70,10 +70,10 @@ def damping() -> HTML:
     )
     wild = step_run(2.0, 1.1)
     e = _error(wild)
-    ax.plot(wild.t, e, "C4:", linewidth=1.2, label="Kd = 1.1")
+    ax.plot(wild.t, e, **curve(3), label="Kd = 1.1")
     calm = step_run(2.0, 0.9)
-    for log, name, style in ((calm, "Kd = 0.9", f"C2{STYLES[2]}"), (wild, "Kd = 1.1", "C4:")):
-        below.plot(log.t[:40], log.command[:40, 0], style, marker=".", label=name)
+    for k, log, name in ((2, calm, "Kd = 0.9"), (3, wild, "Kd = 1.1")):
+        below.plot(log.t[:40], log.command[:40, 0], **curve(k) | {"marker": "."}, label=name)
     swings = [np.abs(np.diff(log.command[:, 0])) for log in (wild, calm)]
     grows, fades = (float(x[8] / x[2]) for x in swings)  # later a limit stops the growing one
     claim(
@@ -283,7 +283,7 @@ def euler() -> HTML:
         angles[name] = np.degrees(np.linalg.norm(metrics.tip_error(log)[:, 3:], axis=1))
     _, ax = plt.subplots(figsize=(6.0, 3.0))
     for k, (name, angle) in enumerate(angles.items()):
-        ax.plot(log.t, angle, f"C{k}{STYLES[k]}", label=name)
+        ax.plot(log.t, angle, **curve(k), label=name)
     ax.set(xlabel="time [s]", ylabel="orientation error [degrees]", ylim=(0, None))
     ax.legend()
     right, wrong = (a[-1] for a in angles.values())

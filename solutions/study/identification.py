@@ -23,7 +23,7 @@ from .tasks import Task
 
 MOVING = 0.05
 """Below this speed, in [rad/s], a joint may stick, and its torque does not show its friction."""
-WINDOW = 21
+WINDOW = 11
 """The number of neighbouring reports to which one cubic is fitted."""
 SOFT = 0.01
 """The speed in [rad/s] over which the sign of the target's speed is smoothed."""
@@ -87,14 +87,14 @@ def excite(plant: Plant = BAXTER, seed: int = 0) -> Log:
         return run(arm, swing, law.controller, rate=law.rate, duration=swing.duration)
 
 
-def fit(log: Log, model: Model, smooth: bool = True) -> Friction:
+def fit(log: Log, model: Model, between: bool = True) -> Friction:
     """Fit the friction to the reports and the commands of the arm, without other knowledge.
 
     Args:
         log: A run in torque mode of an arm that carries its own weight.
         model: The model of the arm; it must have the arm's rotors.
-        smooth: Whether to smooth the commands before one is taken for each report.  Between two
-            reports the commands change with the target, which would count as friction.
+        between: Whether the torque at a report is the mean of the two commands before and after it.
+            A command acts until the next one, so the newer one alone gives a biased fit.
     """
     t, at = np.unique(log.measured.t.round(6), return_index=True)
     step = float(np.median(np.diff(t)))
@@ -103,7 +103,8 @@ def fit(log: Log, model: Model, smooth: bool = True) -> Friction:
     dq, ddq = (savgol_filter(q, WINDOW, 3, deriv=k, delta=step, axis=0) for k in (1, 2))
     per_report = step / float(np.median(np.diff(log.t)))
     wide = 2 * round(WINDOW // 2 * per_report) + 1  # the same time, as a number of commands
-    sent = savgol_filter(log.command, wide, 3, axis=0) if smooth else log.command
+    acted = np.vstack([log.command[:1], 0.5 * (log.command[1:] + log.command[:-1])])
+    sent = savgol_filter(acted if between else log.command, wide, 3, axis=0)
     command = np.column_stack([np.interp(even, log.t, x) for x in sent.T])
     moved = np.array(
         [

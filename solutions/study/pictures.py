@@ -10,7 +10,7 @@ import matplotlib
 import numpy as np
 
 from labkit import Log, Model, PoseSample, metrics, plotting
-from labkit.plotting import AXES, STYLES, curves
+from labkit.plotting import AXES, curve, curves
 
 from .campaign import FIVE, TASKS, joints, perform
 from .film import film
@@ -97,7 +97,7 @@ def overview(
         (tip[3], np.degrees(e[:, 3:]), "orientation error [deg]"),
     ):
         for k, name in enumerate(AXES):
-            ax.plot(log.t, error[:, k], f"C{k}{STYLES[k]}", label=name)
+            ax.plot(log.t, error[:, k], **curve(k), label=name)
         ax.plot(log.t, np.linalg.norm(error, axis=1), "k", linewidth=0.8, label="length")
         ax.set_ylabel(label)
         _legend_above(ax)

@@ -165,13 +165,14 @@ def test_the_two_poses_of_a_tag_are_opencvs():
             assert pose["miss"] == pytest.approx(np.sqrt(2.0) * error, rel=1e-4)
 
 
-def test_half_pixels_flip_a_far_tag_as_the_page_says():
-    """One half pixel at 1.5 m and 10 degrees, 21 at 0.5 m and 30 degrees."""
-    far, near = ({"distance": 1.5, "tilt": 10}, {"distance": 0.5, "tilt": 30})
-    assert javascript({"ask": "flip", **far}, {"ask": "flip", **near}) == [1, 21]
-    page = (ROOT / "book/live_age.md").read_text()
-    assert "At 1.5 m and 10° its first half pixel flips the pose" in page
-    assert "at 0.5 m and\n30° it takes 21 of them" in page
+def test_half_pixels_flip_a_far_tag_in_the_worst_direction():
+    """1 at 1.5 m and 10 degrees, 21 at 0.5 m and 30; with the tilt reversed 36, and never."""
+    asked = [
+        {"ask": "flip", "distance": distance, "tilt": sign * tilt}
+        for sign in (1, -1)
+        for distance, tilt in ((1.5, 10), (0.5, 30))
+    ]
+    assert javascript(*asked) == [1, 21, 36, 100]
 
 
 def test_without_damping_the_joint_speed_has_no_peak_that_could_be_told():
