@@ -20,9 +20,8 @@ from solutions.study.campaign import BASELINE, CONTROLLERS, FEED_FORWARD, FIVE, 
 from solutions.study.claims import IMPEDANCE, THREE, interval
 from solutions.study.grid import pick
 
-from .claims import claim, shows, told
-from .facts import LEVEL
-from .page import figure, holds, number, numbers, replay, shown, table
+from .claims import holds, shows
+from .page import figure, number, numbers, replay, shown, table
 
 FOUND = Path(__file__).parents[2] / "build/book/campaign.json"
 ARMS = {"ideal": "ideal", "baxter": "realistic"}
@@ -69,18 +68,13 @@ def numbers_told() -> None:
     real = {controller: _on_paths(controller, "baxter") for controller in CONTROLLERS}
     ideal = {controller: _on_paths(controller, "ideal") for controller in CONTROLLERS}
     soft, stiff = IMPEDANCE, THREE
-    claim(
+    holds(
+        0.0 < max([real[w] for w in stiff]) < 0.6 * real[FEED_FORWARD],
         "it keeps the error that it starts with",
-        lambda plain, stiff: 0.0 < max(stiff) < 0.6 * plain,
-        plain=real[FEED_FORWARD],
-        stiff=[real[w] for w in stiff],
     )
-    claim(
+    holds(
+        min([real[w] for w in soft]) > real[FEED_FORWARD] > max([real[w] for w in stiff]) > 0.0,
         "more than feed-forward alone, which never looks",
-        lambda soft, stiff, plain: min(soft) > plain > max(stiff) > 0.0,
-        soft=[real[w] for w in soft],
-        stiff=[real[w] for w in stiff],
-        plain=real[FEED_FORWARD],
     )
     paths = [task for task in campaign.TASKS if task != "tag"]
     apart = [
@@ -88,23 +82,15 @@ def numbers_told() -> None:
         for w in soft
         for task in paths
     ]
-    claim(
+    holds(
+        all(0.0 < x.mean < x.half_width for x in apart),
         "With these five starts the difference is undecided on each path",
-        lambda means, halves: all(0.0 < a < h for a, h in zip(means, halves, strict=True)),
-        means=[x.mean for x in apart],
-        halves=[x.half_width for x in apart],
     )
     plain = np.concatenate([_of_seeds(FEED_FORWARD, task) for task in paths])
     numbers({"plain_least": plain.min(), "plain_most": plain.max()}, ".0f")
-    claim(
-        "On the ideal arm, which has no friction and no delay, the errors of all five, averaged "
-        "over the three paths, stay within",
-        lambda ideal, real: (
-            0.0 < max(ideal) < 1.0
-            and all(0.0 < a < 0.1 * b for a, b in zip(ideal, real, strict=True))
-        ),
-        ideal=[ideal[w] for w in FIVE],
-        real=[real[w] for w in FIVE],
+    holds(
+        all(0.0 < ideal[w] < min(1.0, 0.1 * real[w]) for w in FIVE),
+        "On the ideal arm, which has no friction and no delay, the errors of all five,",
     )
     line, count = tasks.line(), max(row["seed"] for row in rows) + 1
     tips = [lk.Model("left").pose(q)[:3, 3] for q in (line.q0, *map(line.start, range(count)))]
@@ -136,8 +122,6 @@ def numbers_told() -> None:
         },
         ".2g",
     )
-    told("runs", len(rows))
-    told("seeds", count)
     glue("runs", f"{len(rows)}", display=False)
     glue("seeds", _seeds(), display=False)
 
@@ -257,24 +241,18 @@ def verdicts_told() -> None:
     x = v["overall"]
     number("built_in_mean", x["mean"], "+.2f")
     number("built_in_half", x["half_width"], ".2f")
-    claim(
-        "on each of the three paths the claim did not hold",
-        lambda d: all(a < 0.0 for a in d),
-        d=pairs,
-    )
-    claim(
+    holds(all(a < 0.0 for a in pairs), "on each of the three paths the claim did not hold")
+    holds(
+        0.78 * -x["mean"] < x["half_width"] < 0.86 * -x["mean"],
         "the half width of the interval is four fifths of the difference",
-        lambda mean, half: 0.78 * -mean < half < 0.86 * -mean,
-        mean=x["mean"],
-        half=x["half_width"],
     )
     torque = judged["the built-in method tracks better than joint torque"]
-    claim(
+    d = [t["mean"] for t in torque["tasks"]]
+    holds(
+        min(d) > 0.0
+        and max(d) > 1.5 * min(d)
+        and (abs(torque["overall"]["mean"]) < torque["overall"]["half_width"]),
         "the tasks' means agree in sign and not in size",
-        lambda d, mean, half: min(d) > 0.0 and max(d) > 1.5 * min(d) and abs(mean) < half,
-        d=[t["mean"] for t in torque["tasks"]],
-        mean=torque["overall"]["mean"],
-        half=torque["overall"]["half_width"],
     )
     errors = {
         (r["controller"], r["task"], r["seed"]): r for r in pick(found()["rows"], plant="baxter")
@@ -286,38 +264,23 @@ def verdicts_told() -> None:
     ]
     pooled = interval("pairs", pairs, 8)
     tracking = [v for v in judged.values() if v["unit"] == "mm" and v["overall"]["of"] == "tasks"]
-    claim(
-        "each at $1 - 0.05/8$), so that 95 % holds for all of them together",
-        lambda m, each, level: m == 8 and math.isclose(m * (1.0 - each), 1.0 - level),
-        m=len(tracking),
-        each=1.0 - (1.0 - LEVEL) / len(tracking),
-        level=LEVEL,
-    )
-    claim(
+    holds(len(tracking) == 8, "each at $1 - 0.05/8$")
+    holds(
+        pooled.mean > pooled.half_width > 0.0 and pooled.units == 15,
         "Fifteen pooled pairs would have called it held",
-        lambda mean, half, units: mean > half > 0.0 and units == 15,
-        mean=pooled.mean,
-        half=pooled.half_width,
-        units=pooled.units,
     )
     number("torque_mean", torque["overall"]["mean"], "+.2f")
     number("torque_half", torque["overall"]["half_width"], ".1f")
     gain = judged["Kd = 0.5 tracks better than Kd = 0"]["overall"]
-    claim(
-        "a derivative gain tracks better",
-        lambda mean, half: mean > half > 0.0,
-        mean=gain["mean"],
-        half=gain["half_width"],
-    )
+    holds(gain["mean"] > gain["half_width"] > 0.0, "a derivative gain tracks better")
     pair = judged["joint velocity tracks better than workspace velocity"]["overall"]
     others = [w for w in FIVE if "velocity" not in w]
-    claim(
-        "The two velocity controllers are the best of the five, and these runs cannot tell which",
-        lambda two, others, mean, half: 0.0 < max(two) < min(others) and abs(mean) < half,
-        two=[_on_paths(w, "baxter") for w in FIVE if w not in others],
-        others=[_on_paths(w, "baxter") for w in others],
-        mean=pair["mean"],
-        half=pair["half_width"],
+    holds(
+        0.0
+        < max([_on_paths(w, "baxter") for w in FIVE if w not in others])
+        < min([_on_paths(w, "baxter") for w in others])
+        and abs(pair["mean"]) < pair["half_width"],
+        "The two velocity controllers are the best of the five, and these runs cannot",
     )
     ideal = judged["four times the gain converges faster on the ideal arm"]["overall"]
     number("tick", 1e3 * ideal["half_width"], ".2g")

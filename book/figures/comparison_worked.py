@@ -17,11 +17,10 @@ from solutions.study.campaign import BASELINE
 from solutions.study.claims import Interval, Outcome, interval
 from solutions.study.grid import pick
 
-from .claims import claim, shows
+from .claims import holds, shows
 from .comparison import found
 from .facts import CLAIMS, LEVEL
 from .page import Question, figure, number, numbers, quiz
-from .tags_worked import by_hand
 
 PATHS = [task for task in campaign.TASKS if task != "tag"]
 FIRST = (10.4, 8.8, 12.1, 9.5, 11.2)
@@ -47,8 +46,8 @@ def differences(controller: str) -> dict[str, list[float]]:
 def one_number() -> None:
     """The error of a run, computed by hand."""
     e = np.array(((3.0, 4.0, 0.0), (0.0, 0.0, 1.0)))
-    by_hand("the RMS error is 3.6 mm", 3.6, metrics.rms(e), 0.01)
-    by_hand("the number would be 2.1 mm", 2.1, float(np.sqrt(np.mean(e**2))), 0.02)
+    shows("the RMS error is 3.6 mm", 3.6, metrics.rms(e), 0.01)
+    shows("the number would be 2.1 mm", 2.1, float(np.sqrt(np.mean(e**2))), 0.02)
     lengths = np.linalg.norm(e, axis=1)
     shows("Their lengths are 5 and 1 mm, so the mean length is 3 mm", (5.0, 1.0, 3.0),
           (*lengths, lengths.mean()))  # fmt: skip
@@ -57,25 +56,20 @@ def one_number() -> None:
 def intervals() -> None:
     """Check the derivations' statements about levels, factors and outcomes."""
     factors = [float(student.ppf(0.975, n - 1)) for n in (2, 3, 5, 10)] + [norm.ppf(0.975)]
-    claim(
+    holds(
+        np.allclose(factors, (12.7, 4.3, 2.78, 2.26, 1.96), rtol=0.004)
+        and factors[0] - factors[2] > 20.0 * (factors[3] - factors[4]) > 0.0,
         "The step from two to five is worth far more than the one from ten to infinity",
-        lambda t: (
-            np.allclose(t, (12.7, 4.30, 2.78, 2.26, 1.96), rtol=4e-3)
-            and t[0] - t[2] > 20.0 * (t[3] - t[4]) > 0.0
-        ),
-        t=factors,
     )
-    by_hand("intervals 30 % too short", 0.30, 1.0 - factors[4] / factors[2], 0.03)
+    shows("intervals 30 % too short", 0.30, 1.0 - factors[4] / factors[2], 0.03)
     shows("An interval with 95 % confidence is wrong in one of twenty cases", (0.95, 20.0),
           (LEVEL, 1.0 / (1.0 - LEVEL)))  # fmt: skip
     true, pooled = 1.0 / 3.0 + 0.25 / 15.0, 1.25 / 15.0
-    by_hand("its variance is too small by a factor of 4.2", 4.2, true / pooled)
+    shows("its variance is too small by a factor of 4.2", 4.2, true / pooled)
     kinds = (Outcome.HELD, Outcome.DID_NOT_HOLD, Outcome.UNDECIDED)
-    claim(
-        "held if the whole interval is above zero, it did not hold if the whole interval is below",
-        lambda mean, half: tuple(Interval("", m, half, 2).outcome for m in mean) == kinds,
-        mean=[1.0, -1.0, 0.2],
-        half=0.5,
+    holds(
+        tuple(Interval("", m, 0.5, 2).outcome for m in [1.0, -1.0, 0.2]) == kinds,
+        "held if the whole interval is above zero, it did not hold if the whole",
     )
 
 
@@ -83,16 +77,12 @@ def five_pairs() -> None:
     """Two made-up controllers, compared with pairs and without."""
     mean, half = paired_difference(FIRST, SECOND)
     d = np.subtract(FIRST, SECOND)
-    by_hand("The mean difference is 0.60 mm", 0.60, mean)
-    by_hand("have a standard deviation of 0.158 mm", 0.158, d.std(ddof=1))
-    by_hand("0.158/\\sqrt5$ = 0.0707 mm", 0.0707, d.std(ddof=1) / math.sqrt(5.0))
-    by_hand("the half width is 0.20 mm", 0.20, half, 0.03)
+    shows("The mean difference is 0.60 mm", 0.60, mean)
+    shows("have a standard deviation of 0.158 mm", 0.158, d.std(ddof=1))
+    shows("0.158/\\sqrt5$ = 0.0707 mm", 0.0707, d.std(ddof=1) / math.sqrt(5.0))
+    shows("the half width is 0.20 mm", 0.20, half, 0.03)
     spread = [float(np.std(x, ddof=1)) for x in (FIRST, SECOND)]
-    claim(
-        "scatter by 1.31 mm and 1.45 mm",
-        lambda s: np.allclose(s, (1.31, 1.45), rtol=5e-3),
-        s=spread,
-    )
+    holds(np.allclose(spread, (1.31, 1.45), rtol=0.005), "scatter by 1.31 mm and 1.45 mm")
     alone, t = math.hypot(*spread) / math.sqrt(5.0), float(student.ppf(0.975, 8))
     shows(
         "= 0.87 mm and, with the factor 2.306 for eight degrees of freedom, an interval of "
@@ -103,7 +93,7 @@ def five_pairs() -> None:
         0.02,
     )
     rho = float(np.corrcoef(FIRST, SECOND)[0, 1])
-    by_hand("a correlation of 0.998", 0.998, rho, 0.002)
+    shows("a correlation of 0.998", 0.998, rho, 0.002)
 
 
 def units() -> None:
@@ -116,9 +106,9 @@ def units() -> None:
     number("unit_deviation", deviation, ".2f")
     number("unit_error", deviation / math.sqrt(3.0), ".2f")
     number("unit_half", whole.half_width, ".1f")
-    by_hand("is 12.59 instead of 4.30", 12.59, student.ppf(1.0 - 0.025 / CLAIMS, 2), 1e-3)
-    by_hand("instead of 4.30", 4.30, student.ppf(0.975, 2), 1e-3)
-    claim("Two of the three paths are decided", lambda n: n == 2.0, n=_decided("joint torque"))
+    shows("is 12.59 instead of 4.30", 12.59, student.ppf(1.0 - 0.025 / CLAIMS, 2), 1e-3)
+    shows("instead of 4.30", 4.30, student.ppf(0.975, 2), 1e-3)
+    holds(_decided("joint torque") == 2.0, "Two of the three paths are decided")
 
 
 def _decided(controller: str) -> int:
@@ -135,12 +125,7 @@ def more_seeds() -> None:
     between = tasks - within / d.shape[1]
     t = float(student.ppf(1.0 - 0.025 / CLAIMS, 2))
     endless = t * math.sqrt(between / 3.0)
-    claim(
-        "No number of seeds would decide it",
-        lambda mean, half: half > 2.0 * mean > 0.0,
-        mean=float(d.mean()),
-        half=endless,
-    )
+    holds(endless > 2.0 * d.mean() > 0.0, "No number of seeds would decide it")
     numbers({"within": within, "between": between, "endless": endless}, ".2g")
     t = float(student.ppf(1.0 - 0.025 / CLAIMS, 11))
     number("factor_twelve", t, ".2g")
@@ -149,7 +134,7 @@ def more_seeds() -> None:
 
 def luck() -> None:
     """How often pure noise looks like a result."""
-    by_hand("of them exclude the truth, instead of 5 %", 5.0, 100.0 * (1.0 - LEVEL))
+    shows("of them exclude the truth, instead of 5 %", 5.0, 100.0 * (1.0 - LEVEL))
     random = np.random.default_rng(3)
     many = 4000
     b, w = random.standard_normal((many, 3, 1)), 0.5 * random.standard_normal((many, 3, 5))
@@ -161,10 +146,9 @@ def luck() -> None:
         return 100.0 * float(np.mean(np.abs(x.mean(axis=1)) > half))
 
     pooled, by_task = wrong(d.reshape(many, 15)), wrong(d.mean(axis=2))
-    claim(
+    holds(
+        pooled > 20.0 > 7.0 > by_task > 3.0,
         "Pooled, the intervals are wrong far more often than they say",
-        lambda rates: rates[0] > 20.0 > 7.0 > rates[1] > 3.0,
-        rates=[pooled, by_task],
     )
     numbers({"wrong_pooled": pooled, "wrong_tasks": by_task}, ".2g")
 

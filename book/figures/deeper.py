@@ -13,8 +13,8 @@ from labkit.plotting import curve
 from solutions.study import identification, image_servoing, passivity, redundancy, tasks
 from solutions.study.gains import TIP_SPRING
 
-from .claims import claim, shows
-from .page import figure, holds, number, numbers, shown, table
+from .claims import holds, shows
+from .page import figure, number, numbers, shown, table
 
 SEEDS = range(10)
 """A single run says little about viscous friction; see the spread in `friction`."""
@@ -125,11 +125,9 @@ def _ahead(log: lk.Log) -> None:
     fastest = float(np.linalg.norm(speed, axis=1).max())
     forward = speed[k] / np.linalg.norm(speed[k])
     age = lk.BAXTER.state_delay + 0.5 / lk.BAXTER.state_rate
-    claim(
+    holds(
+        0.0 < 0.7 * (1000.0 * np.linalg.norm(e[k])) < -(1000.0 * e[k] @ forward),
         "ahead of its target",
-        lambda along, size: 0.0 < 0.7 * size < -along,
-        along=float(1e3 * e[k] @ forward),
-        size=float(1e3 * np.linalg.norm(e[k])),
     )
     shows("The reports are 9 ms old on average", 9.0, 1e3 * age)
     shows(
@@ -156,20 +154,15 @@ def passive() -> HTML:
     ratio = np.array(alone) / limit
     holds(ratio.min() >= 1.0 and ratio.max() < 1.005, "the two limits agree within half a per cent")
     number("light_ratio", passivity.stiffest(0.1, 50.0, 0.0, SAMPLING) * SAMPLING / 100.0, ".1f")
-    claim(
-        "With a damper of 60 N s/m the condition never holds in this figure, for $b$ is below 60",
-        lambda b, computed, least: 0.0 < max(b) < computed == 60.0 and least > 300.0,
-        b=[damping[0], damping[-1]],
-        computed=DAMPER,
-        least=min(damped),
+    holds(
+        0.0 < max([damping[0], damping[-1]]) < DAMPER == 60.0 and min(damped) > 300.0,
+        "With a damper of 60 N s/m the condition never holds in this figure, for $b$",
     )
-    holds(passivity.is_stable(passivity.loop(MASS, 5.0, 300.0, 60.0, SAMPLING, 5e5)),
-          "the lab's spring is stable at a wall of 500 kN/m")  # fmt: skip
-    claim(
+    at_wall = passivity.loop(MASS, 5.0, 300.0, 60.0, SAMPLING, 5e5)
+    holds(passivity.is_stable(at_wall), "the lab's spring is stable at a wall of 500 kN/m")
+    holds(
+        0.0 < 10.0 * 300.0 < min([float(np.interp(5.0, damping, x)) for x in (damped, wall)]),
         "The lab's own spring, 300 N/m, is far below both",
-        lambda own, limits: 0.0 < 10.0 * own < min(limits),
-        own=300.0,
-        limits=[float(np.interp(5.0, damping, x)) for x in (damped, wall)],
     )
     own = TIP_SPRING[0]
     need = [passivity.least_damping(own, B, SAMPLING) for B in (0.0, DAMPER)]
@@ -213,10 +206,11 @@ def servoing() -> HTML:
         t = image_servoing.DT * np.arange(len(wrong.distance))
         name = method.replace("measured", "in metres")
         ax.semilogy(t, 1e3 * wrong.distance, **curve(k), label=name)
-    claim(
+    holds(
+        0.0 < ends["image"] < 0.5
+        and ends["pose, goal measured"] > 20.0
+        and (0.0 < ends["pose, goal shown"] < 0.5),
         "With a focal length that is believed 20 % too long",
-        lambda x: 0.0 < x[0] < 0.5 and x[1] > 20.0 and 0.0 < x[2] < 0.5,
-        x=[ends["image"], ends["pose, goal measured"], ends["pose, goal shown"]],
     )
     numbers({"servo_image": ends["image"], "servo_pose": ends["pose, goal measured"]}, ".2g")
     ax.set(xlabel="time [s]", ylabel="distance from the goal [mm]", ylim=(1e-3, 300))
@@ -242,7 +236,7 @@ def posture() -> HTML:
         ends[name] = away[-1]
         ax.plot(away, **curve(k) | {"marker": "o"}, label=name)
     free, held = ends.values()
-    claim("After five laps", lambda free, held: free > 5.0 * held > 0.0, free=free, held=held)
+    holds(free > 5.0 * held > 0.0, "After five laps")
     numbers({"drift_free": free, "drift_held": held}, ".2g")
     ax.set(xlabel="lap", ylabel="farthest joint [°]")
     ax.legend()
@@ -290,13 +284,11 @@ def robust() -> HTML:
         above.semilogy(angles, fast, **curve(k), label=f"λ² = {damping:g}")
         below.plot(angles, 1e3 * missed, **curve(k))
         peak[damping], miss[damping] = fast.max(), 1e3 * missed.max()
-    claim(
+    holds(
+        peak[0.0] > 1000.0
+        and peak[0.0] > 5.0 * peak[0.01] > 0.0
+        and (0.0 <= round(miss[0.0], 3) < 1.0 < miss[0.01]),
         "the fastest joint would have to reach more than 1,000 rad/s",
-        lambda peak, miss: (
-            peak[0] > 1000.0 and peak[0] > 5.0 * peak[1] > 0.0 and 0.0 <= miss[0] < 1.0 < miss[1]
-        ),
-        peak=[peak[0.0], peak[1e-2]],
-        miss=[round(miss[0.0], 3), miss[1e-2]],  # the first is a rounding error
     )
     shows("of the 100 mm/s that are wanted", 100.0, 1e3 * redundancy.OUTWARDS)
     numbers({"peak_2": peak[1e-2], "miss_2": miss[1e-2]}, ".2g")

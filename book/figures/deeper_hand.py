@@ -12,7 +12,7 @@ import labkit as lk
 from solutions.study import image_servoing
 from solutions.study.gains import TIP_SPRING
 
-from .claims import claim, shows
+from .claims import holds, shows
 from .page import figure, number, numbers, table
 
 STIFFNESS, SLOW, SPEED, DEPTH = 300.0, 0.1, 0.1, 0.05
@@ -27,14 +27,10 @@ def trip() -> HTML:
     outwards = [(DEPTH - step * k, STIFFNESS * (DEPTH - step * k)) for k in range(count)]
     spent = sum(force * step for _, force in inwards)
     returned = sum(force * step for _, force in outwards)
-    claim(
+    holds(
+        0.0 < spent < returned
+        and math.isclose(returned - spent, STIFFNESS * SPEED * SLOW * DEPTH, rel_tol=1e-06),
         "returns more than it received",
-        lambda spent, returned, formula: (
-            0.0 < spent < returned and math.isclose(returned - spent, formula, rel_tol=1e-6)
-        ),
-        spent=spent,
-        returned=returned,
-        formula=STIFFNESS * SPEED * SLOW * DEPTH,
     )
     k, rate, deep, v = TIP_SPRING[0], 200.0, 0.05, 0.2
     shows("The lab's spring of 300 N/m at 200 Hz, pressed by 5 cm at 0.2 m/s",
@@ -68,10 +64,9 @@ def viscous_tip() -> None:
     shows("With Baxter's 0.7 N m s/rad", 0.7, b)
     tip = [b / float(J[k] @ J[k]) for k in range(3)]
     numbers({"tip_viscous_x": tip[0], "tip_viscous_z": tip[2]}, ".2g")
-    claim(
+    holds(
+        all(0.75 < x < 60.0 for x in tip),
         "enough for the spring alone and not for a damper beside it",
-        lambda b: all(0.75 < x < 60.0 for x in b),
-        b=tip,
     )
 
 
@@ -94,11 +89,9 @@ def projections() -> HTML:
         most.append(found)
         key = name.split()[0]
         numbers({f"pinv_{key}": found[0], f"elbow_{key}": left}, ".2g")
-    claim(
+    holds(
+        min([x[0] for x in most]) > 0.1 and max(map(abs, [x[1] for x in most])) < 1e-09,
         "The pseudo-inverse of the Jacobian is the wrong one here",
-        lambda wrong, right: min(wrong) > 0.1 and max(map(abs, right)) < 1e-9,
-        wrong=[x[0] for x in most],
-        right=[x[1] for x in most],
     )
     return table(
         ("Arm", "tip, with J⁺ [m/s²]", "tip, with J̄ [m/s²]", "e0, with J̄ [rad/s²]"),
@@ -115,27 +108,18 @@ def freedom() -> None:
     n = axes[6] / axes[6][2]
     shows("For 1 rad/s of e0", 1.0, n[2])
     numbers({"free_s0": n[0], "free_w0": n[4], "free_w2": n[6]}, ".2f")
-    claim(
-        "s1, e1 and w1 do not take part",
-        lambda n: max(map(abs, (n[1], n[3], n[5]))) < 1e-6 and min(abs(n[0]), abs(n[4])) > 0.5,
-        n=list(n),
-    )
+    holds(max(abs(n[1:6:2])) < 1e-6 < 0.5 < min(abs(n[::4])), "s1, e1 and w1 do not take part")
     numbers({f"row_{joint}": J[5, k] for k, joint in ((0, "s0"), (2, "e0"), (4, "w0"), (6, "w2"))},
             ".2f")  # fmt: skip
-    claim(
-        "Multiply the two numbers of each row and add the four products: the sum is zero",
-        lambda row, speed: (
-            abs(sum(a * b for a, b in zip(row, speed, strict=True))) < 1e-9
-            and row[0] > 0.9
-            and row[3] < -0.9
-        ),
-        row=[float(J[5, k]) for k in (0, 2, 4, 6)],
-        speed=[float(n[k]) for k in (0, 2, 4, 6)],
+    row = [float(J[5, k]) for k in (0, 2, 4, 6)]
+    holds(
+        abs(np.dot(row, n[::2])) < 1e-09 and row[0] > 0.9 and (row[3] < -0.9),
+        "Multiply the two numbers of each row and add the four products: the sum is",
     )
-    claim(
+    x = [1.0 / (2.0 * math.sqrt(0.01)), *(0.01 / (sigma**2 + 0.01) for sigma in (0.1, 0.3))]
+    holds(
+        math.isclose(x[0], 5.0) and math.isclose(x[1], 0.5) and math.isclose(x[2], 0.1),
         "the norm of the joint speeds is at most 5 times the norm of the wanted twist",
-        lambda x: math.isclose(x[0], 5.0) and math.isclose(x[1], 0.5) and math.isclose(x[2], 0.1),
-        x=[1.0 / (2.0 * math.sqrt(0.01)), *(0.01 / (sigma**2 + 0.01) for sigma in (0.1, 0.3))],
     )
     numbers({"sigma_least": sigma[-1], "sigma_most": sigma[0]}, ".2g")
     number("w_ready", float(np.prod(sigma)), ".2g")
@@ -145,16 +129,12 @@ def two_speeds() -> None:
     """Friction from two instants: two equations with two unknowns."""
     y = {v: 0.7 * v + 1.0 for v in (0.1, 0.3)}
     viscous = (y[0.3] - y[0.1]) / 0.2
-    claim(
-        "1.07 N m at 0.1 rad/s and 1.21 N m at 0.3 rad/s",
-        lambda y: math.isclose(y[0], 1.07) and math.isclose(y[1], 1.21),
-        y=list(y.values()),
+    holds(
+        np.allclose([*y.values()], (1.07, 1.21)), "1.07 N m at 0.1 rad/s and 1.21 N m at 0.3 rad/s"
     )
-    claim(
+    holds(
+        math.isclose(viscous, lk.BAXTER.viscous[0]) and math.isclose(y[0.1] - 0.1 * viscous, 1.0),
         "the slope is 0.7 N m s/rad and what is left at zero speed is 1 N m",
-        lambda b, f: math.isclose(b, lk.BAXTER.viscous[0]) and math.isclose(f, 1.0),
-        b=viscous,
-        f=y[0.1] - 0.1 * viscous,
     )
 
 
@@ -164,10 +144,9 @@ def half_turn() -> None:
     turned = s @ np.array(((math.cos(math.pi), -math.sin(math.pi)),
                            (math.sin(math.pi), math.cos(math.pi))))  # fmt: skip
     V = np.linalg.pinv(image_servoing.interaction(s, depth=0.25)) @ (turned - s).ravel()
-    claim(
+    holds(
+        V[2] < -0.1 and abs(np.delete(V, 2)).max() < 1e-09,
         "the camera must turn by 180° about its optical axis",
-        lambda V: V[2] < -0.1 and max(map(abs, (*V[:2], *V[3:]))) < 1e-9,
-        V=V.tolist(),
     )
 
 
@@ -177,11 +156,10 @@ def lens_by_hand() -> None:
     number("lens_away", 1e3 * away, ".3g")
     number("lens_short", 1e3 * (away - away / 1.2), ".2g")
     ends = 1e3 * image_servoing.approach("pose, goal measured", 0.2).distance[-1]
-    claim(
+    by_hand = 1000.0 * (away - away / 1.2)
+    holds(
+        0.0 < 1.14 * by_hand < ends < 1.2 * by_hand,
         "ends about a sixth further off than this calculation says",
-        lambda run, by_hand: 0.0 < 1.14 * by_hand < run < 1.2 * by_hand,
-        run=float(ends),
-        by_hand=1e3 * (away - away / 1.2),
     )
     rate = {}
     for share in (0.5, 1.0, 2.0):
@@ -189,8 +167,7 @@ def lens_by_hand() -> None:
         rate[share] = float(-math.log(d[60] / d[20]) / (40 * image_servoing.DT))
     numbers({"rate_half": rate[0.5], "rate_true": rate[1.0], "rate_double": rate[2.0]}, ".2g")
     shows("The law asks for $\\lambda = 2$ 1/s", 2.0, image_servoing.GAIN)
-    claim(
+    holds(
+        min(rate.values()) > 1.0 and max(rate.values()) < 4.0,
         "The camera arrives in all three cases",
-        lambda r: 1.0 < r[0] < r[1] < r[2] < 4.0,
-        r=list(rate.values()),
     )

@@ -14,8 +14,7 @@ from solutions.study import experiments, report_gains, speed_gains
 from solutions.study.gains import KD, KP, TIP_SPRING
 from solutions.study.workspace_velocity import WorkspaceVelocityPD
 
-from .claims import claim
-from .claims import shows as _is
+from .claims import holds, shows
 
 CLAIMS, LEVEL, RATE = 8, 0.95, 200.0
 """Number of claims about tracking; level of an interval; rate of the report's control [Hz]."""
@@ -23,26 +22,26 @@ CLAIMS, LEVEL, RATE = 8, 0.95, 200.0
 
 def velocity() -> None:
     """Numbers of the chapter on velocity control."""
-    _is("= 30 ms", 0.03, lk.BAXTER.velocity_lag)
-    _is("Its state arrives 4 ms late", 0.004, lk.BAXTER.state_delay)
-    _is("is about 11.5 ms", 0.0115, 0.004 + 0.5 / 100.0 + 0.5 / 200.0)
+    shows("= 30 ms", 0.03, lk.BAXTER.velocity_lag)
+    shows("Its state arrives 4 ms late", 0.004, lk.BAXTER.state_delay)
+    shows("is about 11.5 ms", 0.0115, 0.004 + 0.5 / 100.0 + 0.5 / 200.0)
     step, pays = speed_gains.TRIED[1] - speed_gains.TRIED[0], speed_gains.PAYS
-    _is("in steps of 0.15 until a step took away less than 2 % of the error; that gave 0.6",
+    shows("in steps of 0.15 until a step took away less than 2 % of the error; that gave 0.6",
         (0.15, 0.02, 0.6),
         (step, pays, KD))  # fmt: skip
     lever = math.sqrt(TIP_SPRING[3] / TIP_SPRING[0])
-    _is("If a radian counts as 0.26 m", 0.26, WorkspaceVelocityPD.lever)
-    _is("The length of 0.26 m comes from the [impedance](impedance.md) of 300 N/m and 20 N m/rad",
+    shows("If a radian counts as 0.26 m", 0.26, WorkspaceVelocityPD.lever)
+    shows("The length of 0.26 m comes from the [impedance](impedance.md) of 300 N/m and 20 N m/rad",
         (0.26, 300.0, 20.0), (lever, TIP_SPRING[0], TIP_SPRING[3]), 0.02)  # fmt: skip
-    _is("in a shift of $\\sqrt{20/300} = 0.26$ m", 0.26, lever, 0.02)
+    shows("in a shift of $\\sqrt{20/300} = 0.26$ m", 0.26, lever, 0.02)
 
 
 def comparison() -> None:
     """Numbers of the comparison."""
-    claim("3 1/s and a $K_d$ of 0.6", lambda p, d: (p, d) == (3.0, 0.6), p=KP, d=KD)
+    holds((KP, KD) == (3.0, 0.6), "3 1/s and a $K_d$ of 0.6")
     server = lk.BAXTER.position_gain
-    _is("this arm is given 20 1/s, which makes 50 ms", (20.0, 50.0), (server, 1e3 / server))
-    _is("With eight claims about tracking, each with an interval of 95 %, the chance of at "
+    shows("this arm is given 20 1/s, which makes 50 ms", (20.0, 50.0), (server, 1e3 / server))
+    shows("With eight claims about tracking, each with an interval of 95 %, the chance of at "
         "least one wrong verdict would be about one in three",
         (8.0, 0.95, 1.0 / 3.0), (CLAIMS, LEVEL, 1.0 - LEVEL**CLAIMS), 0.02)  # fmt: skip
 
@@ -50,64 +49,57 @@ def comparison() -> None:
 def model() -> None:
     """Numbers of the chapter on the model."""
     robot = lk.robot("left")
-    _is("has none either and allows s1 100 N m", 100.0, robot.effort[1])
-    _is("50 N m is right for that machine", 50.0, robot.effort[0])
+    shows("has none either and allows s1 100 N m", 100.0, robot.effort[1])
+    shows("50 N m is right for that machine", 50.0, robot.effort[0])
     bare = lk.Model("left").mass_matrix(robot.ready)[6, 6]
-    claim(
-        "which is more than the last links have themselves",
-        lambda rotor, link: rotor > link > 0.0,
-        rotor=lk.BAXTER.armature[6],
-        link=float(bare),
-    )
+    holds(lk.BAXTER.armature[6] > bare > 0.0, "which is more than the last links have themselves")
 
 
 def impedance() -> None:
     """Numbers of the chapter on impedance."""
     dry, lever, push = lk.BAXTER.stiction[0], 0.5, 10.0
-    _is("dry friction of 1 N m and a lever of half a metre holds against 2 N at the hand, so of "
+    shows("dry friction of 1 N m and a lever of half a metre holds against 2 N at the hand, so of "
         "10 N only about 8", (1.0, 0.5, 2.0, 10.0, 8.0),
         (dry, lever, dry / lever, push, push - dry / lever))  # fmt: skip
-    _is("friction holds these 2 N of each push, and a push below 2 N does not", 2.0,
+    shows("friction holds these 2 N of each push, and a push below 2 N does not", 2.0,
         dry / lever)  # fmt: skip
-    _is("viscous friction of 0.7 N m s/rad", 0.7, lk.BAXTER.viscous[0])
-    _is("The arm has 300 N/m, the contact", 300.0, TIP_SPRING[0])
-    _is("The workspace impedance of 300 N/m presses with", 300.0, TIP_SPRING[0])
+    shows("viscous friction of 0.7 N m s/rad", 0.7, lk.BAXTER.viscous[0])
+    shows("The arm has 300 N/m, the contact", 300.0, TIP_SPRING[0])
+    shows("The workspace impedance of 300 N/m presses with", 300.0, TIP_SPRING[0])
     wall = experiments.the_wall()
-    claim(
+    k = [wall.stiffness, TIP_STIFFNESS]
+    holds(
+        k == (5000.0, 10000.0) or list(k) == [5000.0, 10000.0],
         "The wall has 5,000 N/m and the finger's pad 10,000 N/m",
-        lambda k: k == (5000.0, 10000.0) or list(k) == [5000.0, 10000.0],
-        k=[wall.stiffness, TIP_STIFFNESS],
     )
 
 
 def report() -> None:
     """Numbers of the page on the report."""
-    _is(
+    shows(
         "24.5 rad/s for the report's gain $k_p = 3$ at 200 Hz",
         (24.5, 3.0, 200.0),
         (math.sqrt(KP * RATE), KP, RATE),
         0.002,
     )
-    _is("fixes the mean speed at 0.2 m/s", 0.2, 1.0 / 5.0)
-    _is("0.4 m/s by equation 1", 0.4, 2.0 / 5.0)
+    shows("fixes the mean speed at 0.2 m/s", 0.2, 1.0 / 5.0)
+    shows("0.4 m/s by equation 1", 0.4, 2.0 / 5.0)
     lag, age = lk.BAXTER.velocity_lag, 0.0115
     w = brentq(lambda w: math.atan(w * lag) + w * age - math.pi, 1.0, 500.0)
-    claim(
+    holds(
+        math.isclose(lag, 0.03) and 3.0 < math.hypot(1.0, w * lag) < 12.0,
         "a drive that obeys within a tick allows 1, one with a lag of 30 ms allows more",
-        lambda lag, most: math.isclose(lag, 0.03) and 3.0 < most < 12.0,
-        lag=lag,
-        most=math.hypot(1.0, w * lag),  # the limit of K_d alone, at half a turn of phase
     )
     law = report_gains.TABLE_1["workspace impedance"](lk.Model("left", lk.BAXTER)).controller
-    _is("With a stiffness of 0.5 N/m a push of 1 N would move the hand 2 m", (0.5, 1.0, 2.0),
+    shows("With a stiffness of 0.5 N/m a push of 1 N would move the hand 2 m", (0.5, 1.0, 2.0),
         (law.D[0], 1.0, 1.0 / law.D[0]))  # fmt: skip
-    _is("dry friction of about 1 N m explains it", 1.0, lk.BAXTER.stiction[0])
+    shows("dry friction of about 1 N m explains it", 1.0, lk.BAXTER.stiction[0])
     spring, wrist = law.K[3], lk.BAXTER.stiction[6]
-    _is("0.3 N m/rad overcomes the dry friction of the wrist, 0.3 N m, only after a turn of one "
+    shows("0.3 N m/rad overcomes the dry friction of the wrist, 0.3 N m, only after a turn of one "
         "radian", (0.3, 0.3, 1.0), (spring, wrist, wrist / spring))  # fmt: skip
-    _is('has 0.5 to 0.1 N/m under "proportional gain" and 45 N/m under', (0.5, 0.1, 45.0),
+    shows('has 0.5 to 0.1 N/m under "proportional gain" and 45 N/m under', (0.5, 0.1, 45.0),
         (law.D[0], law.D[-1], law.K[0]))  # fmt: skip
-    _is("45 N/m with a damping of 0.5 N s/m is an arm", (45.0, 0.5), (law.K[0], law.D[0]))
+    shows("45 N/m with a damping of 0.5 N s/m is an arm", (45.0, 0.5), (law.K[0], law.D[0]))
 
 
 def plant() -> None:
@@ -116,11 +108,11 @@ def plant() -> None:
     q = np.array(model.robot.ready)
     inertia = float(model.mass_matrix(q)[0, 0])
     off = model.pose(q + np.array(EVIDENCE["encoder_offset"].most))[:3, 3] - model.pose(q)[:3, 3]
-    _is("the hand is then about 5 mm from where", 5.0, 1e3 * np.linalg.norm(off), 0.1)
+    shows("the hand is then about 5 mm from where", 5.0, 1e3 * np.linalg.norm(off), 0.1)
     springs = report_gains.TABLE_1["joint torque"](model).controller.Kp
-    _is("its gains of 8 to 12 N m/rad", (8.0, 12.0), (min(springs), max(springs)))
+    shows("its gains of 8 to 12 N m/rad", (8.0, 12.0), (min(springs), max(springs)))
     dry = lk.BAXTER.stiction[0]
-    _is("A spring of 8 N m/rad against dry friction of 1 N m may stop 0.125 rad from its target",
+    shows("A spring of 8 N m/rad against dry friction of 1 N m may stop 0.125 rad from its target",
         (8.0, 1.0, 0.125), (min(springs), dry, dry / min(springs)))  # fmt: skip
-    _is("225 1/s² times 2.17 kg m²", (225.0, 2.17), (225.0, inertia), 0.01)
-    _is("about 60 times as stiff at the shoulder", 60.0, 225.0 * inertia / 8.0, 0.1)
+    shows("225 1/s² times 2.17 kg m²", (225.0, 2.17), (225.0, inertia), 0.01)
+    shows("about 60 times as stiff at the shoulder", 60.0, 225.0 * inertia / 8.0, 0.1)

@@ -19,7 +19,8 @@ from solutions.study.grid import pick
 from solutions.velocity_control import mistakes
 
 from . import comparison
-from .page import holds, table
+from .claims import holds
+from .page import table
 
 COURSE = Course(Path(__file__).parents[2])
 NOTEBOOKS = {

@@ -18,8 +18,9 @@ from labkit.plotting import AXES, curve
 from solutions.study import campaign
 from solutions.study.campaign import BASELINE, FIVE
 
+from .claims import holds
 from .comparison import run_of
-from .page import figure, holds, replay, table
+from .page import figure, replay, table
 
 FILMS = Path(__file__).parents[2] / "build/campaign.json"
 SHOWN = (*FIVE, BASELINE)

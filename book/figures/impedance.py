@@ -19,7 +19,7 @@ from solutions.study import experiments
 from solutions.study.gains import TIP_SPRING
 from solutions.study.workspace_impedance import WorkspaceImpedance
 
-from .claims import claim, shows
+from .claims import holds, shows
 from .page import Question, figure, number, numbers, quiz, replay
 
 SEED = 7
@@ -104,29 +104,20 @@ def push() -> HTML:
     shows("Look at the curve for 600 N/m", 600.0, told_to_be[-1])
     creeps = np.interp((0.7, 0.85, read_at), log.t, y)  # of the stiffest
     numbers(dict(zip(("jump_600", "dip_600", "creep_600"), creeps, strict=True)))
-    claim(
-        "mm after 0.2 s, falls back to",
-        lambda y: y[1] < 0.99 * y[0] < y[0] < 0.9 * y[2],
-        y=[*map(float, creeps)],
-    )
+    first, then, last = creeps
+    holds(then < 0.99 * first < first < 0.9 * last, "it rises, falls back and creeps")
     above = max(x / k for x, k in zip(found, told_to_be, strict=True)) - 1.0
     shows("They are up to 2.2 % above what was asked", 2.2, 100.0 * above, 0.02)
-    claim(
+    holds(
+        all(0.95 < x / k < 1.05 for x, k in zip(found, told_to_be, strict=True)),
         "an arm without friction shows",
-        lambda felt: all(0.95 < x / k < 1.05 for x, k in zip(felt, told_to_be, strict=True)),
-        felt=found,
     )
     real = push_run(300.0, lk.BAXTER)
     y = _sideways(real)
     ax.plot(real.t, y, "C4:", label="300 N/m, realistic arm")
     felt = 1e3 * PUSH / float(np.interp(read_at, real.t, y))
     left = abs(float(y[-1]))
-    claim(
-        "holds against small forces",
-        lambda felt, left: felt > 330.0 and left > 0.5,
-        felt=felt,
-        left=left,
-    )
+    holds(felt > 330.0 and left > 0.5, "holds against small forces")
     numbers({"felt_real": felt, "left_real": left})
     ax.set(xlabel="time [s]", ylabel="displacement [mm]")
     ax.legend(fontsize="small")
@@ -147,19 +138,12 @@ def two_pushes() -> None:
     shows("On the realistic arm 10 N and 20 N move the hand", (10.0, 20.0), forces)
     numbers({"two_first": far[0], "two_second": far[1]}, ".4g")  # enough for their slope
     numbers({"alone_first": alone[0], "alone_second": alone[1], "two_slope": both}, ".3g")
-    claim(
-        "which is nearer to the 300 N/m that were asked for",
-        lambda both, alone: asked < both < alone[1] < alone[0],
-        both=both,
-        alone=alone,
-    )
+    holds(asked < both < alone[1] < alone[0], "which is nearer to the 300 N/m that were asked for")
     moved = [float(np.abs(np.ptp(log.q[:, 1]))) for log in logs]
     turned = [float(np.abs(np.ptp(log.q[:, 2]))) for log in logs]
-    claim(
+    holds(
+        all(0.0 <= a < 0.05 * b for a, b in zip(moved, turned, strict=True)),
         "here s1 in both pushes",
-        lambda moved, turned: all(0.0 <= a < 0.05 * b for a, b in zip(moved, turned, strict=True)),
-        moved=moved,
-        turned=turned,
     )
 
 
@@ -205,24 +189,12 @@ def wall() -> HTML:
     ax.legend(fontsize="small")
     soft, hard = ends["workspace impedance"], ends["position"]
     expected = experiments.predicted_wall_force(experiments.the_wall(), TIP_SPRING[0], 0.03)
-    claim(
-        "Two springs in series, the arm's and the contact's",
-        lambda share: abs(share - 1.0) < 0.05,
-        share=soft / expected,
-    )
-    claim(
+    holds(abs(soft / expected - 1.0) < 0.05, "Two springs in series, the arm's and the contact's")
+    holds(
+        abs(wrist - 15.0) < 0.01 and 0.0 < hard < 0.5 * (0.03 * stiff),
         "its wrist w1 has reached its limit of torque, 15 N m",
-        lambda wrist, hard, rigid: abs(wrist - 15.0) < 0.01 and 0.0 < hard < 0.5 * rigid,
-        wrist=wrist,
-        hard=hard,
-        rigid=0.03 * stiff,
     )
-    claim(
-        "Computed torque is soft as well",
-        lambda torque, soft: 0.0 < torque < soft,
-        torque=ends["joint torque"],
-        soft=soft,
-    )
+    holds(0.0 < ends["joint torque"] < soft, "Computed torque is soft as well")
     numbers({"contact": stiff, "wall_rigid": 0.03 * stiff}, ".4g")
     number("wall_slid", slid, ".2g")
     numbers(

@@ -18,7 +18,7 @@ from solutions.study import tasks
 from solutions.study.gains import TIP_SPRING
 from solutions.study.workspace_impedance import WorkspaceImpedance
 
-from .claims import claim, shows
+from .claims import holds, shows
 from .impedance import ROTORS
 from .page import figure, number, numbers
 
@@ -60,17 +60,12 @@ def elbow() -> HTML:
         ax.plot(log.t, off, **curve(k), label=name)
         late.append(float(np.abs(off[log.t > 4.0]).max()))
         moved.append(1e3 * float(np.linalg.norm(metrics.tip_error(log)[:, :3], axis=1).max()))
-    claim(
-        "Without the damper the elbow swings on",
-        lambda damped, free: free > 0.15 and 0.0 <= damped < 0.01 * free,
-        damped=late[0],
-        free=late[1],
+    holds(
+        late[1] > 0.15 and 0.0 <= late[0] < 0.01 * late[1], "Without the damper the elbow swings on"
     )
-    claim(
-        "asks for an acceleration of 20 rad/s² for each radian from the posture, so an undamped "
-        "elbow would swing at $\\sqrt{20}$ = 4.5 rad/s",
-        lambda pull: math.isclose(pull, 4.5**2, rel_tol=0.02),
-        pull=law.pull,
+    holds(
+        math.isclose(law.pull, 4.5**2, rel_tol=0.02),
+        "asks for an acceleration of 20 rad/s² for each radian from the posture, so an",
     )
     numbers({"elbow_late": late[1]}, ".2g")
     number("elbow_tip", moved[1], ".1g")
@@ -101,21 +96,11 @@ def margins() -> None:
             found.append(float(eigh(0.5 * rate, D, eigvals_only=True)[-1]))
         share[task.name] = max(found)
     numbers({"eaten_circle": 100 * share["circle"], "eaten_square": 100 * share["square"]}, ".2g")
-    claim(
-        "At 0.2 m/s and less this holds everywhere on the line, the circle and the square of "
-        "[the comparison](comparison.md), with $D$ positive definite",
-        lambda most, least, fastest: (
-            0.0 < max(most) < 0.5 and least > 0.3 and 0.1 < fastest < 0.205
-        ),
-        most=list(share.values()),
-        least=least,
-        fastest=fastest,
+    holds(
+        0.0 < max(share.values()) < 0.5 and least > 0.3 and (0.1 < fastest < 0.205),
+        "At 0.2 m/s and less this holds everywhere on the line, the circle and the",
     )
-    claim(
-        "four times as fast has lost the guarantee",
-        lambda most: 1.0 < 4.0 * most < 4.0,
-        most=share["square"],
-    )
+    holds(1.0 < 4.0 * share["square"] < 4.0, "four times as fast has lost the guarantee")
     random, worst, without = np.random.default_rng(1), 0.0, 0.0
     for _ in range(10):
         q = np.array(model.robot.ready) + random.uniform(-0.4, 0.4, 7)
@@ -128,11 +113,9 @@ def margins() -> None:
         without = max(without, float(np.abs(S + S.T).max()))  # mu for a constant J
         S += 2.0 * turning
         worst = max(worst, float(np.abs(S + S.T).max()))
-    claim(
+    holds(
+        round(worst, 5) == 0.0 and 20.0 < without < 60.0,
         "is skew for this $\\mu$, as a check on ten random states confirms",
-        lambda worst, without: worst == 0.0 and 20.0 < without < 60.0,
-        worst=round(worst, 5),  # a rounding error, which depends on the machine
-        without=without,
     )
 
 
@@ -165,8 +148,8 @@ def loops() -> None:
 
     gained = work(log_law, unequal)
     number("loop_work", gained, ".2g")
-    claim(
+    holds(
+        gained > 5.0
+        and max(abs(work(log_law, equal)), abs(work(vector_law, unequal))) < 0.001 * gained,
         "and with the vector part of the quaternion it is zero",
-        lambda x: x[0] > 5.0 and max(abs(x[1]), abs(x[2])) < 1e-3 * x[0],
-        x=[gained, work(log_law, equal), work(vector_law, unequal)],
     )

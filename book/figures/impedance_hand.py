@@ -16,7 +16,7 @@ from labkit.shapes import Array
 from solutions.study import experiments
 from solutions.study.gains import TIP_SPRING
 
-from .claims import claim, shows
+from .claims import holds, shows
 from .impedance import ROTORS
 from .page import figure, number, numbers, table
 
@@ -85,31 +85,25 @@ def planar() -> None:
     shows("Push this tip along $y$ with 1 N", (1.0, -0.25, 0.25), (push, *push * mobility[:, 1]))
     shows("Give this tip a spring of 100 N/m in both directions", 100.0, spring)
     L = np.linalg.inv(mobility)
-    claim(
+    holds(
+        np.allclose([mobility[0, 0], mobility[1, 1], mobility[0, 1]], (1.25, 0.25, -0.25)),
         "1.25 and 0.25 on the diagonal and −0.25 off it",
-        lambda x: np.allclose(x, (1.25, 0.25, -0.25)),
-        x=[mobility[0, 0], mobility[1, 1], mobility[0, 1]],
     )
-    claim(
+    holds(
+        np.allclose([L[0, 0], L[1, 1], L[0, 1]], (1.0, 5.0, 1.0)),
         "1 kg along $x$, 5 kg along $y$ and 1 kg off the diagonal",
-        lambda x: np.allclose(x, (1.0, 5.0, 1.0)),
-        x=[L[0, 0], L[1, 1], L[0, 1]],
     )
-    claim(
-        "feels 4 kg along $y$ if it may slip sideways, and 5 kg if a rail keeps it on the line",
-        lambda free, guided: math.isclose(free, 4.0) and math.isclose(guided, 5.0),
-        free=1.0 / mobility[1, 1],
-        guided=L[1, 1],
+    holds(
+        math.isclose(1.0 / mobility[1, 1], 4.0) and math.isclose(L[1, 1], 5.0),
+        "feels 4 kg along $y$ if it may slip sideways, and 5 kg if a rail keeps it on",
     )
     values, axes = np.linalg.eigh(L)
     D = 2.0 * math.sqrt(spring) * (axes * np.sqrt(values)) @ axes.T
     numbers({"planar_dx": D[0, 0], "planar_dy": D[1, 1], "planar_dxy": D[0, 1]}, ".3g")
     poles = [_poles(L, spring, x) for x in (np.diag(np.diag(D)), D)]
-    claim(
-        "one pair of poles would be complex, with a damping ratio of 0.90; with it both pairs are "
-        "critically damped",
-        lambda least: np.allclose(least, (0.90, 1.0), rtol=5e-3),
-        least=[float(np.min(-x.real / np.abs(x))) for x in poles],
+    holds(
+        np.allclose([float(np.min(-x.real / np.abs(x))) for x in poles], (0.9, 1.0), rtol=0.005),
+        "one pair of poles would be complex, with a damping ratio of 0.90; with it",
     )
 
 
@@ -124,20 +118,15 @@ def one_mass_by_hand() -> None:
     """The peak of the swinging mass, by the formula for the overshoot."""
     z = 0.2
     k, m, push = 200.0, 2.0, 10.0
-    claim(
+    holds(
+        math.isclose(math.sqrt(k / m), 10.0) and math.isclose(2.0 * math.sqrt(k * m), 40.0),
         "rad/s, and $\\zeta = 1$ needs",
-        lambda x: math.isclose(x[0], 10.0) and math.isclose(x[1], 40.0),
-        x=[math.sqrt(k / m), 2.0 * math.sqrt(k * m)],
     )
     shows("For 2 kg on 200 N/m", (2.0, 200.0), (m, k))
     shows("Pushed with 10 N it rests 50 mm away", (10.0, 50.0), (push, 1e3 * push / k))
     peak = 1e3 * push / k * (1.0 + math.exp(-math.pi * z / math.sqrt(1.0 - z**2)))
     number("peak_02", peak, ".2g")
-    claim(
-        "overshoots by 53 %",
-        lambda share: math.isclose(share, 0.527, rel_tol=0.01),
-        share=peak / 50.0 - 1.0,
-    )
+    holds(math.isclose(peak / 50.0 - 1.0, 0.527, rel_tol=0.01), "overshoots by 53 %")
 
 
 def admittance() -> None:
@@ -179,17 +168,13 @@ def felt_inertia() -> HTML:
     rotors = lk.Model("left", ROTORS).operational_inertia(q)
     number("lambda_x_rotors", rotors[0, 0], ".2g")
     numbers({"felt_x": 1.0 / mobility[0, 0], "felt_z": 1.0 / mobility[2, 2]}, ".2g")
-    claim(
+    holds(
+        0.0 < 1.0 / mobility[0, 0] < 0.1 * (1.0 / mobility[2, 2]),
         "one push meets less than a tenth of the inertia that another meets",
-        lambda x, z: 0.0 < x < 0.1 * z,
-        x=1.0 / mobility[0, 0],
-        z=1.0 / mobility[2, 2],
     )
-    claim(
+    holds(
+        18.0 < L[0, 0] / (1.0 / mobility[0, 0]) < 22.0 and 1.0 / mobility[0, 0] > 0.0,
         "twenty times as much",
-        lambda free, guided: 18.0 < guided / free < 22.0 and free > 0.0,
-        free=1.0 / mobility[0, 0],
-        guided=L[0, 0],
     )
     return figure(
         "The inertia at the ready arm's tip by direction, in the vertical plane of x and z: the "
@@ -215,14 +200,11 @@ def wall_by_hand() -> None:
     force = depth / (1.0 / stiffness + 1.0 / contact)
     number("hand_torque", force, ".2g")
     found = experiments.wall(names=("joint torque",))[0]
-    claim(
-        "within a tenth of what the run shows",
-        lambda by_hand, run: 0.0 < by_hand < run < 1.1 * by_hand,
-        by_hand=force,
-        run=float(-found.force_at_rest[0]),
+    holds(
+        0.0 < force < -found.force_at_rest[0] < 1.1 * force, "within a tenth of what the run shows"
     )
     hold = depth / (1.0 / TIP_SPRING[0] + 1.0 / contact)
-    claim("8.26 N by the calculator", lambda f: math.isclose(f, 8.26, rel_tol=1e-3), f=hold)
+    holds(math.isclose(hold, 8.26, rel_tol=0.001), "8.26 N by the calculator")
 
 
 def joint_springs() -> HTML:
@@ -249,17 +231,8 @@ def joint_springs() -> HTML:
     found = 1e3 * met.at_rest
     numbers({"side_x": moved[0, 2], "side_z": moved[2, 2]}, ".2g")
     numbers({"side_run_x": found[0], "side_run_z": found[2]}, ".2g")
-    claim(
-        "further to the side than up",
-        lambda side, up: side > up > 0.0,
-        side=float(found[0]),
-        up=float(found[2]),
-    )
-    claim(
-        "to a tenth of a millimetre",
-        lambda x: abs(x[0] - x[1]) < 0.1 and abs(x[2] - x[3]) < 0.1 and x[0] > x[2] > 0.0,
-        x=[rest[0], found[0], rest[2], found[2]],
-    )
+    holds(found[0] > found[2] > 0.0, "further to the side than up")
+    holds(np.allclose(rest[::2], found[::2], rtol=0.0, atol=0.1), "to a tenth of a millimetre")
     return table(
         ("Push", "along x [mm]", "along y [mm]", "along z [mm]"),
         rows,

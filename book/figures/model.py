@@ -11,9 +11,9 @@ from IPython.display import HTML
 import labkit as lk
 from labkit.shapes import Array
 
-from .claims import claim, shows
+from .claims import holds, shows
 from .embed import demo_html
-from .page import Question, figure, holds, number, numbers, picture, quiz, shown, table
+from .page import Question, figure, number, numbers, picture, quiz, shown, table
 
 SEED = 2
 STEP = 1e-6
@@ -105,21 +105,13 @@ def singular() -> HTML:
     right.axvline(at, color="C5", linestyle=":")
     right.text(0.3, 0.5 * LIMIT, "limit of s0 to e1", fontsize="small")
     right.set(xlabel="elbow e1 [rad]", ylabel="largest joint speed [rad/s]", ylim=(0.2, 3.0 * top))
-    claim(
+    holds(
+        abs(at - 0.16) < 0.01 and 0.0 < np.min(sigma) < 0.002,
         "it vanishes at a bent elbow, not at a straight one",
-        lambda at, least: abs(at - 0.16) < 0.01 and 0.0 < least < 2e-3,
-        at=at,
-        least=float(np.min(sigma)),
     )
-    claim(
+    holds(
+        top > 10.0 * fast[1] > 10.0 * fast[0] > 0.0 and top > 10.0 * fast[2] > 0.0,
         "on both sides of it the joint speeds fall again",
-        lambda far, near, peak, beyond: (
-            peak > 10.0 * near > 10.0 * far > 0.0 and peak > 10.0 * beyond > 0.0
-        ),
-        far=fast[0],
-        near=fast[1],
-        peak=top,
-        beyond=fast[2],
     )
     number("singular_at", at, ".2f")
     shows("With the elbow bent to 1 rad", 1.0, at_e1[0])
@@ -155,11 +147,7 @@ def gravity() -> HTML:
     most = rows[np.abs(rows[:, 1]).argmax(), 1]
     neutral = model.gravity(model.robot.neutral)[1]
     numbers({"g_neutral": abs(neutral), "g_most": abs(most)}, ".3g")
-    claim(
-        "more than the 50 N m that its motor gives",
-        lambda held: held > 50.0,
-        held=float(abs(most)),
-    )
+    holds(abs(most) > 50.0, "more than the 50 N m that its motor gives")
     return figure(
         "The torque that holds the arm, as the shoulder s1 turns and the rest stays neutral.",
         f"Three curves over the range of s1. The shoulder's own torque is the largest, "
@@ -180,11 +168,10 @@ def weigh() -> HTML:
     masses = [float(body.mass) for body in bodies]
     shows("Add the last column: the sum is the holding torque", sum(torques), model.gravity(q)[1])
     shows("their product with 9.81 m/s²", 9.81, model.gravity(q)[1] / np.dot(masses, levers))
-    claim(
+    holds(
+        abs(sum(masses[3:]) / sum(masses) - 1 / 3) < 0.02
+        and 0.5 < np.abs(torques)[3:].sum() / np.abs(torques).sum() < 0.7,
         "a third of the mass and cause more than half of the torque",
-        lambda m, t: abs(sum(m[3:]) / sum(m) - 1 / 3) < 0.02 and 0.5 < sum(t[3:]) / sum(t) < 0.7,
-        m=masses,
-        t=np.abs(torques).tolist(),
     )
     rows = [
         (name.removeprefix("left_"), f"{m:.2f}", f"{abs(lever):.3f}", f"{abs(t):.2f}")
@@ -232,11 +219,9 @@ def wrong_axes() -> None:
     right = float(np.abs(model.mass_matrix(turned) - model.mass_matrix(q)).max())
     number("axes_w", missed, ".2g")
     numbers({"axes_before": entry[0], "axes_after": entry[1]}, ".3f")
-    claim(
+    holds(
+        round(right, 9) < 1e-09 and 0.015 < entry[0] - entry[1] < 0.03,
         "so $M$ must not change when s0 turns",
-        lambda right, wrong: right < 1e-9 and 0.015 < wrong < 0.03,
-        right=round(right, 9),
-        wrong=entry[0] - entry[1],
     )
 
 
@@ -254,12 +239,7 @@ def power() -> HTML:
     ax.legend(loc="lower left", bbox_to_anchor=(0.0, 1.0), ncols=2, fontsize="small")
     off = float(np.abs(gained - given)[2:-2].max())
     peak = float(np.abs(given).max())
-    claim(
-        "the two curves differ by at most",
-        lambda off, peak: 0.0 < off < 0.01 * peak,
-        off=off,
-        peak=peak,
-    )
+    holds(0.0 < off < 0.01 * peak, "the two curves differ by at most")
     numbers({"power_peak": peak, "power_off": off}, ".2g")
     return figure(
         "Power during a swing of the arm, 1 kHz control on the ideal arm.",

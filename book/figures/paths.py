@@ -13,20 +13,9 @@ import labkit as lk
 from labkit import metrics, plotting
 from solutions.study.joint_velocity import JointVelocityPD
 
-from .claims import claim, shows
+from .claims import holds, shows
 from .embed import demo_html
-from .page import (
-    Question,
-    figure,
-    holds,
-    number,
-    numbers,
-    quiz,
-    replay,
-    still,
-    table,
-    tracking,
-)
+from .page import Question, figure, number, numbers, quiz, replay, still, table, tracking
 
 SEED = 1
 DURATION = 4.0
@@ -182,15 +171,11 @@ def _shapes() -> None:
     }  # fmt: skip
     numbers({name: float(x) for name, x in small.items()}, ".1g")
     numbers({"ff_most": float(without.max()), "bump_second": float(-late.min())}, ".2g")
-    claim(
-        "In the first half one error is behind and the other ahead, and they cancel; in the second",
-        lambda first, second, lag, age: (
-            0.0 < first < 0.8 * lag and second > 1.3 * lag > 0.0 and age > 0.0
-        ),
-        first=float(small["bump_first"]),
-        second=float(-late.min()),
-        lag=float(small["lag_second"]),
-        age=float(small["age_middle"]),
+    holds(
+        0.0 < small["bump_first"] < 0.8 * small["lag_second"]
+        and -late.min() > 1.3 * small["lag_second"] > 0.0
+        and (small["age_middle"] > 0.0),
+        "In the first half one error is behind and the other ahead, and they cancel;",
     )
 
 

@@ -13,8 +13,9 @@ from labkit.course.authoring.outcomes import OUTCOMES
 from labkit.course.identification import Identification
 from labkit.grader.whys import DRAWN
 
+from .claims import holds
 from .front import NOTEBOOKS, hours
-from .page import holds, number, table
+from .page import number, table
 
 COURSE = Course(Path(__file__).parents[2])
 REPORT = "08_report"

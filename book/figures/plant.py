@@ -17,8 +17,8 @@ from solutions.study.grid import Row, pick
 from solutions.study.report_procedure import OSCILLATES
 from solutions.study.tuning import tune
 
-from .claims import claim, shows
-from .page import figure, holds, numbers, shown, table
+from .claims import holds, shows
+from .page import figure, numbers, shown, table
 
 SMALL = 0.5
 """Smaller differences on the line, in [mm], change their sign from seed to seed."""
@@ -87,12 +87,10 @@ def hangs() -> HTML:
     )
     levels = (joint + SMALL, torque + SMALL, torque - SMALL)
     where = [_crosses(error, level) for level in levels]
-    claim(
-        "Above that nothing is decided, since the two differ by less than half a millimetre",
-        lambda at, ends, apart: ends[0] < at[1] < at[2] < at[0] < ends[1] and 0.0 < apart < SMALL,
-        at=where,
-        ends=[min(error), max(error)],
-        apart=max(abs(joint - e) for gain, e in error.items() if gain > where[0]),
+    holds(
+        min(error) < where[1] < where[2] < where[0] < max(error)
+        and 0.0 < max(abs(joint - e) for gain, e in error.items() if gain > where[0]) < SMALL,
+        "Above that nothing is decided, since the two differ by less than half a",
     )
     named = {"stiction, least", "position_gain, least", "position_gain, most",
              "encoder_offset, most"}  # fmt: skip
@@ -100,27 +98,29 @@ def hangs() -> HTML:
     holds(over == named, "the ranking of the built-in method turns with these three numbers alone")
     by = dict(zip(claims, base, strict=True))
     torque_too = "built-in method over joint torque"
-    claim(
-        "with the least stiction joint torque control is better than the built-in method too",
-        lambda d, usual: d < -SMALL < SMALL < usual,
-        d=assumptions.difference(rows, torque_too, assumption="stiction, least"),
-        usual=by[torque_too],
+    holds(
+        assumptions.difference(rows, torque_too, assumption="stiction, least")
+        < -SMALL
+        < SMALL
+        < by[torque_too],
+        "with the least stiction joint torque control is better than the built-in",
     )
     velocity = [f"built-in method over {space} velocity" for space in ("joint", "workspace")]
-    claim(
+    holds(
+        all(
+            by[c] < -SMALL < assumptions.difference(rows, c, assumption="encoder_offset, most")
+            for c in velocity
+        ),
         "with the largest encoder_offset the velocity controllers lose their lead",
-        lambda usual, d: max(usual) < -SMALL < min(d),
-        usual=[by[c] for c in velocity],
-        d=[assumptions.difference(rows, c, assumption="encoder_offset, most") for c in velocity],
     )
-    claim(
-        "One decided verdict stands whatever is assumed",
-        lambda least: least > 3.0,
-        least=min(
+    holds(
+        min(
             abs(d)
             for n in names
             if (d := assumptions.difference(rows, sure[0], assumption=n)) is not None
-        ),
+        )
+        > 3.0,
+        "One decided verdict stands whatever is assumed",
     )
     names_of = ("flip_velocity", "torque_better", "torque_worse")
     numbers(dict(zip(names_of, where, strict=True)), ".0f")
@@ -164,7 +164,7 @@ def table_1() -> HTML:
         for controller in report_gains.TABLE_1
     }
     torque = found["joint torque"]
-    claim("centimetres, not millimetres", lambda e: all(x > 20.0 for x in e), e=torque)
+    holds(all(x > 20.0 for x in torque), "centimetres, not millimetres")
     numbers({"printed_line": torque[0], "printed_circle": torque[1]}, ".2g")
     return table(
         ("Controller", "line", "circle"),

@@ -11,8 +11,8 @@ from labkit import metrics
 from solutions.study.tuning import tune
 from solutions.study.workspace_impedance import WorkspaceImpedance
 
-from .claims import claim, shows
-from .page import holds, number, numbers
+from .claims import holds, shows
+from .page import number, numbers
 
 SEED = 6
 
@@ -128,14 +128,9 @@ def impedance() -> None:
     shows("Read as the push on the arm, +5 N", 5.0, push)
     shows("the arm is pushed with −5 N", -5.0, -push)
     shows("where −2.5 m/s² is wanted", -2.5, -desired)
-    claim(
+    holds(
+        abs(printed - desired) > 1.0 and abs(turned + desired) > 1.0 and (printed > 0.0),
         "Neither is what it should be",
-        lambda right, as_push, as_reaction: (
-            abs(as_push - right) > 1.0 and abs(as_reaction + right) > 1.0 and as_push > 0.0
-        ),
-        right=desired,
-        as_push=printed,
-        as_reaction=turned,
     )
     numbers({"a19_right": desired, "a19_printed": printed, "a19_turned": turned})
 
@@ -188,5 +183,5 @@ def impedance() -> None:
     number("procedure_rigid", procedure.Kp, ".2g")
     (half,) = (step.decay for step in procedure.steps if step.why == "half of that")
     number("left_rigid", half, ".2g")
-    claim("the rule's quarter is not found", lambda half: half > 0.4, half=half)
+    holds(half > 0.4, "the rule's quarter is not found")
     numbers({"felt": stiffness, "moved_mm": 1e3 * moved[1]})

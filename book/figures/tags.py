@@ -22,9 +22,9 @@ from solutions.study.tasks import ready_pose
 from solutions.study.visual_servoing import SequentialServoing
 from solutions.tags.following import TagFollower
 
-from .claims import claim
+from .claims import holds
 from .embed import motion_html
-from .page import Question, address, figure, framed, holds, number, numbers, poster, quiz
+from .page import Question, address, figure, framed, number, numbers, poster, quiz
 
 SEED = 8
 FOCAL = 600.0
@@ -101,20 +101,17 @@ def ambiguity() -> HTML:
     ax.text(0.2, 0.2, "0.3 pixels", fontsize="small")
     ax.set(xlabel="distance [m]", ylabel="best fit of the wrong tilt [pixels]", yscale="log")
     ax.legend()
-    claim(
-        "The curve in the middle is for a tilt of 30°",
-        lambda low, middle, high: all(
-            0.0 < a < b < c for a, b, c in zip(low, middle, high, strict=True)
+    holds(
+        all(
+            0.0 < a < b < c
+            for a, b, c in zip(curves[10.0], curves[30.0], curves[50.0], strict=True)
         ),
-        low=curves[10.0],
-        middle=curves[30.0],
-        high=curves[50.0],
+        "The curve in the middle is for a tilt of 30°",
     )
     near, far = curves[30.0][0], curves[30.0][-1]
-    claim(
-        "A corner finder with a noise of 0.3 pixels, the dotted line, tells the two apart near",
-        lambda gaps: gaps[0] > 10.0 * 0.3 and 0.0 < gaps[1] < 0.6 * 0.3,
-        gaps=[near, far],
+    holds(
+        near > 10.0 * 0.3 and 0.0 < far < 0.6 * 0.3,
+        "A corner finder with a noise of 0.3 pixels, the dotted line, tells the two",
     )
     numbers({"near": distances[0], "far": distances[-1], "gap_near": near, "gap_far": far}, ".2g")
     return figure(
@@ -291,18 +288,14 @@ def trust() -> HTML:
     """Test whether the errors are as large as the detector says, for each kind of picture."""
     found = {name: consistency(setup, PICTURES, seed=5) for name, setup in SETUPS.items()}
     refused = ("blur 2 px", "smear 6 px", "corner 30 %")
-    claim(
+    holds(
+        all(
+            (found[name][0] == 0.0) if name in refused else (found[name][0] > 0.7) for name in found
+        ),
         "the detector refuses every picture",
-        lambda right, wrong: max(wrong) == 0.0 < 0.7 < min(right),
-        right=[found[name][0] for name in found if name not in refused],
-        wrong=[found[name][0] for name in refused],
     )
     trusted = [x for name, (_, x) in found.items() if name not in refused]
-    claim(
-        "between 1.5 and 5 in all the others",
-        lambda x: min(x) > 1.5 and max(x) < 5.0,
-        x=trusted,
-    )
+    holds(min(trusted) > 1.5 and max(trusted) < 5.0, "between 1.5 and 5 in all the others")
     numbers({"nees_low": min(trusted), "nees_high": max(trusted)}, ".2g")
     numbers({"afar_seen": 100.0 * found["2 m, noise 2"][0]}, ".0f")
     _, ax = plt.subplots(figsize=(6.0, 3.2))

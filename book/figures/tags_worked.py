@@ -17,7 +17,7 @@ from labkit.tags.stream import TagStream
 from solutions.study.tag_task import LAP, OFFSET, RADIUS
 from solutions.tags.following import TagFollower, blend, carry_forward, turn_on
 
-from .claims import claim, shows
+from .claims import holds, shows
 from .page import figure, numbers
 from .tags import (
     AGE,
@@ -43,11 +43,6 @@ BELIEFS = {
     "it goes on turning": (3, True),
 }
 """Number of states (position, velocity, acceleration) of a belief, and if the last one turns."""
-
-
-def by_hand(words: str, value: float, actual: float, near: float = 0.01) -> None:
-    """Bind a sentence to a number that a reader can compute and the code confirms."""
-    claim(words, lambda x: math.isclose(x, value, rel_tol=near), x=float(actual))
 
 
 def frames() -> HTML:
@@ -134,9 +129,9 @@ def geometry() -> None:
     believed = [tag_pose(seen, LENS, a)[2, 3] for a in (SIZE, 1.25 * SIZE)]
     shows("a tag taken for 25 % larger appears 25 % farther away", (1.0, 1.25), believed, 0.001)
     sigma = 0.1  # of the corners, in pixels
-    by_hand("= 0.00147 m", 0.00147, sigma / (math.sqrt(2.0) * FOCAL * SIZE))
+    shows("= 0.00147 m", 0.00147, sigma / (math.sqrt(2.0) * FOCAL * SIZE))
     away = at[2] + SIZE / 2.0 * math.sin(math.radians(24.6)) * np.array((-1.0, 1.0))
-    by_hand(
+    shows(
         "and the calculations by hand below assume 0.1 pixel",
         0.1,
         math.sqrt(2.0) * FOCAL * SIZE * 0.00147,
@@ -159,29 +154,27 @@ def geometry() -> None:
           "and a tag at "
           "a distance of 0.4 m then appears $0.05\\cdot0.4$ = 20 mm", (0.5, 100.0, 0.05, 0.4, 20.0),
           (turning, 1e3 * AGE, turning * AGE, way, 1e3 * turning * AGE * way))  # fmt: skip
-    by_hand("errors are twice as large as they are claimed to be", 2.0, math.sqrt(12.0 / 3.0))
-    by_hand("is uncertain by 1.47 mm", 1.47, 1e3 * math.sqrt(square[2, 2]))
+    shows("errors are twice as large as they are claimed to be", 2.0, math.sqrt(12.0 / 3.0))
+    shows("is uncertain by 1.47 mm", 1.47, 1e3 * math.sqrt(square[2, 2]))
     sideways = math.sqrt(tilted[0, 0])
     shows("Sideways it is 0.083 mm, since $0.1\\cdot1/(2\\cdot600)$ = 0.000083 m",
           (0.083, 0.000083), (1e3 * sideways, 0.1 * at[2] / (2.0 * FOCAL)), 0.01)  # fmt: skip
-    by_hand("an unknown tilt makes it 0.118 mm", 0.118, 1e3 * math.sqrt(square[0, 0]))
-    by_hand("make the tilt uncertain by 3.0°", 3.0, math.degrees(math.sqrt(square[3, 3])))
-    by_hand(
-        "the tilt is uncertain by 0.27° only", 0.27, math.degrees(math.sqrt(tilted[4, 4])), 0.03
-    )
+    shows("an unknown tilt makes it 0.118 mm", 0.118, 1e3 * math.sqrt(square[0, 0]))
+    shows("make the tilt uncertain by 3.0°", 3.0, math.degrees(math.sqrt(square[3, 3])))
+    shows("the tilt is uncertain by 0.27° only", 0.27, math.degrees(math.sqrt(tilted[4, 4])), 0.03)
     for words, value, heights in (
         ("is tilted by 24.6°", 24.6, (48.8, 47.2)),
         ("the answer becomes 16.5°", 16.5, (48.8, 47.7)),
     ):
-        by_hand(words, value, _tilt_read(*heights))
-    by_hand("3.8 pixels for each radian", 3.84, FOCAL * SIZE**2)
+        shows(words, value, _tilt_read(*heights))
+    shows("3.8 pixels for each radian", 3.84, FOCAL * SIZE**2)
     lean = 0.6
     shows("at 0.6 rad (34°) it changes by $48\\sin\\theta$, 27 pixels", (0.6, 34.4, 27.1),
           (lean, math.degrees(lean), FOCAL * SIZE * math.sin(lean)), 0.01)  # fmt: skip
     angle, afar = 30.0, 2.5
     shows("At 2.5 m and 30°", (2.5, 30.0), (afar, angle))
     gap = ambiguity_gap(math.radians(angle), afar)
-    by_hand("comes to 0.154 pixels", 0.154, gap, 0.05)
+    shows("comes to 0.154 pixels", 0.154, gap, 0.05)
 
 
 def _tilt_read(left: float, right: float) -> float:
@@ -207,54 +200,56 @@ def one_blend() -> None:
     shows("The goal is 0.12 m, at rest, in 1 s", (0.12, 1.0), (goal[0], lasts))
     shows("by 80 mm and be 0.1 m/s too fast", (80.0, 0.1),
           (1e3 * (position[0] + speed * lasts - goal[0]), speed))  # fmt: skip
-    by_hand("is at 0.1256 m", 0.1256, half.position[0], 1e-3)
-    by_hand("moving back at 0.006 m/s", 0.006, -half.velocity[0], 0.05)
+    shows("is at 0.1256 m", 0.1256, half.position[0], 1e-3)
+    shows("moving back at 0.006 m/s", 0.006, -half.velocity[0], 0.05)
 
 
 def two_pictures() -> None:
     """The filter's first steps, which the text computes by hand."""
     noise, q, z = 1e-6 * np.eye(3), 0.0025, 0.012
-    by_hand("A first picture says 0 mm, with $R = 1$ mm²", 1.0, 1e6 * noise[0, 0])
+    shows("A first picture says 0 mm, with $R = 1$ mm²", 1.0, 1e6 * noise[0, 0])
     shows("The second picture, 0.1 s later, says 12 mm", (0.1, 12.0), (PERIOD, 1e3 * z))
     sure = 1e3 * math.sqrt(noise[0, 0])
     shows("Two readings with 1 mm of noise each, 0.1 s apart, give $\\sqrt2/0.1 = 14$ mm/s",
           (1.0, 0.1, 14.0), (sure, PERIOD, math.sqrt(2.0) * sure / PERIOD), 0.02)  # fmt: skip
-    by_hand("Take in 12 mm", 12.0, 1e3 * z)
+    shows("Take in 12 mm", 12.0, 1e3 * z)
     fastest = 0.2
     shows("anything up to some 200 mm/s, so $P = \\mathrm{diag}(1, 40\\,000)$", (200.0, 4e4),
           (1e3 * fastest, 1e6 * fastest**2))  # fmt: skip
     first = first_estimate(0.0, np.zeros(3), noise, fastest)
     then = Estimate(PERIOD, *carry_forward(first.mean, first.covariance, PERIOD, q))
     P = 1e6 * then.covariance[np.ix_((0, 3), (0, 3))]
-    claim(
+    holds(
+        np.allclose([P[0, 0], P[0, 1], P[1, 1]], (401.83, 4012.5, 40250.0), rtol=0.0001),
         "The entries are then 401.8 mm², 4,012.5 mm²/s and 40,250 mm²/s²",
-        lambda p: np.allclose(p, (401.83, 4012.5, 40250.0), rtol=1e-4),
-        p=[P[0, 0], P[0, 1], P[1, 1]],
     )
-    by_hand("changed the velocity by about 50 mm/s", 50.0, 1e3 * math.sqrt(q))
-    by_hand("In metres this is 0.0025 m²/s³", 0.0025, q)
+    shows("changed the velocity by about 50 mm/s", 50.0, 1e3 * math.sqrt(q))
+    shows("In metres this is 0.0025 m²/s³", 0.0025, q)
     turn = RADIUS / SPEED
     shows("of radius $r$ = 60 mm at $v$ = 0.1 m/s", (60.0, 0.1), (1e3 * RADIUS, SPEED))
     shows("in $r/v$ = 0.6 s", 0.6, turn)
-    by_hand("$\\sigma_a^2 \\approx 0.1^2/0.6 = 0.017$ m²/s³", 0.017, SPEED**2 / turn, 0.03)
-    by_hand("the straight belief of the next figure takes 0.03 m²/s³", 0.03, PUSHES[2])
-    by_hand("the place is uncertain by 20 mm", 20.0, math.sqrt(P[0, 0]))
-    by_hand("4012.5/402.8 = 9.96$ 1/s", 9.96, P[0, 1] / (P[0, 0] + 1.0))
+    shows("$\\sigma_a^2 \\approx 0.1^2/0.6 = 0.017$ m²/s³", 0.017, SPEED**2 / turn, 0.03)
+    shows("the straight belief of the next figure takes 0.03 m²/s³", 0.03, PUSHES[2])
+    shows("the place is uncertain by 20 mm", 20.0, math.sqrt(P[0, 0]))
+    shows("4012.5/402.8 = 9.96$ 1/s", 9.96, P[0, 1] / (P[0, 0] + 1.0))
     after = update(then, (z, 0.0, 0.0), noise)
-    claim(
-        "The belief is now 11.97 mm and 119.5 mm/s: nearly the difference quotient 12 mm / 0.1 s",
-        lambda m: np.allclose(m, (11.97, 119.53, 12.0, 0.1), rtol=1e-3),
-        m=[1e3 * after.mean[0], 1e3 * after.mean[3], 1e3 * z, PERIOD],
+    holds(
+        np.allclose(
+            [1000.0 * after.mean[0], 1000.0 * after.mean[3], 1000.0 * z, PERIOD],
+            (11.97, 119.53, 12.0, 0.1),
+            rtol=0.001,
+        ),
+        "The belief is now 11.97 mm and 119.5 mm/s: nearly the difference quotient 12",
     )
     P = 1e6 * after.covariance[np.ix_((0, 3), (0, 3))]
-    by_hand("known to 16.8 mm/s", 16.8, math.sqrt(P[1, 1]))
+    shows("known to 16.8 mm/s", 16.8, math.sqrt(P[1, 1]))
     mean, covariance = carry_forward(after.mean, after.covariance, AGE, q)
     shows("The present is 0.1 s later than the picture, because this reading was 100 ms under way",
           (0.1, 100.0),
           (AGE, 1e3 * AGE))  # fmt: skip
-    by_hand("the filter expects the target at 23.9 mm", 23.9, 1e3 * mean[0])
+    shows("the filter expects the target at 23.9 mm", 23.9, 1e3 * mean[0])
     spread = 1e3 * math.sqrt(covariance[0, 0])
-    by_hand("with a standard deviation of 2.6 mm", 2.58, spread)
+    shows("with a standard deviation of 2.6 mm", 2.58, spread)
     shows("said 12 mm, and would have been sure of it to 1 mm", (12.0, 1.0),
           (1e3 * z, sure))  # fmt: skip
     shows("an error of 12 mm and pays with 2.6 mm of noise", (12.0, 2.6),
@@ -263,15 +258,14 @@ def two_pictures() -> None:
     for believed, read in random.uniform(0.1, 10.0, (50, 2)):
         k = believed / (believed + read)
         more.append(min(believed, read) - (1.0 - k) * believed)
-    claim("smaller than either of the two", lambda gap: min(gap) > 0.0, gap=more)
+    holds(min(more) > 0.0, "smaller than either of the two")
     for _ in range(200):
         before = Estimate(0.0, *carry_forward(after.mean, after.covariance, 0.1, q))
         after = update(before, np.zeros(3), noise)
     gain = before.covariance[(0, 3), 0] / (before.covariance[0, 0] + 1e-6)
-    claim(
+    holds(
+        np.allclose(list(map(float, gain)), (0.83, 6.5), rtol=0.01),
         "After a few seconds they settle at 0.83 and 6.5 1/s",
-        lambda k: np.allclose(k, (0.83, 6.5), rtol=0.01),
-        k=list(map(float, gain)),
     )
 
 
@@ -280,11 +274,11 @@ def old_pictures() -> None:
     sway = swaying()
     age = math.sqrt(0.15**2 + 0.1**2 / 12.0)
     speed = float(np.sqrt(np.mean(np.gradient(sway.truth, sway.t)[sway.t > 1.5] ** 2)))
-    by_hand("By hand that makes 13.0 mm", 13.0, sway.rms(sway.last), 0.02)
-    by_hand("at 0.1 m/s and 100 ms, 10 mm", 10.0, 1e3 * SPEED * AGE)
-    by_hand("The readings had 1 mm of noise", 1.0, 1e3 * NOISE)
-    by_hand("its RMS speed is $0.1\\cdot1.2/\\sqrt2$ = 0.085 m/s", 0.085, speed, 0.05)
-    by_hand("its root is $\\sqrt{0.15^2 + 0.1^2/12}$ = 0.153 s", 0.153, age)
+    shows("By hand that makes 13.0 mm", 13.0, sway.rms(sway.last), 0.02)
+    shows("at 0.1 m/s and 100 ms, 10 mm", 10.0, 1e3 * SPEED * AGE)
+    shows("The readings had 1 mm of noise", 1.0, 1e3 * NOISE)
+    shows("its RMS speed is $0.1\\cdot1.2/\\sqrt2$ = 0.085 m/s", 0.085, speed, 0.05)
+    shows("its root is $\\sqrt{0.15^2 + 0.1^2/12}$ = 0.153 s", 0.153, age)
     shows("With pictures at 10 Hz that are 100 ms old", (10.0, 100.0), (1.0 / PERIOD, 1e3 * AGE))
 
 
@@ -292,14 +286,14 @@ def steering() -> None:
     """The gain that an old picture allows, and the distance of the hand behind a moving goal."""
     delay = 0.1
     gain = 1.0 / (math.e * delay)
-    by_hand("with an age of 100 ms it is 3.7 1/s", 3.7, gain)
-    by_hand("is unstable beyond 15.7 1/s", 15.7, math.pi / 2.0 / delay)
+    shows("with an age of 100 ms it is 3.7 1/s", 3.7, gain)
+    shows("is unstable beyond 15.7 1/s", 15.7, math.pi / 2.0 / delay)
     shows("at 0.1 m/s the hand stays 27 mm behind", (0.1, 27.0),
           (SPEED, 1e3 * (1.0 - _steered(gain, SPEED)[-1])), 0.02)  # fmt: skip
-    claim(
+    most = [float(_steered(k).max()) for k in (gain, 2.0 * gain, 16.5)]
+    holds(
+        abs(most[0]) < 0.001 and 0.02 < most[1] < 1.0 < most[2],
         "Beyond that gain the hand overshoots",
-        lambda most: abs(most[0]) < 1e-3 and 0.02 < most[1] < 1.0 < most[2],
-        most=[float(_steered(k).max()) for k in (gain, 2.0 * gain, 16.5)],
     )
 
 
@@ -349,24 +343,21 @@ def aims() -> HTML:
         curves[belief] = [_aimed(order, turns, s) for s in noises]
         ax.semilogx(1e3 * noises, curves[belief], f"C{k}" + ("-", "--", "-.", ":")[k], label=belief)
     stays, straight, bends, turning = (curves[b] for b in BELIEFS)
-    claim(
+    holds(
+        all(0.0 < x < 0.75 * y for x, y in zip(bends[:4], straight[:4], strict=True)),
         "the belief with acceleration errs less than the one with constant velocity",
-        lambda a, b: all(0.0 < x < 0.75 * y for x, y in zip(a, b, strict=True)),
-        a=bends[:4],
-        b=straight[:4],
     )  # up to 0.1 mm
-    claim(
-        "at 3 mm even the belief that turns errs more than the one with constant velocity",
-        lambda e: e[0] > 1.05 * e[1] > 0.0,
-        e=[turning[-1], straight[-1]],
+    holds(
+        turning[-1] > 1.05 * straight[-1] > 0.0,
+        "at 3 mm even the belief that turns errs more than the one with constant",
     )
     numbers({"aim_stays": stays[0], "aim_straight": straight[0], "aim_bends": bends[0],
              "aim_turns": turning[0]}, ".2g")  # fmt: skip
     numbers({"aim_turns_noisy": turning[-1], "aim_straight_noisy": straight[-1]}, ".2g")
-    by_hand(
+    shows(
         "which is 25 mm at 0.1 m/s and 60 mm", 25.0, 1e3 * SPEED**2 * AHEAD**2 / (2 * RADIUS), 0.02
     )
-    by_hand(
+    shows(
         "With the same numbers this is 7.7 mm, less than a third",
         7.7,
         1e3 * SPEED**3 * AHEAD**3 / (6 * RADIUS**2),
@@ -389,10 +380,10 @@ def aims() -> HTML:
 
 def question() -> None:
     """The speed of the tag in the task: the peak of a quintic is 15/8 of its mean."""
-    by_hand("a circle 12 cm across", 0.12, 2.0 * RADIUS)
-    by_hand("The hand is to stay 20 cm above the tag", 0.2, OFFSET[2])
-    by_hand("With 30 % of the readings lost at random", 0.3, LOST)
+    shows("a circle 12 cm across", 0.12, 2.0 * RADIUS)
+    shows("The hand is to stay 20 cm above the tag", 0.2, OFFSET[2])
+    shows("With 30 % of the readings lost at random", 0.3, LOST)
     dials = inspect.signature(TagStream).parameters
     pictures, late = dials["rate"].default, dials["delay"].default
     shows("takes ten pictures a second, and it takes 100 ms", (10.0, 100.0), (pictures, 1e3 * late))
-    by_hand("at up to 0.11 m/s", 0.11, 15.0 / 8.0 * 2.0 * math.pi * RADIUS / LAP, 0.02)
+    shows("at up to 0.11 m/s", 0.11, 15.0 / 8.0 * 2.0 * math.pi * RADIUS / LAP, 0.02)

@@ -13,8 +13,8 @@ from labkit import metrics
 from labkit.plotting import curve
 from solutions.study.joint_torque import AugmentedPD, ComputedTorque
 
-from .claims import claim, shows
-from .page import Question, figure, holds, number, numbers, quiz, replay, table, tracking
+from .claims import holds, shows
+from .page import Question, figure, number, numbers, quiz, replay, table, tracking
 from .velocity import circle_task
 
 SEED = 5
@@ -56,11 +56,7 @@ def responses() -> HTML:
     axes[1].legend(ncols=2, fontsize="small")
     same, different = spread.values()
     holds(same < 1e-6, "under computed torque all joints answer alike")
-    claim(
-        "Under augmented PD each joint is its own oscillator",
-        lambda spread: spread > 0.3,
-        spread=different,
-    )
+    holds(different > 0.3, "Under augmented PD each joint is its own oscillator")
     number("spread_apd", 100.0 * different, ".2g")
     return figure(
         "Seven joints, each 0.1 rad away, ideal arm at 1 kHz. Behind the left curves, in grey, the "
@@ -101,18 +97,13 @@ def sampled() -> HTML:
     }
     shows("At 200 Hz its spectral radius is", 200.0, RATES[0])
     shows("kg m² and at 200 Hz the radius is", 200.0, RATES[0])
-    claim(
+    holds(
+        values["bare_200"] > 2.0
+        and 0.0 < values["bare_1000"] < 1.0
+        and (0.0 < values["real_200"] < 1.0),
         "the error is several times larger after every tick",
-        lambda bare, quick, real: bare > 2.0 and 0.0 < quick < 1.0 and 0.0 < real < 1.0,
-        bare=values["bare_200"],
-        quick=values["bare_1000"],
-        real=values["real_200"],
     )
-    claim(
-        "larger than one in size, the error grows without end",
-        lambda radius: radius > 1.0,
-        radius=values["bare_200"],
-    )
+    holds(values["bare_200"] > 1.0, "larger than one in size, the error grows without end")
     numbers(values, ".3g")
     number("bare", bare, ".3g")
     number("real", real, ".2g")
@@ -149,13 +140,11 @@ def weight() -> HTML:
     ax.set(xlabel="time [s]", ylabel="height gained [mm]")
     ax.legend()
     once, twice = ends.values()
-    claim(
+    holds(
+        abs(once) < 0.1 and twice > 10.0,
         "Left to the arm, the hand stays within 0.1 mm of its height",
-        lambda once, twice: abs(once) < 0.1 and twice > 10.0,
-        once=float(once),
-        twice=float(twice),
     )
-    claim("Added a second time it lifts the arm", lambda up: up > 50.0, up=twice)
+    holds(twice > 50.0, "Added a second time it lifts the arm")
     number("twice", twice, ".0f")
     return figure(
         "Holding still on an arm that carries its own weight, as Baxter does.",

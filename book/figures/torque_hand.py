@@ -18,8 +18,8 @@ from labkit.plotting import curve
 from solutions.study import tasks
 from solutions.study.joint_torque import ComputedTorque, IntegralTorque
 
-from .claims import claim, shows
-from .page import figure, holds, number, numbers, shown, table
+from .claims import holds, shows
+from .page import figure, number, numbers, shown, table
 from .torque import (
     DAMPER,
     KP,
@@ -100,24 +100,17 @@ def columns() -> HTML:
     away = 0.1
     shows("only s0 is 0.1 rad away from its target", 0.1, away)
     accelerate = KP * away
-    claim(
+    holds(
+        model.mass_matrix(np.zeros(7))[0, 0] > 1.3 * M[0, 0] > 0.0,
         "more inertia with the arm stretched out than with the arm folded",
-        lambda stretched, folded: stretched > 1.3 * folded > 0.0,
-        stretched=float(model.mass_matrix(np.zeros(7))[0, 0]),
-        folded=float(M[0, 0]),
     )
     tau = M[:, 0] * accelerate
     number("hand_t2", tau[2])
-    claim(
+    holds(
+        0.039 < (1.0 + math.sqrt(KP) * 0.5) * math.exp(-math.sqrt(KP) * 0.5) < 0.042,
         "has 4 % of its error left after 0.5 s",
-        lambda left: 0.039 < left < 0.042,
-        left=(1.0 + math.sqrt(KP) * 0.5) * math.exp(-math.sqrt(KP) * 0.5),
     )
-    claim(
-        "is the torque that keeps e0 still while s0 accelerates",
-        lambda t: t > 10.0,
-        t=float(tau[2]),
-    )
+    holds(tau[2] > 10.0, "is the torque that keeps e0 still while s0 accelerates")
     rows = [
         (name.removeprefix("left_"), shown(m, ".2f"), shown(t, ".1f"))
         for name, m, t in zip(model.robot.joint_names, M[:, 0], tau, strict=True)
@@ -158,11 +151,9 @@ def ticks() -> None:
     root = math.sqrt(trace**2 - 4.0 * det)
     large = min(0.5 * (trace - root), 0.5 * (trace + root))
     number("tick_root", large, ".3g")
-    claim(
+    holds(
+        math.isclose(-large, radius(I, REPORT_KP, REPORT_KD, h), rel_tol=1e-06),
         "Its size is the spectral radius given above",
-        lambda by_hand, drawn: math.isclose(-by_hand, drawn, rel_tol=1e-6),
-        by_hand=large,
-        drawn=radius(I, REPORT_KP, REPORT_KD, h),
     )
     random = np.random.default_rng(0)
     tried = []
@@ -170,19 +161,16 @@ def ticks() -> None:
         kp, kd, inertia = random.uniform((1.0, 0.01, 0.001), (200.0, 5.0, 0.05))
         said = kd * h / inertia < 2.0 and kp * h / 2.0 < kd
         tried.append(said == (radius(inertia, kp, kd, h) < 1.0))
-    claim("together they are sufficient", lambda right: right == 400, right=float(sum(tried)))
+    holds(sum(tried) == 400, "together they are sufficient")
     step = np.array([[1.0, h], [0.0, 1.0]]) - np.outer((h * h / 2, h), (8.0, 1.5)) / 0.051
     x = [np.array([0.0, moving])]
     for _ in range(400):
         x.append(step @ x[-1])
     q = [float(one[0]) for one in x]
     numbers({"bump_mrad": 1e3 * max(q), "bump_ticks": int(np.argmax(q))}, ".2g")
-    claim(
+    holds(
+        q[0] == 0.0 and max(q) > 0.02 and (0.0 < q[-1] < 0.001 * max(q)),
         "It leaves the target before it returns",
-        lambda first, most, last: first == 0.0 and most > 0.02 and 0.0 < last < 1e-3 * most,
-        first=q[0],
-        most=max(q),
-        last=q[-1],
     )
 
 
@@ -221,22 +209,17 @@ def wrists() -> None:
         inertia = model.mass_matrix(q)
         alone.append(drag[5] / inertia[5, 5] / ON_CIRCLE)
         coupled.append(np.linalg.solve(inertia, drag)[5] / ON_CIRCLE)
-    claim(
+    x = [*(1000.0 * math.sqrt(np.square(one).mean()) for one in (alone, coupled)), float(off[5])]
+    holds(
+        0.0 < abs(x[1] / x[2] - 1.0) < 0.2 and x[0] < 0.7 * x[2],
         "because the other joints' friction reaches it through $M^{-1}$",
-        lambda x: 0.0 < abs(x[1] / x[2] - 1.0) < 0.2 and x[0] < 0.7 * x[2],
-        x=[*(1e3 * math.sqrt(np.square(one).mean()) for one in (alone, coupled)), float(off[5])],
     )
     numbers({"spring_s0": ON_CIRCLE * M[0, 0], "spring_w1": ON_CIRCLE * M[5, 5]}, ".2g")
     shows("On the circle, with 225 1/s²", 225.0, ON_CIRCLE)
     shows("A friction of 0.3 N m alone", 0.3, lk.BAXTER.stiction[5])
     number("held_w1", 1e3 * lk.BAXTER.stiction[5] / (ON_CIRCLE * M[5, 5]), ".2g")
     number("wrist_times", off[5] / off[0], ".2g")
-    claim(
-        "times the shoulder's",
-        lambda shoulder, wrist: wrist > 10.0 * shoulder > 0.0,
-        shoulder=float(off[0]),
-        wrist=float(off[5]),
-    )
+    holds(off[5] > 10.0 * off[0] > 0.0, "times the shoulder's")
 
 
 def payload() -> HTML:
@@ -260,14 +243,10 @@ def payload() -> HTML:
         ax.axhline(expected, color="#999999", linestyle=":")
         ends.append((float(sag[-1]), float(expected)))
         said.append(f"{sag[-1]:.3g} mm for Kp = {gain:g}")
-    claim(
+    holds(
+        all(math.isclose(one[0], one[1], rel_tol=0.05) for one in ends)
+        and 1.0 < ends[1][0] < 0.3 * ends[0][0],
         "the hand comes to rest where the formula says",
-        lambda found, expected: (
-            all(math.isclose(a, b, rel_tol=0.05) for a, b in zip(found, expected, strict=True))
-            and 1.0 < found[1] < 0.3 * found[0]
-        ),
-        found=[one[0] for one in ends],
-        expected=[one[1] for one in ends],
     )
     numbers({"sag_hand": ends[1][1], "sag_run": ends[1][0]}, ".3g")
     numbers({"sag_soft": ends[0][0], "mobility_z": mobility[2, 2]}, ".3g")

@@ -20,7 +20,7 @@ from solutions.study import speed_gains
 from solutions.study.joint_velocity import JointVelocityPD
 from solutions.study.workspace_velocity import WorkspaceVelocityPD
 
-from .claims import claim, shows
+from .claims import holds, shows
 from .embed import demo_html
 from .gains import LATENCY
 from .gains import explorer as recorded
@@ -61,12 +61,9 @@ def damping() -> HTML:
         told.append(f"Kd = {kd:g}: {rate:.2f} per second")
         number(f"rate_{k}", rate, ".2f")
         rates.append(float(rate))
-    claim(
+    holds(
+        all(abs(x - 2.0 / (1.0 + kd)) < 0.02 for x, kd in zip(rates, (0.0, 0.5, 0.9), strict=True)),
         "as $2/(1+K_d)$ says",
-        lambda r: all(
-            abs(x - 2.0 / (1.0 + kd)) < 0.02 for x, kd in zip(r, (0.0, 0.5, 0.9), strict=True)
-        ),
-        r=rates,
     )
     wild = step_run(2.0, 1.1)
     e = _error(wild)
@@ -76,12 +73,7 @@ def damping() -> HTML:
         below.plot(log.t[:40], log.command[:40, 0], **curve(k) | {"marker": "."}, label=name)
     swings = [np.abs(np.diff(log.command[:, 0])) for log in (wild, calm)]
     grows, fades = (float(x[8] / x[2]) for x in swings)  # later a limit stops the growing one
-    claim(
-        "a sequence that grows if $K_d > 1$",
-        lambda grows, fades: grows > 1.5 and 0.2 < fades < 0.9,
-        grows=grows,
-        fades=fades,
-    )
+    holds(grows > 1.5 and 0.2 < fades < 0.9, "a sequence that grows if $K_d > 1$")
     ax.set(xlabel="time [s]", ylabel="error of s0 [rad]")
     below.set(xlabel="time [s]", ylabel="command to s0 [rad/s]", ylim=(0.0, None))
     ax.legend()
@@ -105,16 +97,11 @@ def derivative() -> HTML:
     left.set(xlabel="Kd", ylabel="RMS error on the circle [mm]", ylim=(0, None))
     right.plot(kds, shake, "C1s--", markersize=4)
     right.set(xlabel="Kd", ylabel="RMS speed at rest [mm/s]", ylim=(0, None))
-    claim(
+    holds(
+        all(b < a for a, b in pairwise(error)) and 0.0 < error[2] < 0.9 * error[0],
         "the same D that slows the return makes the error on a curve smaller",
-        lambda e: all(b < a for a, b in pairwise(e)) and 0.0 < e[2] < 0.9 * e[0],
-        e=error,
     )
-    claim(
-        "the hand shakes more at rest",
-        lambda v: all(b > a for a, b in pairwise(v)) and v[0] > 0.0,
-        v=shake,
-    )
+    holds(all(b > a for a, b in pairwise(shake)) and shake[0] > 0.0, "the hand shakes more at rest")
     numbers({f"curve_{k}": x for k, x in enumerate(error)}, ".3g")
     numbers({f"shake_{k}": x for k, x in enumerate(shake)}, ".2g")
     rows = "; ".join(
@@ -147,10 +134,9 @@ def reach() -> None:
     number("reach_deg", ends[1], ".0f")
     number("reach_metre_mm", ends[2], ".0f")
     number("reach_metre_deg", ends[3], ".0f")
-    claim(
+    holds(
+        0.0 < ends[0] < 0.7 * ends[2] and ends[1] > 2.0 * ends[3] > 0.0,
         "the hand ends nearer to the goal, and more turned",
-        lambda e: 0.0 < e[0] < 0.7 * e[2] and e[1] > 2.0 * e[3] > 0.0,
-        e=ends,
     )
 
 
@@ -170,12 +156,9 @@ def gains() -> HTML:
     number("kp_enough", allowed, ".2g")
     right.set(xlabel="Kp [1/s]", ylabel="phase margin [degrees]", ylim=(0, 95))
     first = float(kps[np.argmax(over > 0.05)])
-    claim(
+    holds(
+        0.0 <= over[kps < first].max() < 0.05 < over[kps == first][0] < 0.1 and over[-1] > 0.15,
         "first exceeds 5 % there",
-        lambda small, there, large: 0.0 <= small < 0.05 < there < 0.1 and large > 0.15,
-        small=float(over[kps < first].max()),
-        there=float(over[kps == first][0]),
-        large=float(over[-1]),
     )
     shows("and at 30 1/s it is", 30.0, kps[-1])
     numbers({"kp_first": first, "over_last": 100.0 * over[-1], "margin_5": phase_margin(5.0)})
@@ -212,25 +195,17 @@ def unstable() -> None:
             goal = q0 + away * np.eye(7)[0]
             e = _error(lk.run(arm, lk.Hold(goal, 3.0), JointVelocityPD(kp, 0.0)))
         swings.append(1e3 * float(np.ptp(e[-100:])))
-    claim(
-        "In a run that starts 5 mrad beside the target, the arm settles at 80 1/s and swings for "
-        "ever at 120 1/s",
-        lambda swings: 0.0 <= swings[0] < 0.5 and swings[1] > 50.0,
-        swings=[max(swings[0], 0.01), swings[1]],
+    holds(
+        0.0 <= max(swings[0], 0.01) < 0.5 and swings[1] > 50.0,
+        "In a run that starts 5 mrad beside the target, the arm settles at 80 1/s and",
     )
-    claim(
-        "from 0.1 rad away the arm already swings for ever at 70 1/s",
-        lambda swing: swing > 20.0,
-        swing=swings[2],
-    )
+    holds(swings[2] > 20.0, "from 0.1 rad away the arm already swings for ever at 70 1/s")
     number("ring_mrad", swings[2], ".2g")
     robot = lk.robot("left")
     inertia = float(lk.Model("left", lk.BAXTER).mass_matrix(robot.ready)[0, 0])
-    claim(
+    holds(
+        2.0 * float(robot.speed[0]) / lag * inertia > 1.5 * robot.effort[0] > 0.0,
         "would take more torque than s0 has",
-        lambda needs, has: needs > 1.5 * has > 0.0,
-        needs=2.0 * float(robot.speed[0]) / lag * inertia,
-        has=float(robot.effort[0]),
     )
 
 
@@ -287,12 +262,7 @@ def euler() -> HTML:
     ax.set(xlabel="time [s]", ylabel="orientation error [degrees]", ylim=(0, None))
     ax.legend()
     right, wrong = (a[-1] for a in angles.values())
-    claim(
-        "With the logarithm the error ends at",
-        lambda right, wrong: 0.0 < right < 0.5 < 8.0 < wrong,
-        right=float(right),
-        wrong=float(wrong),
-    )
+    holds(0.0 < right < 0.5 < 8.0 < wrong, "With the logarithm the error ends at")
     numbers({"log_end": right, "euler_end": wrong}, ".2g")
     return figure(
         "The hand points down and starts 5 degrees off about the world's x axis. Gain 1 1/s, ideal "
@@ -353,10 +323,10 @@ def circle_replay() -> HTML:
           (100.0 * poses.path.path.radius, poses.duration))  # fmt: skip
     shows("on the realistic arm, with $K_p = 5$ 1/s and without", 5.0, np.max(gain))
     found = {name: metrics.summary(log).rms_mm for name, log in runs.items()}
-    claim(
+    e = list(found.values())
+    holds(
+        all(0.0 < x < 6.0 for x in e) and abs(e[0] - e[1]) < 0.1 * e[0],
         "That they agree is not an accident",
-        lambda e: all(0.0 < x < 6.0 for x in e) and abs(e[0] - e[1]) < 0.1 * e[0],
-        e=list(found.values()),
     )
     numbers({f"circle_{name}": value for name, value in found.items()}, ".2g")
     return replay(

@@ -15,7 +15,7 @@ import labkit as lk
 from solutions.study.singular import damped_inverse
 from solutions.study.workspace_velocity import WorkspaceVelocityPD
 
-from .claims import claim, shows
+from .claims import holds, shows
 from .paths import DURATION, KP, WAY, line_task
 from .velocity import DELAY
 
@@ -66,10 +66,9 @@ def _durations(D: float) -> None:
           (quintic, pull), 3e-3)  # fmt: skip
     shows("The bang-bang schedule needs 2.15 s", 2.15, bang, 3e-3)
     shows("it needs 1.58 s", 1.58, trapezoid, 3e-3)
-    claim(
+    holds(
+        1.0 < trapezoid < quintic < bang < 2.2,
         "the tip may move at 0.25 m/s and accelerate at 0.5 m/s²",
-        lambda T: 1.0 < T[0] < T[1] < T[2] < 2.2,
-        T=[trapezoid, quintic, bang],
     )
     short = lk.Quintic.within(0.01, v, a).duration
     shows(
@@ -101,7 +100,7 @@ def _bends(tick: float) -> None:
     shows("which is 0.236 m/s, and the acceleration towards the centre is $v^2/r$, "
           "which is 0.555 m/s²",
           (0.236, 0.555), (v, a), 2e-3)  # fmt: skip
-    claim("above the limit of 0.5", lambda a: 0.5 < a < 0.6, a=float(a))
+    holds(0.5 < a < 0.6, "above the limit of 0.5")
     corner = lk.Polyline([[0.0, 0.0, 0.0], [0.1, 0.0, 0.0], [0.1, 0.1, 0.0]])
     jump = 0.5 * np.linalg.norm(corner(0.5).velocity - corner(0.4999).velocity)
     shows("passed at 0.1 m/s, the velocity jumps by 0.141 m/s", 0.141, jump, 4e-3)
@@ -143,7 +142,7 @@ def model() -> None:
     shows("1.28 kg m² to 1.92 kg m²", (1.28, 1.92), (M[0, 0], far), 1e-6)
     shows("That is a factor of 1.5", 1.5, far / M[0, 0], 1e-6)
     shows("which is 23.5 N m", 23.5, g[0], 3e-3)
-    claim("so $g_2 = 0$", lambda g: g[0] > 20.0 and abs(g[1]) < 1e-6, g=g.tolist())
+    holds(g[0] > 20.0 and abs(g[1]) < 1e-06, "so $g_2 = 0$")
     shows("is $(-2.56,\\ 0.32)$ N m", (-2.56, 0.32), C @ dq, 1e-6)
     rate = (arm.mass_matrix(POSE + 1e-6 * dq) - arm.mass_matrix(POSE - 1e-6 * dq)) / 2e-6
     skew = rate - 2.0 * C
@@ -184,7 +183,7 @@ def _newton() -> None:
     shows("$\\Delta q = (0.1, 0)$ rad", (0.1, 0.0), left[0][1], 1e-6)
     shows("After this step the hand is 2.8 mm from its goal", 2.8, left[1][0], 0.02)
     last = 1e3 * np.linalg.norm(goal - arm.pose(q)[[0, 2], 3])
-    claim("after another one less than 0.02 mm", lambda last: last < 0.02, last=last)
+    holds(last < 0.02, "after another one less than 0.02 mm")
 
 
 def _elbow() -> None:
@@ -273,11 +272,9 @@ def _turned() -> None:
                 w = w_d + kp / (1.0 + kd) * lk.se3.rotation_log(R_d @ R.T)
                 R, R_d = lk.se3.rotation(h * w) @ R, lk.se3.rotation(h * w_d) @ R_d
             left.append(float(np.linalg.norm(lk.se3.rotation_log(R_d @ R.T))) / sqrt(1.7))
-    claim(
-        "The angle of the orientation's error decays at this rate too, with $K_d$ and without it, "
-        "whether the target rests or turns",
-        lambda x: np.allclose(x, [exp(-3.0)] * 2 + [exp(-3.0 / 1.6)] * 2, rtol=0.01),
-        x=left,
+    holds(
+        np.allclose(left, [exp(-3.0)] * 2 + [exp(-3.0 / 1.6)] * 2, rtol=0.01),
+        "The angle of the orientation's error decays at this rate too, with $K_d$ and",
     )
 
 

@@ -12,7 +12,6 @@ from pathlib import Path
 from . import (
     camera,
     campaign,
-    claims,
     closed_loop,
     costs,
     drake,
@@ -47,7 +46,6 @@ MEASUREMENTS = (
     grading,
     costs,
     week,
-    claims,
 )
 OUT = Path("build/bench.json")
 
