@@ -21,7 +21,7 @@ SECOND := .venv-313/bin
 # Modules that the installation left uncompiled are compiled at their first import.
 unexport PYTHONDONTWRITEBYTECODE
 
-.PHONY: help demo test dev soak lab book book-zip film vendor campaign record count lint lock format clean
+.PHONY: help demo test dev soak lab book book-zip stills vendor campaign record count lint lock format clean
 
 help: ## list the targets
 	@grep -hE '^[a-z0-9-]+:.*##' $(MAKEFILE_LIST) | awk -F':.*## ' '{printf "  make %-16s %s\n", $$1, $$2}'
@@ -47,12 +47,11 @@ lab: .venv/.course ## open the notebooks of this checkout; students start theirs
 book: .venv/.course ## build the book: book/_build/html/index.html
 	@$(BIN)/python book/_tools/build_book.py
 
-book-zip: .venv/.course build/campaign.json ## make one file of the book to hand out
+book-zip: .venv/.course ## make one file of the book to hand out
 	@$(BIN)/python book/_tools/build_book.py --zip
 
-film: for-tests .venv/.dev browser ## make the first page's film and the live arm's stills from the built book
+stills: for-tests .venv/.dev browser ## make the live arm's stills from the built book
 	@$(BIN)/python book/_tools/make_stills.py
-	@$(BIN)/python book/_tools/make_film.py
 
 vendor: .venv/.dev ## make the book's browser files again (node 20)
 	@sh .ci/need.sh node:nodejs npm:npm
@@ -63,9 +62,6 @@ campaign: .venv/.course ## run the compared controllers on every task: build/cam
 
 record: .venv/.course ## make all recorded data again, and say which verdicts changed
 	@$(BIN)/python -m solutions.study.record
-
-build/campaign.json: # the book to hand out contains the films of the campaign
-	@$(BIN)/python -m solutions.study
 
 count: ## count the lines of code, storey by storey, beside their ceilings
 	@python3 tests/test_size.py

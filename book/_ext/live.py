@@ -9,8 +9,8 @@ Its argument is the kind of panel, its options are the settings, and its text is
     Drag the arm.
     :::
 
-Before the click the figure shows a still picture of the panel.  `make film` takes one for each page
-and names it after the page.
+Before the click the figure shows a still picture of the panel.  `make stills` takes one for each
+page and names it after the page.
 """
 
 from __future__ import annotations
@@ -61,7 +61,7 @@ class LiveArm(SphinxDirective):
         static = "../" * self.env.docname.count("/") + "_static/"
         still = self.env.docname.replace("/", "_") + ".webp"
         if not (STILLS / still).exists():
-            raise self.error(f"static/stills has no {still}; build the book, then run `make film`")
+            raise self.error(f"static/stills has no {still}; run `make book stills`")
         html = (
             f'<figure class="lk-live" role="group" aria-label="{escape(title)}">'
             f'<img class="lk-still dark-light" src="{static}stills/{still}" width="1360" '

@@ -67,7 +67,6 @@ def page_keys() -> dict[str, str]:
         parts = [key_of(module) for module in modules]
         if {"figures.comparison", "figures.gallery"} & modules.keys():
             parts.append(hashlib.sha256(CAMPAIGN.read_bytes()).hexdigest()[:16])
-            parts += sorted(p.name for p in (ROOT / "build/campaign").glob("*.mp4"))
         keys[name] = " ".join(parts)
     return keys
 

@@ -1,8 +1,8 @@
 """Build the book: `python book/_tools/build_book.py`, or `make book`.
 
-This makes what the pages need (viewer, notation, the students' notebooks, recorded runs, the
-campaign), then runs Jupyter Book with warnings as errors.  Computed results are kept until the
-code that computes them changes.
+This makes what the pages need (viewer, notation, the students' notebooks, the campaign), then
+runs Jupyter Book with warnings as errors.  Computed results are kept until the code that computes
+them changes.
 """
 
 from __future__ import annotations
@@ -18,14 +18,11 @@ import subprocess
 import sys
 import time
 from collections.abc import Iterator
-from concurrent.futures import ProcessPoolExecutor
-from multiprocessing import get_context
 from pathlib import Path
 
 from book_campaign import compare
 from book_outputs import pack
-from book_pages import BOOK, CACHE, HTML, ROOT, forget_stale, key_of, page_keys
-from book_print import print_pdf
+from book_pages import BOOK, CACHE, HTML, ROOT, forget_stale, page_keys
 
 PATHS = os.pathsep.join([str(ROOT), str(BOOK), os.environ.get("PYTHONPATH", "")])
 MADE = BOOK / "generated"
@@ -36,14 +33,12 @@ def main(arguments: list[str] | None = None) -> int:
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--fresh", action="store_true", help="delete what was built before")
     parser.add_argument("--zip", action="store_true", help="also make dist/book.zip to hand out")
-    parser.add_argument("--pdf", action="store_true", help="also print the book to dist/book.pdf")
     chosen = parser.parse_args(arguments)
     began = time.monotonic()
     if chosen.fresh:
-        for folder in (BOOK / "_build", BOOK / "static/runs", CACHE):
+        for folder in (BOOK / "_build", CACHE):
             shutil.rmtree(folder, ignore_errors=True)
     prepare()
-    record()
     compare(_progress)
     if code := build():
         return code
@@ -53,8 +48,6 @@ def main(arguments: list[str] | None = None) -> int:
     if chosen.zip:
         made = pack()
         print(f"{made.relative_to(ROOT)} ({made.stat().st_size / 1e6:.1f} MB): to hand out")
-    if chosen.pdf:
-        print(f"{print_pdf(_progress).relative_to(ROOT)}: to print")
     return 0
 
 
@@ -67,9 +60,6 @@ def prepare() -> None:
     _live(BOOK / "live/bundle", BOOK / "static/live")
     _write(MADE / "parts/symbols.md", _symbols())
     _notebooks(MADE / "notebooks")
-    for made in (ROOT / "build/campaign").glob("*.mp4"):
-        for path in (made, made.with_suffix(".png")):
-            _copy(path, BOOK / "static/films" / path.name)
 
 
 def _live(bundle: Path, folder: Path) -> None:
@@ -149,27 +139,6 @@ def _title(notebook: dict, stem: str) -> str:
     texts = (cell["source"] for cell in notebook["cells"] if cell["cell_type"] == "markdown")
     headings = (re.search(r"^# (.+)", text, re.M) for text in texts)
     return next((found[1].strip() for found in headings if found), stem)
-
-
-def record() -> None:
-    """Record the runs of the gain explorer, each in a small file."""
-    from figures import gains
-
-    folder, key = BOOK / "static/runs", key_of("figures.gains")
-    stamp = folder / "key.txt"
-    if stamp.exists() and stamp.read_text() == key:
-        return
-    shutil.rmtree(folder, ignore_errors=True)
-    folder.mkdir(parents=True)
-    points, facts = gains.points(), {}
-    with ProcessPoolExecutor(2, mp_context=get_context("spawn")) as pool:
-        made = pool.map(gains.make, points, chunksize=8)
-        for k, (point, (name, text, fact)) in enumerate(zip(points, made, strict=True), start=1):
-            (folder / name).write_text(text)
-            facts["-".join(map(str, point))] = fact
-            _progress(f"recording runs... [{100 * k // len(points):3d}%]", every=k % 36 == 0)
-    _write(folder / "facts.json", json.dumps(facts))
-    stamp.write_text(key)
 
 
 def build() -> int:

@@ -1,4 +1,4 @@
-"""Take a still picture of each live panel of the built book before any input: `make film`.
+"""Take a still picture of each live panel of the built book before any input: `make stills`.
 
 Chromium loads the panel of a page and takes a screenshot.  The background of the arm becomes
 transparent, because pages may be light or dark.  The program writes book/static/stills/PAGE.webp,
@@ -13,10 +13,12 @@ from pathlib import Path
 
 import numpy as np
 from chromium import program
-from make_film import LIVE, ROOT, SIZE
 from PIL import Image
 from playwright.sync_api import Page, sync_playwright
 
+ROOT = Path(__file__).resolve().parents[2]
+SIZE = {"width": 800, "height": 608}
+LIVE = "document.querySelector('.lk-live').live"
 STILLS = ROOT / "book/static/stills"
 WIDE, HIGH = 680, 360
 """Size of a still on the page, in [px]; the picture has twice this number of pixels."""

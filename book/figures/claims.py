@@ -7,6 +7,7 @@ must have the numbers of `shows` (`tests/book/test_claims.py`).
 from __future__ import annotations
 
 import math
+from collections.abc import Iterable
 from typing import Any
 
 import numpy as np
@@ -34,7 +35,7 @@ def shows(sentence: str, values: Any, actual: Any, near: float = 0.01) -> None:
     Raises:
         ConclusionFails: The numbers differ.
     """
-    found = np.ravel(actual).tolist()
+    found = np.ravel([*actual] if isinstance(actual, Iterable) else actual).tolist()
     same = [
         math.isclose(a, b, rel_tol=near, abs_tol=1e-12)
         for a, b in zip(np.ravel(values).tolist(), found, strict=True)

@@ -1,4 +1,4 @@
-"""HTML for the static book: a motion, a gain explorer or a live demo as a figure in a page.
+"""HTML for the static book: a motion or a live demo as a figure in a page.
 
 The figure contains its data; `boot.js` loads the shared viewer and robot when it comes into sight.
 Put `shared_files()` into one folder of the book and let every page load boot.js from there.
@@ -6,8 +6,6 @@ Put `shared_files()` into one folder of the book and let every page load boot.js
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
 from pathlib import Path
 
 from labkit.errors import OutOfRange, UnknownName
@@ -60,108 +58,6 @@ def motion_html(
     return figure_html(text, motion.description, caption or motion.title, motion.alt, poster, root)
 
 
-@dataclass(frozen=True)
-class Dial:
-    """A choice in the explorer: numbers become a slider that stops at each, words a list.
-
-    Attributes:
-        label: The text beside the dial, such as "Kp".
-        values: The values on the grid.
-        unit: The unit after the number.
-        value: The first value to show; None means the first of the grid.
-    """
-
-    label: str
-    values: Sequence[float] | Sequence[str]
-    unit: str = ""
-    value: float | str | None = None
-
-
-@dataclass(frozen=True)
-class Explorer:
-    """A grid of recorded runs.
-
-    Attributes:
-        name: Stem of the runs' file names; letters, digits and hyphens.
-        title: The title of the explorer.
-        dials: The axes of the grid.
-        runs: Recorded motions by their indices on the axes; points may be missing.
-        facts: A sentence about the results of each run, by the same indices.
-    """
-
-    name: str
-    title: str
-    dials: Sequence[Dial]
-    runs: Mapping[tuple[int, ...], Motion]
-    facts: Mapping[tuple[int, ...], str] = field(default_factory=dict)
-
-
-def run_files(explorer: Explorer, rate: float = 20.0) -> dict[str, str]:
-    """A small script for each recorded run, by file name; a page from disk can load a script."""
-    return {
-        f"{_stem(explorer, key)}.js": "(globalThis.labkitRuns??={})"
-        f'["{_stem(explorer, key)}"]={motion.to_json(rate)};\n'
-        for key, motion in explorer.runs.items()
-    }
-
-
-def explorer_html(
-    explorer: Explorer,
-    folder: str,
-    *,
-    caption: str = "",
-    poster: str | None = None,
-    root: str | None = None,
-) -> str:
-    """The explorer as a figure; its runs are loaded one by one from `folder`.
-
-    Args:
-        explorer: The grid.
-        folder: Address, from the page, of the folder with `run_files`, ending in "/".
-        caption: Text under it; the title if empty.
-        poster: See `motion_html`.
-        root: See `motion_html`.
-
-    Returns:
-        HTML without inline code.
-    """
-    dials = [
-        {"label": d.label, "unit": d.unit, "values": list(d.values), "value": d.value}
-        for d in explorer.dials
-    ]
-    data = {
-        "kind": "explorer",
-        "title": explorer.title,
-        "dials": dials,
-        "runs": {_key(k): f"{folder}{_stem(explorer, k)}.js" for k in explorer.runs},
-        "facts": {_key(k): text for k, text in explorer.facts.items()},
-    }
-    names = ", ".join(d.label for d in explorer.dials)
-    alt = f"{explorer.title}: {len(explorer.runs)} recorded runs to choose from by {names}."
-    words = f"{alt} {_described(explorer)}"
-    return figure_html(compact(data), words, caption or explorer.title, alt, poster, root)
-
-
-def _described(explorer: Explorer) -> str:
-    """The facts of the first point, and of the points at the other end of each dial."""
-    opening = [0 if d.value is None else list(d.values).index(d.value) for d in explorer.dials]
-    points = {f"It opens with {_said(explorer.dials, opening)}": tuple(opening)}
-    for k, d in enumerate(explorer.dials):
-        far = [*opening[:k], len(d.values) - 1, *opening[k + 1 :]]
-        if far != opening:
-            points[f"With {_said([d], far[k:])} instead"] = tuple(far)
-    return " ".join(f"{w}: {explorer.facts[p]}" for w, p in points.items() if p in explorer.facts)
-
-
-def _said(dials: Sequence[Dial], at: Sequence[int]) -> str:
-    """A description of the values of dials."""
-    pairs = ((d, d.values[k]) for d, k in zip(dials, at, strict=False))
-    return ", ".join(
-        x if isinstance(x, str) else f"{d.label} {x:g}{' ' * bool(d.unit)}{d.unit}"
-        for d, x in pairs
-    )
-
-
 DEMOS = {
     "scaling": "Live: four time scalings of the same distance in the same time, with position,"
     " speed and acceleration plotted against time and their numbers in a table.",
@@ -194,11 +90,3 @@ def demo_html(
     words = DEMOS[name]
     data = compact({"kind": name, "alt": words})
     return figure_html(data, words, caption or words, words, poster, root)
-
-
-def _key(indices: tuple[int, ...]) -> str:
-    return "-".join(map(str, indices))
-
-
-def _stem(explorer: Explorer, indices: tuple[int, ...]) -> str:
-    return f"{explorer.name}-{_key(indices)}"

@@ -24,11 +24,12 @@ from labkit.replay import Motion, motion_of
 from labkit.replay.widget import motion_still
 from labkit.tags.camera import Camera, looking_at
 from labkit.tags.intrinsics import Intrinsics
-from solutions.study.film import AT, EYE
 
 from .claims import holds
 from .embed import motion_html
 
+EYE, AT = (1.7, 1.15, 0.7), (0.45, 0.2, 0.2)
+"""Where the camera of `picture` is and what it looks at, world axes, in [m]."""
 INKS = ("#b3001b", "#0a5aa6", "#a35200", "#1a7f4b", "#7b3fa0", "#57606a", "#00737d")
 """Line colours in light mode; `book.css` has those for dark mode, with a contrast above 4.5."""
 TEXT, FRAME, FAINT = "#1f2328", "#57606a", "#999999"

@@ -22,9 +22,7 @@ from solutions.study.workspace_velocity import WorkspaceVelocityPD
 
 from .claims import holds, shows
 from .embed import demo_html
-from .gains import LATENCY
-from .gains import explorer as recorded
-from .page import Question, figure, number, numbers, picture, quiz, replay, still, tracking
+from .page import Question, figure, number, numbers, quiz, replay, still, tracking
 
 SEED = 3
 OFFSET = 0.1
@@ -383,9 +381,3 @@ def check_yourself() -> HTML:
             1,
         ),
     )
-
-
-def explorer() -> HTML:
-    """The gain explorer."""
-    shows("beyond which more is worse at 60 ms", 60.0, LATENCY[-1])
-    return recorded("../_static/runs/", picture("left", lk.BAXTER, lk.robot("left").ready))

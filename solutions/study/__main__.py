@@ -1,4 +1,4 @@
-"""Run the campaign: every controller on every task, with its tables, figures and films."""
+"""Run the campaign: every controller on every task, with its tables and figures."""
 
 from __future__ import annotations
 
@@ -67,11 +67,10 @@ def main() -> None:
     folder.mkdir(parents=True, exist_ok=True)
     text = tables(rows) + claims(judged)
     (folder / "tables.md").write_text(text)
-    drawn, shot = [], []
+    drawn = []
     if not options.no_pictures:  # on this machine, because they write files
         where["dask"] = None
         drawn = done(pictures.draw, pictures.grid(folder), "figures")
-        shot = done(pictures.shoot, pictures.film_grid(folder), "films")
     found = {
         "seeds": options.seeds,
         "seconds": round(seconds, 1),
@@ -80,14 +79,13 @@ def main() -> None:
         "noise": noise,
         "verdicts": [v.as_data() for v in judged],
         "figures": [_without(row, "folder") for row in drawn],
-        "films": [_without(row, "folder") for row in shot],
     }
     path = options.out / "campaign.json"
     path.write_text(json.dumps(found, indent=1, allow_nan=False) + "\n")
     if options.keep:
         save_campaign(rows)
     print(text)
-    made = f"{path}, {folder}/tables.md, {len(drawn)} figures, {len(shot)} films"
+    made = f"{path}, {folder}/tables.md, {len(drawn)} figures"
     print(f"{len(rows)} runs in {seconds:.0f} s; {made}")
 
 

@@ -1,4 +1,4 @@
-"""The report's tracking figures, 4 to 23, with the right axes, and a video of each task."""
+"""The report's tracking figures, 4 to 23, with the right axes."""
 
 from __future__ import annotations
 
@@ -13,9 +13,7 @@ from labkit import Log, Model, PoseSample, metrics, plotting
 from labkit.plotting import AXES, curve, curves
 
 from .campaign import FIVE, TASKS, joints, perform
-from .film import film
 from .grid import cells
-from .tag_task import staged
 
 
 def grid(folder: Path) -> list[dict[str, Any]]:
@@ -41,24 +39,6 @@ def draw(controller: str, task: str, folder: str) -> Mapping[str, Any]:
     figure.savefig(Path(folder) / name, dpi=90)
     plt.close(figure)
     return {"figure": number, "file": name, "alt": f"{task}: {plotting.describe(log)}"}
-
-
-def film_grid(folder: Path) -> list[dict[str, Any]]:
-    """Cells of the videos: one for each task."""
-    return cells(task=TASKS, folder=(str(folder),))
-
-
-def shoot(task: str, folder: str) -> Mapping[str, Any]:
-    """The job: film joint velocity control of a task on Baxter's plant.
-
-    Returns:
-        "file" and "poster", their names; "alt", the description of the film in words.
-    """
-    log = perform("joint velocity", task, "baxter", 0)
-    stage = (lambda world: staged(world, 0)) if task == "tag" else None
-    path = Path(folder) / f"{task}.mp4"
-    poster = film(log, path, stage=stage)
-    return {"file": path.name, "poster": poster.name, "alt": f"{task}: {plotting.describe(log)}"}
 
 
 def overview(

@@ -7,12 +7,8 @@ from pathlib import Path
 import pytest
 from accessibility import violations
 from figures.embed import (
-    Dial,
-    Explorer,
     demo_html,
-    explorer_html,
     motion_html,
-    run_files,
     shared_files,
 )
 from samples import swing
@@ -39,19 +35,10 @@ def pages(tmp_path_factory):
     static.mkdir()
     for name, path in shared_files().items():
         shutil.copy(path, static / name)
-    dials = [Dial("Controller", ["PD", "impedance"]), Dial("Kp", [10.0, 20.0, 40.0], "1/s²")]
-    grid = Explorer(
-        "gains", "Gains of a controller", dials,
-        {(c, k): swing(2.0 + k, ghosts=0) for c in (0, 1) for k in (0, 1, 2) if (c, k) != (1, 2)},
-        {(0, 1): "RMS error 5.1 mm."},
-    )  # fmt: skip
-    for name, text in run_files(grid).items():
-        (static / name).write_text(text)
     bodies = {
         "motion": motion_html(swing(), root="viewer/"),
         "several": "".join(motion_html(swing(3.0, side=s), root="viewer/")
                            for s in ("left", "right", "left", "right")),
-        "explorer": explorer_html(grid, "viewer/", root="viewer/"),
         "demos": "".join(demo_html(n, root="viewer/") for n in ("scaling", "jacobian", "rotation")),
     }  # fmt: skip
     for name, body in bodies.items():
@@ -273,26 +260,6 @@ def test_a_phone_shows_the_whole_caption_of_the_jacobian(chromium, visit):
     assert whole["x"] + whole["width"] > 390 > seen["x"] + seen["width"]
 
 
-def test_the_explorer_stops_on_the_grid(chromium, visit):
-    """A key goes to the next run, 33 typed becomes 40, and a missing run becomes the nearest."""
-    page = visit(chromium, "explorer")
-    page.wait_for_selector("[data-ready]")
-    assert page.get_attribute("[data-ready]", "data-run") == "0-0"
-    page.get_by_role("slider", name="Kp").focus()
-    page.keyboard.press("ArrowRight")
-    page.wait_for_selector("[data-run='0-1']")
-    assert "recorded" in page.inner_text(".lk-recorded")
-    assert "RMS error 5.1 mm." in page.inner_text(".lk-recorded")
-    typed = page.get_by_label("Kp, typed")
-    typed.fill("33")
-    typed.press("Enter")
-    page.wait_for_selector("[data-run='0-2']")
-    assert typed.input_value() == "40"
-    page.get_by_label("Controller", exact=True).select_option("impedance")
-    page.wait_for_selector("[data-run='1-1']")
-    assert "not recorded" in page.inner_text(".lk-recorded")
-
-
 def test_the_live_demos_answer_to_their_dials(chromium, visit):
     """Each of the three demos shows other numbers, such as 15/8 d/T for a duration of 4 s."""
     page = visit(chromium, "demos")
@@ -313,7 +280,7 @@ def test_the_live_demos_answer_to_their_dials(chromium, visit):
     )  # 15/8 d/T
 
 
-@pytest.mark.parametrize("name", ["motion", "several", "explorer", "demos"])
+@pytest.mark.parametrize("name", ["motion", "several", "demos"])
 @pytest.mark.parametrize("look", ["light", "dark", "phone"])
 def test_axe_finds_nothing(chromium, visit, name, look):
     """No rule of accessibility is broken in light or dark or on a phone, all viewers loaded."""

@@ -160,10 +160,3 @@ def test_browser_unpacks_what_python_packs(node):
     assert read["end"] == pytest.approx(3.0)
     halfway = node("(m => recording.at(m, m.q, 1.5 * m.period))(recording.read(x))", data)
     np.testing.assert_allclose(halfway, np.mean(unpack(data["q"])[1:3], axis=0), rtol=0, atol=1e-12)
-
-
-def test_missing_grid_points_go_to_the_nearest(node):
-    """The recorded point keeps a chosen name, though another one is nearer in its numbers."""
-    keys = ["0-0-0", "0-3-2", "1-2-1"]
-    assert node("grid.nearest(x, [0, 2, 2], [true, false, false])", keys) == "0-3-2"
-    assert node("grid.nearest(x, [1, 0, 0], [true, false, false])", keys) == "1-2-1"

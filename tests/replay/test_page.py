@@ -10,12 +10,8 @@ from io import BytesIO
 import numpy as np
 import pytest
 from figures.embed import (
-    Dial,
-    Explorer,
     demo_html,
-    explorer_html,
     motion_html,
-    run_files,
     shared_files,
 )
 from PIL import Image
@@ -76,20 +72,6 @@ def test_viewer_and_robot_are_small():
     files = shared_files()
     assert sum(p.stat().st_size for p in files.values()) <= 2_500_000
     assert {"boot.js", "viewer.js", "robot.js"} <= set(files)
-
-
-def test_an_explorer_names_its_runs():
-    """Its page has the address of each run, in a file below 20 kB, and the facts that exist."""
-    run = swing(2.0, ghosts=0)
-    dials = [Dial("Controller", ["PD", "impedance"]), Dial("Kp", [10.0, 20.0], "1/s²")]
-    grid = Explorer("gains", "Gains", dials, {(0, 0): run, (1, 1): run}, {(0, 0): "RMS 5 mm."})
-    files = run_files(grid)
-    page = Reader(explorer_html(grid, "runs/"))
-    index = json.loads(page.data)
-    assert index["runs"] == {"0-0": "runs/gains-0-0.js", "1-1": "runs/gains-1-1.js"}
-    assert set(files) == {"gains-0-0.js", "gains-1-1.js"}
-    assert all(len(text) < 20_000 for text in files.values())
-    assert index["facts"] == {"0-0": "RMS 5 mm."}
 
 
 @pytest.mark.parametrize("name", ["scaling", "jacobian", "rotation"])

@@ -16,13 +16,6 @@ function script(url) {
   }));
 }
 
-/** Loads a recorded run of the explorer; its script puts the motion into labkitRuns. */
-async function run(key, url) {
-  const address = new URL(url, document.baseURI).href;
-  await script(address);
-  return globalThis.labkitRuns[url.replace(/^.*\//, "").replace(/\.js$/, "")];
-}
-
 /** Loads the viewer once; the notebook's widget also uses this in pages without a kernel. */
 const load = (globalThis.labkitLoad = async () => {
   await Promise.all([script(`${base}viewer.js`), script(`${base}robot.js`)]);
@@ -38,7 +31,7 @@ async function build(host) {
     const { mount } = await load();
     const place = document.createElement("div");
     host.insertBefore(place, host.querySelector("figcaption"));
-    mount(place, data, run);
+    mount(place, data);
     if (place.querySelector(".lk-note")) host.classList.add("lk-flat"); // no WebGL: the picture stays
   } catch (problem) {
     delete host.dataset.mounted; // the picture and the words stay

@@ -50,38 +50,31 @@ export function entered(box, apply, known) {
 }
 
 /**
- * A slider with a box for a number beside it; `stops` are the only values allowed, if given.
- * `oninput` receives the value and the number that was typed, if any; `ends` shows the limits.
+ * A slider with a box for a number beside it; `oninput` receives the value, and `ends` shows the limits.
  */
-export function dial({ label, unit = "", ends = false, stops, min, max, step, value, digits = 3, oninput }) {
+export function dial({ label, unit = "", ends = false, min, max, step, value, digits = 3, oninput }) {
   const id = unique("dial");
-  const nearest = (x) => stops.reduce((b, s, i) => (Math.abs(s - x) < Math.abs(stops[b] - x) ? i : b), 0);
   const show = (x) => String(+Number(x).toFixed(digits));
   const words = (x) => `${show(x)}${unit && ` ${unit}`}`;
-  const range = h("input", {
-    type: "range", id, min: stops ? 0 : min, max: stops ? stops.length - 1 : max, step: stops ? 1 : step });
-  const number = h("input", {
-    type: "number", "aria-label": `${label}, typed`, min: stops ? Math.min(...stops) : min,
-    max: stops ? Math.max(...stops) : max, step: "any", disabled: stops?.length === 1 });
-  range.disabled = stops?.length === 1;
-  const get = () => (stops ? stops[+range.value] : +range.value);
+  const range = h("input", { type: "range", id, min, max, step });
+  const number = h("input", { type: "number", "aria-label": `${label}, typed`, min, max, step: "any" });
+  const get = () => +range.value;
   const set = (x) => {
-    range.value = stops ? nearest(x) : x;
+    range.value = x;
     number.value = show(get());
     range.setAttribute("aria-valuetext", words(get()));
   };
   const changed = () => { set(get()); oninput?.(get()); };
   range.addEventListener("input", changed);
   entered(number, () => {
-    const typed = Number.isFinite(number.valueAsNumber) ? number.valueAsNumber : get();
-    set(typed);
-    oninput?.(get(), typed);
+    set(Number.isFinite(number.valueAsNumber) ? number.valueAsNumber : get());
+    oninput?.(get());
   }, () => show(get()));
-  set(value ?? (stops ? stops[0] : min));
+  set(value ?? min);
   const end = (x) => (ends ? [h("span", { class: "lk-end" }, show(x))] : []);
   const element = h("div", { class: "lk-dial" },
     h("label", { for: id }, label), end(min), range, end(max), number, h("span", { class: "lk-unit" }, unit));
-  return { element, get, set, index: () => +range.value };
+  return { element, get, set };
 }
 
 /** A number with three decimals, without "-0.000". */

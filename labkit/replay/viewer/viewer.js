@@ -1,5 +1,4 @@
 // The viewer as one classic script for pages and notebooks.  It defines `labkitViewer`.
-import { Explorer } from "./explorer.js";
 import { LiveArm } from "./live.js";
 import { JacobianDemo } from "./jacobian_demo.js";
 import { Player } from "./player.js";
@@ -19,20 +18,19 @@ export { dress };
 
 const KINDS = {
   motion: (host, data, robot) => new Player(host, data, robot),
-  live: (host, data, robot, load, link) => new LiveArm(host, data, robot, link),
-  explorer: (host, data, robot, load) => new Explorer(host, data, robot, load),
+  live: (host, data, robot, link) => new LiveArm(host, data, robot, link),
   jacobian: (host, data, robot) => new JacobianDemo(host, data, robot),
   scaling: (host) => new ScalingDemo(host),
   rotation: (host) => new RotationDemo(host),
 };
 
 /**
- * Builds the kind of view that `data.kind` names inside `host`; the result has dispose().  `load`
- * fetches recorded runs, and `link` is the connection to a kernel.
+ * Builds the kind of view that `data.kind` names inside `host`; the result has dispose().  `link` is the
+ * connection to a kernel.
  */
-export function mount(host, data, load, link) {
+export function mount(host, data, link) {
   dress();
-  const made = KINDS[data.kind](host, data, globalThis.labkitRobot, load, link);
+  const made = KINDS[data.kind](host, data, globalThis.labkitRobot, link);
   host.labkit = made;
   return made;
 }
