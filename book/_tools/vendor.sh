@@ -1,6 +1,6 @@
 #!/bin/sh
-# Make the browser files: bundle viewer and live arm, copy MathJax and the widget manager, write the manifest.
-# Needs node 20 with npm, and a Python with anywidget and mujoco.  Run from anywhere: sh book/_tools/vendor.sh
+# Make the browser files: bundle viewer and live arm, copy MathJax, write the manifest.
+# Needs node 20 with npm, and a Python with mujoco.  Run from anywhere: sh book/_tools/vendor.sh
 set -eu
 here=$(cd "$(dirname "$0")" && pwd)
 work=$(mktemp -d)
@@ -8,9 +8,5 @@ trap 'rm -rf "$work"' EXIT
 cp "$here/vendor/package.json" "$work/"
 (cd "$work" && npm install --no-package-lock --no-audit --no-fund --ignore-scripts --silent)
 python=${PYTHON:-python}
-prefix=$("$python" -c 'import sys; print(sys.prefix)')
-licence() {
-  "$python" -c "import importlib.metadata as m; print(next(f.locate() for f in m.files('$1') if f.name.startswith('LICENSE')))"
-}
-node "$here/vendor/build.mjs" "$work/node_modules" "$prefix/share/jupyter/nbextensions/anywidget/index.js" \
-  "$(licence anywidget)" "$(licence ipywidgets)" "$(licence mujoco)"
+licence=$("$python" -c "import importlib.metadata as m; print(next(f.locate() for f in m.files('mujoco') if f.name.startswith('LICENSE')))")
+node "$here/vendor/build.mjs" "$work/node_modules" "$licence"

@@ -1,6 +1,6 @@
 // Bundles the viewer and copies what the book needs from npm; writes the manifest of hashes.
 // book/_tools/vendor.sh installs the packages and runs this:
-// node build.mjs <node_modules> <anywidget's index.js> <the licences of anywidget, ipywidgets, mujoco>
+// node build.mjs <node_modules> <the licence of mujoco>
 import { createHash } from "node:crypto";
 import { createRequire } from "node:module";
 import { cpSync, mkdirSync, readFileSync, readdirSync, rmSync, writeFileSync } from "node:fs";
@@ -8,7 +8,7 @@ import { basename, dirname, join, relative } from "node:path";
 import { gzipSync } from "node:zlib";
 import { fileURLToPath } from "node:url";
 
-const [modules, anywidget, anywidgetLicence, ipywidgetsLicence, mujocoLicence] = process.argv.slice(2);
+const [modules, mujocoLicence] = process.argv.slice(2);
 const here = dirname(fileURLToPath(import.meta.url));
 const root = join(here, "../../..");
 const source = join(root, "labkit/replay/viewer");
@@ -48,25 +48,12 @@ cpSync(mujocoLicence, join(bundle, "LICENSE-mujoco")); // the npm package has no
 cpSync(join(dirname(mujocoLicence), "LICENSES_THIRD_PARTY.md"), join(bundle, "NOTICE-mujoco.md"));
 
 rmSync(vendor, { recursive: true, force: true });
-const fonts = join(vendor, "npm/@jupyter-widgets/html-manager/dist");
-mkdirSync(fonts, { recursive: true });
+mkdirSync(vendor, { recursive: true });
 mkdirSync(tests, { recursive: true });
-const manager = join(modules, "@jupyter-widgets/html-manager");
 const take = (from, to) => cpSync(from, join(vendor, to));
 take(join(modules, "mathjax/es5/tex-svg-full.js"), "tex-svg-full.js");
-take(join(modules, "requirejs/require.js"), "require.js");
-take(join(manager, "dist/embed-amd.js"), "embed-amd.js");
-for (const name of readdirSync(join(manager, "dist")).filter((n) => /\.(woff2?|ttf)$/.test(n))) {
-  cpSync(join(manager, "dist", name), join(fonts, name));
-}
-take(anywidget, "npm/anywidget.js");
-for (const name of ["mathjax-config.js", "require-config.js"]) take(join(here, name), name);
+take(join(here, "mathjax-config.js"), "mathjax-config.js");
 take(join(modules, "mathjax/LICENSE"), "LICENSE-mathjax");
-take(join(here, "LICENSE-requirejs"), "LICENSE-requirejs"); // the npm package has no licence
-take(ipywidgetsLicence, "LICENSE-html-manager");
-take(join(manager, "dist/embed.js.LICENSE.txt"), "LICENSE-html-manager-parts");
-take(join(modules, "@fortawesome/fontawesome-free/LICENSE.txt"), "LICENSE-fontawesome");
-take(anywidgetLicence, "LICENSE-anywidget");
 cpSync(join(modules, "axe-core/axe.min.js"), join(tests, "axe.min.js"));
 cpSync(join(modules, "axe-core/LICENSE"), join(tests, "LICENSE-axe"));
 

@@ -1,4 +1,4 @@
-(()=>{var r=`.lk-embed, .lk-player, .lk-demo {
+(()=>{var a=`.lk-embed, .lk-player, .lk-demo {
   --lk-text: #1f2328; --lk-quiet: #57606a; --lk-edge: #b6bec8; --lk-face: #ffffff; --lk-sky: #e9edf2;
   --lk-grid: #c3cad3; --lk-accent: #0a5aa6; --lk-trace: #b3001b; --lk-path: #1f2328;
   --lk-line-0: #b3001b; --lk-line-1: #0a5aa6; --lk-line-2: #a35200; --lk-line-3: #1a7f4b;
@@ -22,7 +22,7 @@ html[data-theme="dark"] .cell_output .text_html:has(.lk-embed) { /* the theme ma
 .lk-load { display: block; width: 100%; padding: 1rem; }
 .lk-player, .lk-demo { background: var(--lk-face); border: 1px solid var(--lk-edge); border-radius: 8px; overflow: hidden; }
 .lk-demo { padding: 0.75rem; }
-.lk-demo > .lk-player, .lk-explorer > .lk-player { margin: 0.6rem -0.75rem -0.75rem; border-width: 1px 0 0; border-radius: 0; }
+.lk-demo > .lk-player { margin: 0.6rem -0.75rem -0.75rem; border-width: 1px 0 0; border-radius: 0; }
 .lk-stage { position: relative; background: var(--lk-sky); }
 .lk-canvas { display: block; width: 100%; height: auto; aspect-ratio: 16 / 10; max-height: 480px; touch-action: pan-y; cursor: grab; }
 .lk-canvas.lk-grab { touch-action: none; cursor: default; }
@@ -112,8 +112,6 @@ fieldset .lk-dial label { flex-basis: 2.6rem; }
   .lk-livedials .lk-dial > input[type="range"] { flex-basis: 4rem; }
 }
 .lk-choice select { flex: 1 1 auto; min-width: 0; }
-.lk-recorded { margin: 0.5rem 0 0; font-size: 0.9rem; }
-.lk-badge { display: inline-block; padding: 0 0.5rem; border: 1px solid var(--lk-quiet); border-radius: 1rem; font-size: 0.8rem; margin-right: 0.4rem; }
 .lk-scroll { overflow-x: auto; container-type: inline-size; }
 .lk-table { border-collapse: collapse; font-variant-numeric: tabular-nums; font-size: 0.85rem; margin: 0.4rem 0; width: auto; }
 .lk-table caption { position: sticky; left: 0; max-width: 100cqi; text-align: left; color: var(--lk-text); caption-side: top; padding: 0; }
@@ -134,4 +132,4 @@ fieldset .lk-dial label { flex-basis: 2.6rem; }
   .lk-bar, .lk-load, .lk-dial { display: none !important; }
   .lk-player, .lk-demo { break-inside: avoid; }
 }
-`;function n(){if(globalThis.labkitStyled)return;let e=new CSSStyleSheet;e.replaceSync(r),document.adoptedStyleSheets=[...document.adoptedStyleSheets,e],globalThis.labkitStyled=!0}var o=document.currentScript.src.split("?")[0].replace(/[^/]*$/,""),m=matchMedia("(max-width: 500px)"),p={};function a(e){return p[e]??=new Promise((l,i)=>{let t=document.createElement("script");t.src=e,t.addEventListener("load",l),t.addEventListener("error",()=>i(new Error(`${e} is missing`))),document.head.append(t)})}async function c(e,l){let i=new URL(l,document.baseURI).href;return await a(i),globalThis.labkitRuns[l.replace(/^.*\//,"").replace(/\.js$/,"")]}var b=globalThis.labkitLoad=async()=>(await Promise.all([a(`${o}viewer.js`),a(`${o}robot.js`)]),globalThis.labkitViewer);async function s(e){if(e.dataset.mounted)return;e.dataset.mounted="1",e.querySelector(".lk-load")?.remove();let l=JSON.parse(e.querySelector('script[type="application/json"]').textContent);try{let{mount:i}=await b(),t=document.createElement("div");e.insertBefore(t,e.querySelector("figcaption")),i(t,l,c),t.querySelector(".lk-note")&&e.classList.add("lk-flat")}catch(i){delete e.dataset.mounted,console.error(i)}}function h(e){let l=document.createElement("button");l.type="button",l.className="lk-load",l.textContent="Tap to load the interactive view",l.addEventListener("click",()=>s(e).then(()=>e.querySelector("button, input, select")?.focus())),e.insertBefore(l,e.querySelector("figcaption"))}function d(){if(globalThis.labkitStarted)return;globalThis.labkitStarted=!0,n();let e=new IntersectionObserver(l=>{for(let{isIntersecting:i,target:t}of l)i&&(e.unobserve(t),s(t))},{rootMargin:"400px"});for(let l of document.querySelectorAll(".lk-embed"))m.matches?h(l):e.observe(l)}document.readyState==="loading"?document.addEventListener("DOMContentLoaded",d):d();})();
+`;function r(){if(globalThis.labkitStyled)return;let e=new CSSStyleSheet;e.replaceSync(a),document.adoptedStyleSheets=[...document.adoptedStyleSheets,e],globalThis.labkitStyled=!0}var n=document.currentScript.src.split("?")[0].replace(/[^/]*$/,""),m=matchMedia("(max-width: 500px)"),p={};function o(e){return p[e]??=new Promise((l,i)=>{let t=document.createElement("script");t.src=e,t.addEventListener("load",l),t.addEventListener("error",()=>i(new Error(`${e} is missing`))),document.head.append(t)})}var c=globalThis.labkitLoad=async()=>(await Promise.all([o(`${n}viewer.js`),o(`${n}robot.js`)]),globalThis.labkitViewer);async function s(e){if(e.dataset.mounted)return;e.dataset.mounted="1",e.querySelector(".lk-load")?.remove();let l=JSON.parse(e.querySelector('script[type="application/json"]').textContent);try{let{mount:i}=await c(),t=document.createElement("div");e.insertBefore(t,e.querySelector("figcaption")),i(t,l),t.querySelector(".lk-note")&&e.classList.add("lk-flat")}catch(i){delete e.dataset.mounted,console.error(i)}}function b(e){let l=document.createElement("button");l.type="button",l.className="lk-load",l.textContent="Tap to load the interactive view",l.addEventListener("click",()=>s(e).then(()=>e.querySelector("button, input, select")?.focus())),e.insertBefore(l,e.querySelector("figcaption"))}function d(){if(globalThis.labkitStarted)return;globalThis.labkitStarted=!0,r();let e=new IntersectionObserver(l=>{for(let{isIntersecting:i,target:t}of l)i&&(e.unobserve(t),s(t))},{rootMargin:"400px"});for(let l of document.querySelectorAll(".lk-embed"))m.matches?b(l):e.observe(l)}document.readyState==="loading"?document.addEventListener("DOMContentLoaded",d):d();})();

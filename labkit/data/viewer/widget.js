@@ -41,8 +41,8 @@ async function render({ model, el }) {
   const restarted = () => { gone ||= cut(); };
   model.on("comm_live_update", restarted);
   const link = model.send && { send: (message) => model.send(message), hear: (f) => hear.push(f), cut };
-  let shown = mount(host, data(), undefined, link);
-  const change = () => { hear.length = 0; shown.dispose(); shown = mount(host, data(), undefined, link); };
+  let shown = mount(host, data(), link);
+  const change = () => { hear.length = 0; shown.dispose(); shown = mount(host, data(), link); };
   model.on("change:data", change);
   model.on("msg:custom", heard);
   return () => { model.off("comm_live_update", restarted); model.off("change:data", change); model.off("msg:custom", heard); shown.dispose(); };
