@@ -152,7 +152,7 @@ def test_a_wide_formula_is_moved_by_keyboard(visit):
 
 def test_a_phone_loads_the_arm_on_tap(visit):
     """There is no canvas until the reader taps, and then the viewer becomes ready."""
-    page = visit("gallery/line.html", phone=True)
+    page = visit("chapters/comparison.html", phone=True)
     page.wait_for_timeout(300)
     assert page.locator("canvas").count() == 0
     page.get_by_role("button", name="Tap to load").first.click()

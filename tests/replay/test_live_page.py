@@ -52,7 +52,7 @@ def opened(chromium, data, how=""):
             window.link = { hear: (f) => { window.tell = f; },
                 cut: () => how === "cut" && link.gone,
                 send: (m) => { if (link.gone) throw new Error("Cannot send"); sent.push(m); } };
-            labkitViewer.mount(document.getElementById("a"), data, undefined, link);
+            labkitViewer.mount(document.getElementById("a"), data, link);
         }""",
         [json.loads(data), how],
     )
@@ -395,7 +395,7 @@ def test_the_box_tells_the_truth_where_the_page_takes_the_arm_in_late(page, data
     hidden = page.evaluate(
         """(data) => {
             const host = document.createElement("div"), link = { send() {}, hear() {} };
-            const { picture, sight } = labkitViewer.mount(host, data, undefined, link);
+            const { picture, sight } = labkitViewer.mount(host, data, link);
             const box = [...sight.element.querySelectorAll("label")]
                 .find((label) => label.textContent === "Arm alone").firstChild;
             const shown = () => [box.checked, picture.body.groups.base.visible];
