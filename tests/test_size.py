@@ -17,7 +17,7 @@ STOREYS = {
     "course": (r"labkit/(course/|__main__).*\.py", 5429),
     "grader": (r"labkit/grader/.*\.py", 6820),
     "solutions": (r"solutions/.*\.py", 16300),
-    "book": (r"book/.*\.py", 7350),
+    "book": (r"book/.*\.py", 6200),
     "tests": (r"tests/.*\.py", 29493),
     "JavaScript, styles": (r".*\.(js|mjs|css)", 5265),
     "templates, texts": (r".*\.(j2|html|toml|yml|yaml)|solutions/.*\.(md|txt)", 1190),

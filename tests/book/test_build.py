@@ -20,7 +20,7 @@ def test_a_page_depends_on_what_it_imports_and_on_nothing_else():
     """The chapter on paths depends on its figures, lk.run and its law, not on the grader."""
     names = {p.relative_to(ROOT).as_posix() for p in book_pages.imports("figures.paths")}
     assert {
-        "book/figures/velocity.py",
+        "book/figures/paths.py",
         "labkit/run.py",
         "solutions/study/joint_velocity.py",
     } <= names
