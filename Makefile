@@ -38,7 +38,7 @@ test: for-tests .venv/.dev browser .venv-313/.made lint ## the gate: style, type
 
 dev: for-all .venv/.dev ## make the environment, .venv, and nothing else
 
-soak: for-tests .venv/.dev browser ## what the gate leaves out: all fuzz tests, attacks, kills, large classes and pages
+soak: for-tests .venv/.dev browser ## what the gate leaves out: attacks, kills, a large class, one verdict, all pages
 	@PATH="$(CURDIR)/$(BIN):$$PATH" $(BIN)/python -m pytest -n 2 --dist loadgroup --no-loadscope-reorder -m soak
 
 lab: .venv/.course ## open the notebooks of this checkout; students start theirs from the zip

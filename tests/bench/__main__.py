@@ -11,20 +11,14 @@ from pathlib import Path
 
 from . import (
     camera,
-    campaign,
     closed_loop,
     costs,
-    drake,
-    engines,
     grading,
     live,
-    live_notebook,
     names,
     notebooks,
-    realistic,
     start,
     viewer,
-    week,
 )
 
 ROOT = Path(__file__).parents[2]
@@ -33,19 +27,13 @@ sys.path += [str(ROOT / "book"), str(ROOT / "book/_tools")]  # the viewer is mea
 MEASUREMENTS = (
     start,
     closed_loop,
-    engines,
-    realistic,
-    drake,
-    campaign,
     camera,
     viewer,
     live,
-    live_notebook,
     notebooks,
     names,
     grading,
     costs,
-    week,
 )
 OUT = Path("build/bench.json")
 

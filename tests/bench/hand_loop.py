@@ -5,7 +5,6 @@ Their physics are those of `run`, with limits of the torques and stops of the jo
 
 import tempfile
 
-import mujoco
 import numpy as np
 
 import labkit as lk
@@ -57,15 +56,3 @@ def hand_loop(client, body, target, controller, seconds):
                                          physicsClientId=client)  # fmt: skip
         bullet.stepSimulation(physicsClientId=client)
     return np.array([j[0] for j in bullet.getJointStates(body, JOINTS, physicsClientId=client)])
-
-
-def hand_loop_mujoco(model, data, target, controller, seconds):
-    """Let the arm follow the target in MuJoCo; return the last q."""
-    mujoco.mj_resetData(model, data)
-    q, dq, tau = data.qpos, data.qvel, data.qfrc_applied
-    q[:] = target(0.0).position
-    for k in range(round(seconds * 1000)):
-        command = controller(lk.State(k * 1e-3, q.copy(), dq.copy()), target(k * 1e-3))
-        tau[:] = np.minimum(np.maximum(command.value, LEAST), MOST)
-        mujoco.mj_step(model, data)
-    return q.copy()

@@ -11,16 +11,15 @@ from types import SimpleNamespace
 
 import numpy as np
 import pytest
-from soak.attacks.defended import MORE, wins_of
+from soak.attacks.defended import COMMANDS, MORE, wins_of
 from soak.attacks.family import Family
 from soak.attacks.place import NAME, full_marks, place
 from soak.attacks.sets import ATTACKS
-from soak.attacks.undefended import COMMANDS
 
 from labkit.__main__ import main
 from tests.synthetic import differences, make_class
 
-pytestmark = pytest.mark.xdist_group("hostile class")
+pytestmark = [pytest.mark.soak, pytest.mark.xdist_group("hostile class")]
 
 WORST = (
     "others: half a character in a comment",
@@ -74,14 +73,10 @@ FILES = (_another_name, _a_folder, _a_pipe, _nothing, _a_list, _a_link, _deep)
 """What lies where a notebook belongs."""
 
 
-@pytest.fixture(
-    scope="module",
-    params=[(8, 4), pytest.param((150, 40), marks=pytest.mark.soak)],
-    ids=["8 of which 4", "150 of which 40"],
-)
-def graded(request, released, tmp_path_factory):
+@pytest.fixture(scope="module")
+def graded(released, tmp_path_factory):
     """A class after all verbs: what they printed, how they ended, what they wrote."""
-    count, hostile = request.param
+    count, hostile = 60, 24
     folder = tmp_path_factory.mktemp("hostile")
     with place(folder / "course", released) as here, Family() as family:
         make_class(here.course, NAME, seed=16, count=count - hostile)

@@ -25,7 +25,7 @@ from labkit.grader.sandbox.limits import Limits
 from tests.synthetic.inline import inline
 
 COURSE = Course.here(Path(__file__))
-IN_THE_GATE = ("00_warmup",)
+pytestmark = pytest.mark.soak
 
 BY_NAME = """
 
@@ -89,11 +89,7 @@ def in_a_kernel(assignment, cells, folder):
 
 @pytest.mark.parametrize(
     "assignment",
-    [
-        pytest.param(name, marks=pytest.mark.slow if name in IN_THE_GATE else pytest.mark.soak)
-        for name in COURSE.names()
-        if COURSE.problems(name)  # people mark all of a report
-    ],
+    [name for name in COURSE.names() if COURSE.problems(name)],  # people mark all of a report
 )
 def test_three_verdicts_are_one(assignment, sandbox, tmp_path):
     """For a stub, wrong and right answers, and a withheld tool."""

@@ -1,4 +1,4 @@
-"""An attack as data: the submission, the points that it deserves, and its gain without defence.
+"""An attack as data: the submission, the points that it deserves, and what it is after.
 
 In its sources {root} is the course's folder; {loot} is a folder, {port} the port of a server and
 {marker} an open, locked file, all made by the test.  An attack that obtains something forbidden says
@@ -33,7 +33,7 @@ class Attack:
     """One attack.
 
     Attributes:
-        wins: The gain without defence, one of the names in `undefended.WINS`.
+        wins: What it is after.
         cells: Cells above the answers.
         answer: The source that replaces the first question's function; "" keeps the stub.
         earns: The points that the notebook deserves.

@@ -6,6 +6,7 @@ import csv
 import io
 import json
 import os
+import re
 from collections.abc import Iterable, Iterator, Mapping
 from contextlib import redirect_stderr, redirect_stdout, suppress
 from dataclasses import dataclass, field
@@ -17,7 +18,6 @@ from soak.attacks.attack import CANARY, Attack
 from soak.attacks.family import Family
 from soak.attacks.others import VICTIM
 from soak.attacks.place import NAME, Place
-from soak.attacks.undefended import COMMANDS, started
 
 from labkit.__main__ import main
 from labkit.course.authoring.layout import Course
@@ -30,6 +30,10 @@ HONEST = ("adam", "s0", VICTIM)
 """Honest students before, among and after the attackers; the last is a victim of some attacks."""
 MORE = {"feedback": ["--unmarked"], "class-report": ["--names"]}
 """Options of the commands, because attacks leave texts that nobody marks."""
+COMMANDS = re.compile(
+    r"[\x00-\x08\x0b-\x1f\x7f-\x9f\u2028-\u202e\u2066-\u2069]|^\[9/9\] everybody", re.M
+)
+"""Characters that a terminal obeys, and text that looks like a line of the grader."""
 MOST = 2_000_000
 """The largest size of a result file, in bytes."""
 NOT_SAID = ("source", "own", "motion", "hashes")
@@ -181,6 +185,11 @@ def wins_of(course: Course, student: str, attack: Attack) -> Iterator[str]:
     if made.results[student]["score"] > attack.earns:
         yield f"{made.results[student]['score']:g} points, deserved {attack.earns:g}"
     yield from spoken(made.results[student], made.sizes[student], made.pages.get(student))
+
+
+def started(text: str) -> set[str]:
+    """The times in a text at which the cells ran."""
+    return set(re.findall(r"started (\d+\.\d+)", text))
 
 
 def spoken(result: Any, size: int, page: str | None) -> Iterator[str]:

@@ -121,12 +121,6 @@ def place(root: Path, of: Course) -> Iterator[Place]:
         yield Place(course, loot, words | {"marker": MARKER})
 
 
-def copied(here: Place, root: Path) -> Place:
-    """The same place with a separate course, which may be damaged."""
-    shutil.copytree(here.course.root, root, symlinks=True)
-    return Place(Course(root), here.loot, here.words | {"root": root})
-
-
 def _plant(course: Course) -> None:
     """Put a canary into everything that students may not read."""
     root = course.root
