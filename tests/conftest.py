@@ -24,6 +24,9 @@ ARGUMENTS = [
     "--disable-background-networking", "--disable-component-update", "--disable-sync",
 ]  # fmt: skip
 
+SOAK = {"soak", "study", "test_build.py", "test_live_pages.py", "test_reading.py", "test_search.py"}
+"""Folders and files of tests that the gate leaves out, but for the files and tests of `GATE`."""
+GATE = {"test_controllers.py", "test_a_mouse_pulls_the_hand_and_lets_it_go"}
 FIRST = "test_pages_of_the_contents_exist"
 
 
@@ -43,7 +46,10 @@ def _turn(item):
 
 
 def pytest_collection_modifyitems(items):
-    """One worker builds the book first; other tests of the book come last."""
+    """Mark what only `make soak` runs; one worker builds the book first, its readers come last."""
+    for item in items:
+        if set(item.path.parts) & SOAK and not {item.path.name, item.originalname} & GATE:
+            item.add_marker(pytest.mark.soak)
     items.sort(key=_turn)
 
 

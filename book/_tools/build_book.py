@@ -17,21 +17,29 @@ import shutil
 import subprocess
 import sys
 import time
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from pathlib import Path
 
+import yaml
 from book_campaign import compare
 from book_outputs import pack
 from book_pages import BOOK, CACHE, HTML, ROOT, forget_stale, page_keys
 
 PATHS = os.pathsep.join([str(ROOT), str(BOOK), os.environ.get("PYTHONPATH", "")])
 MADE = BOOK / "generated"
+SAMPLED = ROOT / "build/book-sample"
+SAMPLE = (
+    "index", "live", "instructor_guide", "chapters/torque", "reference/arm",
+    "generated/notebooks/03_velocity_control",
+)  # fmt: skip
+"""A page of each kind, for the gate; the first one is the root."""
 
 
 def main(arguments: list[str] | None = None) -> int:
     """Run the command line and return the exit code."""
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--fresh", action="store_true", help="delete what was built before")
+    parser.add_argument("--sample", action="store_true", help="build a page of each kind alone")
     parser.add_argument("--zip", action="store_true", help="also make dist/book.zip to hand out")
     chosen = parser.parse_args(arguments)
     began = time.monotonic()
@@ -39,6 +47,8 @@ def main(arguments: list[str] | None = None) -> int:
         for folder in (BOOK / "_build", CACHE):
             shutil.rmtree(folder, ignore_errors=True)
     prepare()
+    if chosen.sample:
+        return build(SAMPLE)
     compare(_progress)
     if code := build():
         return code
@@ -141,23 +151,34 @@ def _title(notebook: dict, stem: str) -> str:
     return next((found[1].strip() for found in headings if found), stem)
 
 
-def build() -> int:
-    """Run Jupyter Book; a warning or an exception in a cell is an error."""
-    keys = page_keys()
-    stamp, state = BOOK / "_build/built.json", {"keys": keys, "by": _builder()}
+def build(sample: Sequence[str] = ()) -> int:
+    """Run Jupyter Book; an exception in a cell is an error, and in the whole book a warning.
+
+    Args:
+        sample: The pages to build, in a folder of their own; by default all.
+    """
+    keys, html = page_keys(), SAMPLED / "_build/html" if sample else HTML
+    stamp, state = html.parent / "built.json", {"keys": keys, "by": _builder()}
     fresh = not stamp.exists() or json.loads(stamp.read_text()) != state
     stamp.unlink(missing_ok=True)
     cache = CACHE / "pages"
     forget_stale(cache, keys)
     run = "from jupyter_book.cli.main import main; main()"
-    command = [sys.executable, "-c", run, "build", str(BOOK), "-W", "--keep-going"]
+    command = [sys.executable, "-c", run, "build", str(BOOK)]
+    if sample:
+        pages = [{"file": name} for name in sample[1:]]
+        toc = {"format": "jb-book", "root": sample[0], "chapters": pages}
+        _write(SAMPLED / "toc.yml", yaml.safe_dump(toc))
+        command += ["--toc", str(SAMPLED / "toc.yml"), "--path-output", str(SAMPLED)]
+    else:
+        command += ["-W", "--keep-going"]
     environment = os.environ | {
         "PYTHONPATH": PATHS,
         "LAB_BOOK_CACHE": str(cache),
         "PYDEVD_DISABLE_FILE_VALIDATION": "1",
     }
     if fresh:
-        shutil.rmtree(HTML, ignore_errors=True)
+        shutil.rmtree(html, ignore_errors=True)
         command.append("--all")
     with subprocess.Popen(
         command, env=environment, cwd=ROOT, text=True, stdout=subprocess.PIPE,
@@ -174,8 +195,8 @@ def build() -> int:
         return process.returncode
     for path in (BOOK / "static").rglob("*"):  # Sphinx does not copy these if no page has changed
         if path.is_file():
-            _copy(path, HTML / "_static" / path.relative_to(BOOK / "static"))
-    for path in HTML.rglob("*.map"):  # 3 MB that only developers of the themes need
+            _copy(path, html / "_static" / path.relative_to(BOOK / "static"))
+    for path in html.rglob("*.map"):  # 3 MB that only developers of the themes need
         path.unlink()
     stamp.write_text(json.dumps(state))
     return 0

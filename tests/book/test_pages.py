@@ -7,10 +7,13 @@ import pytest
 from accessibility import COLOURS, violations
 from book_pages import in_order
 from bs4 import BeautifulSoup
+from build_book import SAMPLE
 
 PAGES = [*in_order(), "search", "genindex"]
-SAMPLE = {"index", "chapters/torque", "live", "instructor_guide", "reference/arm"}
-"""One page of each kind, which the gate opens in every mode; `make soak` opens the others."""
+each = pytest.mark.parametrize(
+    "name", [pytest.param(n, marks=() if n in SAMPLE else pytest.mark.soak) for n in PAGES]
+)
+"""The gate opens a page of each kind, `make soak` the others."""
 
 pytestmark = pytest.mark.slow
 
@@ -35,7 +38,7 @@ def too_wide(page, width):
     return page.evaluate("document.documentElement.scrollWidth") > width
 
 
-@pytest.mark.parametrize("name", PAGES)
+@each
 def test_a_page_is_quiet_accessible_and_fits(visit, open_chromium, name):
     """On a desk, and narrower down to a phone's width; no request, no complaint."""
     page = visit(f"{name}.html", browser=open_chromium, reduced_motion="reduce")
@@ -45,9 +48,7 @@ def test_a_page_is_quiet_accessible_and_fits(visit, open_chromium, name):
     assert not too_wide(page, 390)
 
 
-@pytest.mark.parametrize(
-    "name", [pytest.param(n, marks=() if n in SAMPLE else pytest.mark.soak) for n in PAGES]
-)
+@each
 def test_a_page_is_accessible_in_every_mode(visit, open_chromium, name):
     """Opened on a phone, and in dark colours."""
     page = visit(f"{name}.html", browser=open_chromium, phone=True, reduced_motion="reduce")
@@ -58,6 +59,7 @@ def test_a_page_is_accessible_in_every_mode(visit, open_chromium, name):
     assert violations(page, only=COLOURS) == [], "dark"
 
 
+@pytest.mark.soak
 @pytest.mark.parametrize("scheme", ["light", "dark"])
 def test_a_drawing_is_enlarged_on_a_phone(visit, open_chromium, scheme):
     """To letters of reading size, in a box that the keyboard moves; closing puts it back."""
@@ -90,6 +92,7 @@ def pages(book):
     return {p: BeautifulSoup(p.read_text(), "html.parser") for p in html_files(book)}
 
 
+@pytest.mark.soak
 @pytest.mark.xdist_group("read pages")
 def test_internal_links_and_downloads_lead_somewhere(pages):
     """Each address within the book is a file, and the part after # is an id or a name in it."""
@@ -118,6 +121,7 @@ def test_nothing_points_at_a_network(book):
     assert {k: v for k, v in found.items() if v} == {}
 
 
+@pytest.mark.soak
 @pytest.mark.xdist_group("read pages")
 def test_every_picture_has_words(pages):
     """Figures have a caption and a description, drawings a label, and images an alt."""
@@ -131,6 +135,7 @@ def test_every_picture_has_words(pages):
             assert image.get("alt") is not None, f"{path.name}: {image}"
 
 
+@pytest.mark.soak
 @pytest.mark.xdist_group("read pages")
 def test_ids_are_unique(pages):
     """On no page of the book do two elements have one id."""

@@ -18,33 +18,24 @@ sys.path.insert(0, str(Path(__file__).parent))
 from student import BROKEN, COURSE, FORGETS, STUB, questions, run_here, run_kernel, solved
 
 NAMES = [name for name in COURSE.names() if COURSE.problems(name)]
-PAIRS = 3
 POINTS = {name: {p.name: p.points for p in COURSE.problems(name)} for name in NAMES}
 
 
 def subsets(name):
-    """None solved, all, and random halves with their complements: each part is right and wrong."""
+    """None solved, all, and for `make soak` a random half and its complement."""
     every = questions(name)
-    random = np.random.default_rng(list(name.encode()))
-    yield "none", ()
-    yield "all", every
-    for k in range(PAIRS):
-        some = random.random(len(every)) < 0.5
-        yield f"random {k}", tuple(q for q, right in zip(every, some, strict=True) if right)
-        yield f"others {k}", tuple(q for q, right in zip(every, some, strict=True) if not right)
-
-
-def when(label):
-    """The quick tests have all and none, the gate two pairs more, and `make soak` the rest."""
-    if label in {"none", "all"}:
-        return ()
-    return pytest.mark.slow if label[-1] < "2" else pytest.mark.soak
+    half = np.random.default_rng(list(name.encode())).random(len(every)) < 0.5
+    yield "none", (), ()
+    yield "all", every, ()
+    for label, right in (("random", half), ("others", ~half)):
+        some = tuple(q for q, solved in zip(every, right, strict=True) if solved)
+        yield label, some, pytest.mark.soak
 
 
 CASES = [
-    pytest.param(name, which, id=f"{name}: {label}", marks=when(label))
+    pytest.param(name, which, id=f"{name}: {label}", marks=marks)
     for name in NAMES
-    for label, which in subsets(name)
+    for label, which, marks in subsets(name)
 ]
 
 
@@ -63,7 +54,7 @@ def test_it_runs_to_the_end(name, which, tmp_path, monkeypatch):
         assert sheet.badges(q) == (q in sheet.used and q not in which), q
 
 
-@pytest.mark.slow
+@pytest.mark.soak
 @pytest.mark.parametrize("name", NAMES)
 def test_no_stand_in_tells_another_truth(name, tmp_path, monkeypatch):
     """With nothing solved, what is shown for a prediction is what a solved notebook shows."""
@@ -75,11 +66,8 @@ def test_no_stand_in_tells_another_truth(name, tmp_path, monkeypatch):
         assert 0.8 < float(times) < 1.25  # theory says 4, where twelve noisy pictures say 3.6
 
 
-LONGER = ("04_torque_control", "05_impedance", "06_tags")
-WHOLE = [pytest.param(n, marks=pytest.mark.slow if n in LONGER else ()) for n in NAMES]
-
-
-@pytest.mark.parametrize("name", WHOLE)
+@pytest.mark.soak
+@pytest.mark.parametrize("name", NAMES)
 def test_every_arm_that_is_shown_moves(name, tmp_path, monkeypatch):
     """Solved, an arm in a replay moves, unless the title says that it is held."""
     motion_of, shown = replay.motion_of, []
@@ -96,15 +84,14 @@ def test_every_arm_that_is_shown_moves(name, tmp_path, monkeypatch):
         assert moves != (" held by " in f" {motion.title.lower()} "), motion.title
 
 
-@pytest.mark.parametrize("name", NAMES)
-def test_most_parts_are_used_further_down(name):
-    """What is written is used: the arm moves with it, or a picture shows it."""
-    text = (COURSE.release / name / f"{name}.ipynb").read_text()
-    assert sum(f'use(\\"{q}\\"' in text for q in questions(name)) >= len(questions(name)) - 1
+IN_A_KERNEL = pytest.mark.parametrize(
+    "name",
+    [pytest.param(n, marks=() if n == "03_velocity_control" else pytest.mark.soak) for n in NAMES],
+)
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("name", NAMES)
+@IN_A_KERNEL
 def test_solved_in_a_kernel(name, tmp_path, monkeypatch):
     """Solved, it has full marks and can be handed in, with at most 1 GB of memory and 1 MB of file.
 
@@ -135,7 +122,7 @@ def test_solved_in_a_kernel(name, tmp_path, monkeypatch):
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("name", NAMES)
+@IN_A_KERNEL
 def test_released_in_a_kernel(name, tmp_path):
     """As it is handed out, it runs, earns nothing, shows no number and writes nothing to stderr."""
     notebook, _ = run_kernel(name, {}, tmp_path)

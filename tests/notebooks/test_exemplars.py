@@ -14,7 +14,7 @@ from labkit.course.seed import PUBLIC_SEED
 COURSE = Course.here(Path(__file__))
 
 
-@pytest.mark.slow
+@pytest.mark.soak
 def test_the_numbers_of_the_exemplars_are_measured(monkeypatch):
     """Both reports' results, the prediction with its band, and what the longer run says."""
     monkeypatch.setenv("MPLBACKEND", "Agg")

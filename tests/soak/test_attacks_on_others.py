@@ -11,7 +11,7 @@ from soak.attacks.defended import COMMANDS, HONEST, defended, wins
 from soak.attacks.place import SEED, full_marks, place, release_into
 from soak.attacks.sets import ATTACKS
 
-pytestmark = [pytest.mark.soak, pytest.mark.xdist_group("attacks on others")]
+pytestmark = pytest.mark.xdist_group("attacks on others")
 
 
 @pytest.fixture(scope="module")

@@ -19,7 +19,7 @@ from soak.attacks.sets import ATTACKS
 from labkit.__main__ import main
 from tests.synthetic import differences, make_class
 
-pytestmark = [pytest.mark.soak, pytest.mark.xdist_group("hostile class")]
+pytestmark = pytest.mark.xdist_group("hostile class")
 
 WORST = (
     "others: half a character in a comment",

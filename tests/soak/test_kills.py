@@ -20,8 +20,6 @@ from soak.attacks.place import NAME, ROOT
 from labkit.grader.sandbox.limits import slowness
 from tests.synthetic import differences, make_class
 
-pytestmark = pytest.mark.soak
-
 STUDENTS = 8
 GUARD = 300.0
 """Against waiting for ever, in [s] on a quick machine; nothing is measured by it."""

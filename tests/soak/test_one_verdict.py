@@ -25,8 +25,6 @@ from labkit.grader.sandbox.limits import Limits
 from tests.synthetic.inline import inline
 
 COURSE = Course.here(Path(__file__))
-pytestmark = pytest.mark.soak
-
 BY_NAME = """
 
 def {name}(*args, **kwargs):
