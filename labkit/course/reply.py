@@ -14,8 +14,6 @@ from itertools import islice
 from time import monotonic, sleep
 from typing import Any
 
-import numpy as np
-
 from ..errors import LabkitError, TypeMismatch
 from .advice import description, unwritten
 from .calling import ArgumentChanged, call
@@ -212,10 +210,6 @@ def _as_data(given: Any) -> Any:
     try:
         return encode(given)
     except TypeMismatch:
-        if hasattr(given, "__array__"):
-            return encode(np.asarray(given))
-        if hasattr(given, "__float__"):
-            return encode(float(given))
         if not hasattr(given, "__iter__"):
             raise
         return encode(list(islice(given, MOST_ITEMS)))

@@ -10,6 +10,7 @@ from __future__ import annotations
 
 import dataclasses
 from collections.abc import Callable, Mapping
+from contextlib import suppress
 from types import MethodType
 from typing import Any, TypeVar, get_args
 
@@ -150,6 +151,9 @@ def encode(value: Any) -> Any:
     if isinstance(value, float | np.floating):
         return _number(float(value))
     if isinstance(value, np.ndarray):
+        if value.dtype.kind == "O":
+            with suppress(TypeError, ValueError):  # numbers that an array of objects holds
+                value = value.astype(float)
         if value.dtype.kind not in "fiub":
             raise NotComparable(
                 f"{'an array' if value.ndim else 'a number'} of type {value.dtype} cannot be "
@@ -180,6 +184,10 @@ def encode(value: Any) -> Any:
         return encode(Ratio(num, den))
     if isinstance(value, type) and value is _COMMANDS.get(value.__name__):
         return {"$": "command type", "name": value.__name__}
+    real = not np.iscomplexobj(value)
+    if real and (hasattr(value, "__array__") or hasattr(value, "__float__")):  # as a fraction
+        with suppress(TypeError, ValueError):
+            return encode(np.asarray(value, dtype=float))
     raise NotComparable(
         f"a value of type {name} cannot be compared; give real numbers, arrays, lists or "
         + ", ".join(kind.__name__ for kind in DATA if kind is not Ratio)
