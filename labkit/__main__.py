@@ -16,11 +16,11 @@ except ModuleNotFoundError:
     sys.exit("labkit: click is missing; type: pip install 'labkit[notebook]'")
 
 from . import __version__
-from .course.cli import merge, submit_check
+from .course.cli import submit_check
 
 EXAMPLES = """\b
 examples:
-  labkit submit-check 01_paths.ipynb    before you hand in: is the notebook complete?
+  labkit submit-check 01_paths.ipynb    before you hand in: run a copy of the notebook
 """
 EXAMPLES_FOR_INSTRUCTORS = """\
   labkit release                        make all assignments, for students and graders
@@ -32,7 +32,7 @@ EXAMPLES_FOR_INSTRUCTORS = """\
 
 def program() -> click.Group:
     """All commands of this installation."""
-    commands: list[click.Command] = [submit_check, merge]
+    commands: list[click.Command] = [submit_check]
     examples = EXAMPLES
     if find_spec("labkit.grader"):
         from .grader.commands import authors, course, export, grading, pages, term

@@ -8,7 +8,7 @@ Curves differ by line style as well as by colour, and `describe` puts a run into
 from __future__ import annotations
 
 import time
-from collections.abc import Callable, Iterable
+from collections.abc import Callable
 from textwrap import fill
 from typing import Any
 
@@ -31,9 +31,6 @@ except ModuleNotFoundError:  # a script, without the extra `notebook`
 
 AXES = ("x", "y", "z")
 
-drawn_by: Callable[[], Iterable[str]] = tuple
-"""Returns what captions must name, such as "a stand-in for circle"; a course may replace it."""
-
 
 def curve(k: int) -> dict[str, Any]:
     """The look of curve ``k``, from 0, for `plot`: up to eight differ without their colours."""
@@ -44,12 +41,6 @@ def curve(k: int) -> dict[str, Any]:
         "markersize": 4,
         "markevery": 0.12,  # of the axes' diagonal
     }
-
-
-def as_drawn(caption: str) -> str:
-    """A caption that says so if a stand-in or a wrong answer drew the figure."""
-    names = " and ".join(drawn_by())
-    return f"With {names}: {caption}" if names else caption
 
 
 def tracking(log: Log, model: Model | None = None, *, axes: Any = None) -> Any:
@@ -121,7 +112,7 @@ def show(caption: str) -> None:
     Args:
         caption: What the figure shows, with its numbers; printed under the figure.
     """
-    figure, caption = plt.gcf(), as_drawn(caption)
+    figure = plt.gcf()
     if get_ipython() is not None:
         display(figure, metadata={"image/png": {"alt": caption}})
     print(_folded(caption))
@@ -187,13 +178,11 @@ def dials(
 
     from .replay.saved import in_its_place
 
-    by = as_drawn("")
-
     def drawn() -> tuple[dict[str, Any], dict[str, Any]]:
         figure, told = draw(**{name: slider.value for name, slider in sliders.items()})
         plt.close(figure)
-        picture = {"obj": figure, "metadata": {"image/png": {"alt": by + told}}}
-        return picture, {"obj": {"text/plain": _folded(by + told)}, "raw": True}
+        picture = {"obj": figure, "metadata": {"image/png": {"alt": told}}}
+        return picture, {"obj": {"text/plain": _folded(told)}, "raw": True}
 
     def redraw(_: Any) -> None:
         for place, now in zip(places, drawn(), strict=True):

@@ -8,13 +8,13 @@ from __future__ import annotations
 from .bugs import Found, Telling
 from .equivalence import AtTip, Response, TipTorque
 from .forms import Choose, Curve, Measured, Number, Rank
+from .handin import hand_in
 from .identification import Identification
 from .judges import AtMost, Close, Gains, Within
 from .marking import fingerprint, mark
 from .own_arm import my_arm, my_bug
 from .predictions import Prediction
 from .question import Call, Choice, Loop, Mistake, Question, Raised, Test, Tuned
-from .receipt import hand_in
 from .reply import NoAnswer
 from .reveal import predict
 from .serialize import question_data, read_question

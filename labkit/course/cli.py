@@ -1,13 +1,11 @@
-"""The student's commands, ``labkit submit-check`` and ``labkit merge``, and command errors."""
+"""The student's command, ``labkit submit-check``, and errors of all commands."""
 
 from __future__ import annotations
 
-import json
 import os
 import sys
 from collections.abc import Callable
 from pathlib import Path
-from typing import Any
 
 import click
 
@@ -68,67 +66,11 @@ def verb(example: str) -> Callable[[Callable[..., int]], Verb]:
 
 @verb("01_paths.ipynb")
 @click.argument("notebook", type=PATH)
-@click.option("--forum", is_flag=True, help="Print a summary to copy into a forum.")
-def submit_check(notebook: Path, forum: bool) -> int:
-    """Check before you hand in: is the notebook complete?"""
-    from .before_handing_in import examine
+def submit_check(notebook: Path) -> int:
+    """Check before you hand in: a copy of the notebook runs from top to bottom."""
+    from .handin import submit_check
 
-    found = examine(notebook)
-    print(found.for_the_forum() if forum else found)
+    print(f"Running a copy of {notebook.name}, which takes as long as Run All ...", flush=True)
+    found = submit_check(notebook)
+    print(found)
     return 1 if found.problems else 0
-
-
-@verb("01_paths.ipynb new/01_paths.ipynb --to merged.ipynb")
-@click.argument("mine", type=PATH)
-@click.argument("new", type=PATH)
-@click.option(
-    "--to",
-    type=PATH,
-    required=True,
-    metavar="FILE",
-    help="Notebook to write; it must not exist yet.",
-)
-def merge(mine: Path, new: Path, to: Path) -> int:
-    """Copy your work into a corrected notebook.
-
-    MINE is the notebook that you worked in; NEW is the corrected one from your instructor.
-    """
-    from .checks_file import FILE
-    from .merge import KEPT_TEXT, merge
-    from .notebook import read_cells
-
-    cells, released = read_cells(mine), read_cells(new)
-    if to.exists():
-        raise LabkitError(f"{to} already exists; give another name with --to")
-    release = json.loads(new.read_text(encoding="utf-8"))
-    if not _is_valid(release):
-        raise LabkitError(f"{new.name} is not a valid notebook; fetch the assignment again")
-    notebook = release | {"cells": merge(cells, released)}
-    text = json.dumps(notebook, indent=1, ensure_ascii=False) + "\n"
-    to.write_text(text, encoding="utf-8", errors="replace")  # a lone surrogate is not text
-    print(
-        f"{to}: the new release with your work; look through it, replace your notebook with it, "
-        "and run all its cells"
-    )
-    checks, old = new.with_name(FILE), mine.with_name(FILE)
-    if checks.is_file() and not (old.is_file() and old.read_bytes() == checks.read_bytes()):
-        print(
-            f"copy {checks} over {old} as well, and restart the kernel; until then the checks have "
-            "the tests and points of the older release"
-        )
-    if any(KEPT_TEXT in cell["source"] for cell in notebook["cells"]):
-        print(
-            "what you wrote in cells that the new release changed or does not have is in added "
-            f"cells, below this line: {KEPT_TEXT}"
-        )
-    return 0
-
-
-def _is_valid(notebook: dict[str, Any]) -> bool:
-    """Whether the data are a valid notebook."""
-    from nbformat.validator import isvalid
-
-    try:
-        return bool(isvalid(notebook, version=4, version_minor=5))
-    except (TypeError, RecursionError):  # an id or a cell's type that is not text; too deep
-        return False

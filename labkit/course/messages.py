@@ -111,8 +111,6 @@ def message(
     verdict: Verdict,
     printed: str = "",
     depends_on: Sequence[str] = (),
-    replaced: Sequence[str] = (),
-    lost: str = "",
 ) -> Message:
     """Everything that a student reads after a check.
 
@@ -121,10 +119,8 @@ def message(
         verdict: The verdict on the answer.
         printed: What the student's code printed while it was tried.
         depends_on: Names of the wrong answers that this one uses.
-        replaced: What it uses in place of others, such as "a stand-in for bang_bang".
-        lost: Why the answer will be missing when it is marked.
     """
-    helps, hint = [f"But {lost}."] if lost else [], ""
+    helps, hint = list[str](), ""
     if verdict.outcome is not Outcome.RIGHT:
         if question.hints:
             call = f'hint("{question.name}", 1)'
@@ -133,11 +129,6 @@ def message(
             is_, it = ("is", "it") if len(depends_on) == 1 else ("are", "them")
             helps.append(
                 f"It uses your {listed(depends_on)}, which {is_} not right yet; correct {it} first."
-            )
-        if replaced:
-            helps.append(
-                f"It uses {listed(replaced)}; once your own function is right, run the cell with "
-                "use(...) again, and then check this one."
             )
     tests, numbers = list[str](), list[str]()
     match verdict.outcome:

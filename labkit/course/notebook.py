@@ -8,9 +8,8 @@ and that of its check is the name with "-check".
 
 from __future__ import annotations
 
-import hashlib
 import json
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -21,7 +20,7 @@ from .identification import Identification
 from .predictions import Prediction
 from .question import Question
 from .serialize import read_record, record_data
-from .unfinished import defined_in
+from .source import analyse
 from .verdict import Verdict
 
 Cell = Mapping[str, Any]
@@ -30,8 +29,6 @@ KERNEL = {"display_name": "Python 3 (ipykernel)", "language": "python", "name": 
 _CHECK = "-check"
 _OUTPUT = "labkit"
 """Metadata key of a check's output that holds the verdict."""
-_RELEASED = "released"
-"""Metadata key of a cell that students may change; it holds a hash of the released text."""
 
 
 def read_cells(path: Path, text: bytes | None = None) -> list[dict[str, Any]]:
@@ -71,26 +68,6 @@ def kind(cell: Cell) -> str:
     return str(_metadata(cell).get("lab", ""))
 
 
-def released(cell: Cell) -> str:
-    """A short hash of the released text of a walk or a brief; "" for any other cell."""
-    found = _metadata(cell).get(_RELEASED)
-    return found if isinstance(found, str) else ""
-
-
-def _hashed(source: str) -> str:
-    return hashlib.sha256(source.strip().encode(errors="surrogatepass")).hexdigest()[:12]
-
-
-def is_edited(cell: Cell) -> bool:
-    """Whether a student may have changed a walk or a brief.
-
-    A notebook from an older labkit lacks the hash, so each walk in it may have been changed.
-    """
-    if released(cell):
-        return released(cell) != _hashed(cell["source"])
-    return kind(cell) == "walk"
-
-
 def grade_id(cell: Cell) -> str:
     """What a cell was made for: a question's name, the name with "-check", or ""."""
     found = nbgrader_info(cell).get("grade_id")
@@ -125,40 +102,16 @@ def by_hand(cell: Cell) -> bool:
     return bool(found.get("task") or (found.get("grade") and found.get("solution")))
 
 
-def defines(cell: Cell, name: str) -> bool:
-    """Whether a code cell defines a function, a class or a value of that name."""
-    return cell["cell_type"] == "code" and name in defined_in(cell["source"])
+def verdict_metadata(verdict: Verdict) -> dict[str, Any]:
+    """The metadata of an output that shows a verdict, for programs that read the file."""
+    return {_OUTPUT: {**stamp(), "verdict": record_data(verdict)}}
 
 
-def verdict_metadata(verdict: Verdict, judged: str = "") -> dict[str, Any]:
-    """The metadata of an output that shows a verdict, for programs that read the file.
-
-    Args:
-        verdict: The verdict.
-        judged: The hash of the answer that was judged, or ""; see `answer_hash`.
-    """
-    return {_OUTPUT: {**stamp(), "verdict": record_data(verdict), "judged": judged}}
-
-
-def last_verdict(cells: Sequence[Cell], question: str) -> Verdict | None:
-    """The last verdict on a question in a notebook's file, or None."""
-    return next((verdict for verdict, _ in _verdicts(cells, question)), None)
-
-
-def last_judged(cells: Sequence[Cell], question: str) -> object:
-    """The hash, in a notebook's file, of the answer that was judged last, or ""."""
-    return next((output.get("judged", "") for _, output in _verdicts(cells, question)), "")
-
-
-def _verdicts(
-    cells: Sequence[Cell], question: str
-) -> Iterator[tuple[Verdict, Mapping[str, object]]]:
-    """The verdicts on a question, last cell first, and what their outputs hold for programs."""
-    for cell in reversed(cells):
-        outputs = cell.get("outputs")
-        for output in outputs if isinstance(outputs, list) else ():
-            if (verdict := verdict_in(output)) and verdict.name == question:
-                yield verdict, output["metadata"][_OUTPUT]
+def last_verdict(cells: Iterable[Cell], question: str) -> Verdict | None:
+    """The last verdict on a question in the outputs of cells, or None."""
+    lists = [x for cell in cells if isinstance(x := cell.get("outputs"), list)]
+    found = [verdict_in(output) for outputs in lists for output in outputs]
+    return next((x for x in reversed(found) if x and x.name == question), None)
 
 
 def verdict_in(output: Any) -> Verdict | None:
@@ -299,7 +252,7 @@ def _check_stub(path: Path, name: str, cell: Cell) -> None:
             f"{path.name}: the stub of {name} needs one region between a line ### BEGIN SOLUTION "
             "and a line ### END SOLUTION"
         )
-    if not defines(cell, name):
+    if name not in analyse(cell["source"])["binds"]:
         raise LabkitError(f"{path.name}: the stub of {name} does not define {name}")
 
 
@@ -313,8 +266,6 @@ def _cell(kind: str, source: str, lab: str, nbgrader: dict[str, Any]) -> dict[st
     if nbgrader:
         metadata |= {"nbgrader": nbgrader, "deletable": False}
         metadata["editable"] = not nbgrader["locked"]
-    else:
-        metadata[_RELEASED] = _hashed(source)
     cell = {"cell_type": kind, "metadata": metadata, "source": source}
     return cell | ({"outputs": [], "execution_count": None} if kind == "code" else {})
 

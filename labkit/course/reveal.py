@@ -73,13 +73,13 @@ def _write_down(name: str, said: Any) -> None:
 def _reveal(name: str, form: Form, truth: Any) -> None:
     """Show the prediction beside the truth, but not the truth without a prediction."""
     place = desk()
-    said, wrong = place.committed.get(name), place.stand_ins.wrong()
+    said, wrong = place.committed.get(name), sorted(place.anyway)
     if said is None:
         again = "commit to a prediction above, then run the cells from there to here again"
         print(wrapped(f"{name}: {again}."))
     elif wrong:
-        once = f"the truth is shown here once {'they are' if wrong[1:] else 'it is'} right"
-        print(wrapped(f"{name}: the experiment uses your wrong {listed(wrong)}; {once}."))
+        says = f"this notebook uses your wrong {listed(wrong)} anyway, so no truth is shown here"
+        print(wrapped(f"{name}: {says}."))
     else:
         place.revealed.add(name)
         if isinstance(form, Curve):

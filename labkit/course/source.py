@@ -1,20 +1,17 @@
 """Analysis of the names in a cell's text, without running it.
 
-The check in a notebook, `labkit submit-check` and the grader all use this analysis, so they find
-the same answers, and the same tools in them.
+The check in a notebook and the grader use it, to find the same answers and the same tools in them.
 """
 
 from __future__ import annotations
 
 import ast
-import hashlib
 import re
+import symtable
 import warnings
 from collections.abc import Collection, Iterator, Mapping
 from functools import lru_cache
 from typing import Any
-
-from .scopes import functions_in, outside_names, own_names, scope_of
 
 Analysis = Mapping[str, Any]
 """What `analyse` returns for a cell, as JSON data."""
@@ -26,13 +23,6 @@ Any other, such as ``%%timeit`` or ``%%bash``, defines no name in the notebook.
 """
 _TIMED = re.compile(r"^%time[ \t]+(?=[^\s-])", re.MULTILINE)
 _MAGIC = re.compile(r"\s*%%(\S+)[^\n]*\n?")
-_CHAINS = {ast.Name, ast.Attribute, ast.Call}
-_CHANGE = {
-    "append", "extend", "insert", "add", "update", "setdefault", "fill", "sort", "reverse", "pop",
-    "remove", "clear",
-}  # fmt: skip
-_DEFINITIONS = ast.FunctionDef | ast.AsyncFunctionDef | ast.ClassDef
-_IMPORTS = {ast.Import, ast.ImportFrom}
 _OTHER_MAGIC = re.compile(r"get_ipython\(\)\.run_cell_magic\('([^']*)'")
 
 
@@ -160,12 +150,12 @@ def needed(source: str, name: str, given: Collection[str] = ()) -> list[str]:
     lines = source.split("\n")
     parts = _parts(ast.parse(source).body)
     texts = [_text(part, lines) for part in parts]
-    scopes = [*map(scope_of, parts, texts)]
+    scopes = [symtable.symtable(text, "", "exec") for text in texts]
     wanted, found, before = {name}, set[int](), -1
     while before < len(found):
         before = len(found)
-        found = {k for k, scope in enumerate(scopes) if not wanted.isdisjoint(own_names(scope))}
-        wanted.update(*(outside_names(scopes[k]) for k in found))
+        found = {k for k, scope in enumerate(scopes) if not wanted.isdisjoint(_own_names(scope))}
+        wanted.update(*(_outside_names(scopes[k]) for k in found))
         wanted.difference_update(given)
     return [texts[k] for k in sorted(found)]
 
@@ -191,52 +181,30 @@ def _definition(part: list[ast.stmt], lines: list[str]) -> dict[str, Any]:
     """What a statement at a cell's top level defines, and on what it depends.
 
     Returns:
-        Names that it ``binds``; names that it takes from ``outside``, and those that its functions
-        take only ``later``, when they are called; the dotted names that it ``uses``, and the
-        ``attributes`` in it; names whose contents it ``fills`` without defining them; the dotted
-        names of what it ``changes`` at once; questions that it ``asks`` `use` about; what the names
-        that it imports ``mean``, with "*" for all of a module; whether it is a ``stub``; and a hash
-        of its ``text``, without empty lines and spaces at the end of lines.
+        Names that it ``binds``; names that it takes from ``outside``; the dotted names that it
+        ``uses``, and the ``attributes`` in it; questions that it ``asks`` `use` about; what the
+        names that it imports ``mean``, with "*" for all of a module; and whether it is a ``stub``.
     """
-    text = _text(part, lines)
-    scope = scope_of(part, text)
-    written = "\n".join(line.rstrip() for line in text.split("\n") if line.strip())
-    binds, outside = own_names(scope), set(outside_names(scope))
+    scope = symtable.symtable(_text(part, lines), "", "exec")
+    binds, outside = _own_names(scope), set(_outside_names(scope))
     mean: dict[str, str] = {}
-    chains, fills, sets, asks = set[str](), set[str](), set[str](), set[str]()
-    changes, attributes = set[str](), set[str]()
-    grown: set[ast.AST] = set()
+    chains, attributes, asks = set[str](), set[str](), set[str]()
     for node in _nodes(part):
-        kind = type(node)
-        if kind in _CHAINS:
+        mean |= imported(node)
+        if isinstance(node, ast.Name | ast.Attribute | ast.Call):
             chains.add(chain := dotted(node))
             attributes.update(chain.split(".")[1:] or [getattr(node, "attr", "")])
         if isinstance(node, ast.Call) and dotted(node) == "use" and node.args:
             asks.add(str(getattr(node.args[0], "value", "")))
-        stores = isinstance(getattr(node, "ctx", None), ast.Store | ast.Del)
-        if isinstance(node, ast.AugAssign):
-            grown.add(node.target)
-        elif isinstance(node, ast.Name) and stores:  # `x = 1`, or `x += 1`
-            (fills if node in grown else sets).add(node.id)
-        elif stores or getattr(node, "attr", "") in _CHANGE:  # `x[k] = 1`, `x.k = 1`, `x.pop()`
-            root = _root(node)
-            changes.add((root and stores and dotted(node)) or root)
-        elif kind in _IMPORTS:
-            mean |= imported(node)
-    fills |= {x.partition(".")[0] for x in changes}
     uses = {x for x in chains if (root := x.partition(".")[0]) in outside or root in mean}
     return {
         "binds": sorted(binds | (mean.keys() & {"*"})),
         "outside": sorted(outside),
-        "later": sorted({name for inner in functions_in(scope) for name in outside_names(inner)}),
         "uses": sorted(uses),
         "attributes": sorted(attributes - {""}),
-        "fills": sorted((fills - sets) & (binds | outside)),
-        "changes": [] if isinstance(part[0], _DEFINITIONS) else sorted(changes),
         "asks": sorted(asks),
         "mean": mean,
         "stub": is_stub(part[0]),
-        "text": hashlib.sha256(written.encode(errors="surrogatepass")).hexdigest()[:12],
     }
 
 
@@ -253,11 +221,21 @@ def _nodes(part: list[ast.stmt]) -> Iterator[ast.AST]:
             waiting += ast.iter_child_nodes(node)
 
 
-def _root(node: Any) -> str:
-    """The name to which an attribute or an element belongs; "" if it is of what a call returns."""
-    while isinstance(node, ast.Attribute | ast.Subscript):
-        node = node.value
-    return str(getattr(node, "id", ""))
+def _own_names(scope: symtable.SymbolTable) -> set[str]:
+    """Names that a scope binds itself."""
+    return {x.get_name() for x in scope.get_symbols() if x.is_assigned() or x.is_imported()}
+
+
+def _outside_names(scope: symtable.SymbolTable) -> Iterator[str]:
+    """Names that a scope takes from outside."""
+    top = scope.get_type() == "module"
+    own = _own_names(scope) if top else set()
+    for symbol in scope.get_symbols():
+        outside = symbol.is_referenced() and (top or symbol.is_global())
+        if outside and symbol.get_name() not in own:
+            yield symbol.get_name()
+    for inner in scope.get_children():
+        yield from (name for name in _outside_names(inner) if name not in own)
 
 
 def _is_text(node: ast.stmt) -> bool:

@@ -5,6 +5,7 @@ The questions are in a file beside the notebook, see `checks_file`.
 
 from __future__ import annotations
 
+import dis
 import inspect
 import linecache
 import os
@@ -12,16 +13,18 @@ import sys
 import time
 from collections.abc import Callable
 from dataclasses import replace
+from functools import wraps
 from pathlib import Path
 from typing import Any
 
+import numpy as np
+
 from ..errors import LabkitError, UnknownName
+from ..trajectory import PoseSample, Sample
 from .advice import line_of, still_raises
 from .calling import captured, copied
 from .card import card, picture
 from .checks_file import read_checks
-from .definitions import answer_hash
-from .gaps import calculated_from_runs
 from .identification import on_the_public_arm
 from .marking import Mismatch, mark, not_counted, try_public
 from .messages import HEADS, Message, awaits_marking, message, wrapped
@@ -32,7 +35,6 @@ from .question import Call, Question
 from .reply import LocalFunction
 from .serialize import read_question
 from .source import analyse
-from .stand_ins import STAND_IN, WRONG, StandIns, globals_of, in_form
 from .verdict import Outcome, Verdict
 from .withheld import withheld_tools
 
@@ -49,7 +51,7 @@ class Desk:
         self.chosen: dict[str, Any] = {}
         self.drafts: dict[str, list[Any]] = {}
         self.revealed: set[str] = set()
-        self.stand_ins = StandIns()
+        self.anyway: set[str] = set()
 
     @classmethod
     def beside(cls, folder: Path) -> Desk:
@@ -109,6 +111,35 @@ class Desk:
         wrong = {other for other, (_, v) in self.checked.items() if v.outcome not in fine} - {name}
         called = {x: now for x, now in globals_of(function).items() if x in wrong}
         return tuple(x for x, now in called.items() if self.verdict(x, now)[0].outcome not in fine)
+
+
+def globals_of(function: Callable[..., Any]) -> dict[str, Any]:
+    """The global names that a Python function reads, with their values; else nothing."""
+    steps = dis.get_instructions(function) if hasattr(function, "__code__") else ()
+    read = dict.fromkeys(step.argval for step in steps if step.opname == "LOAD_GLOBAL")
+    known = getattr(function, "__globals__", {})
+    return {name: known[name] for name in read if name in known}
+
+
+def in_form(function: Callable[..., Any], right: Any) -> Callable[..., Any]:
+    """A function whose lists and tuples become what a right answer is, as the check accepts them.
+
+    Args:
+        function: The student's function.
+        right: One right answer; only for samples and arrays the results are converted.
+    """
+    kind = type(right)
+    if kind not in (Sample, PoseSample, np.ndarray):
+        return function
+
+    @wraps(function)
+    def formed(*args: Any, **kwargs: Any) -> Any:
+        result = function(*args, **kwargs)
+        if type(result) not in (list, tuple):
+            return result
+        return np.asarray(result) if kind is np.ndarray else kind(*map(np.asarray, result))
+
+    return formed
 
 
 def shell() -> Any:
@@ -192,12 +223,9 @@ def check(name: str, function: Callable[..., Any]) -> float:
     handle = shell() and str(shell().user_ns.get("HANDLE"))
     if awaits_marking(verdict) and handle and normalised(handle) == DEMO:
         verdict, *more = on_the_public_arm(question, verdict, function)
-    lost = calculated_from_runs(executed_cells(function), name) if awaits_marking(verdict) else ""
-    wrong, replaced = desk().wrong_dependencies(name, function), desk().stand_ins.used_by(function)
-    says = message(question, verdict, printed, wrong, replaced, lost)
+    says = message(question, verdict, printed, desk().wrong_dependencies(name, function))
     says = replace(says, helps=[*filter(None, more), *says.helps])
-    judged = answer_hash(executed_cells(function), name)
-    _say(says, verdict, found if verdict.mistake else None, judged)
+    _say(says, verdict, found if verdict.mistake else None)
     return Points(verdict.earned)
 
 
@@ -233,16 +261,14 @@ def hint(name: str, level: int = 1) -> None:
     if name not in desk().questions:
         print(wrapped(f"There are no hints for {name!r:.60}. The names are {_names()}."))
         return
-    hints, command = desk().question(name).hints, ""
+    hints = desk().question(name).hints
     if not hints:
         text = f"{name} has no hints."
     elif not isinstance(level, int) or not 1 <= level <= len(hints):
-        assignment = read_checks(Path.cwd())["assignment"]
         text = (
             f"{name} has {len(hints)} hints, and no hint {level!r}. If none of them helps, ask the "
-            "instructor or a forum. The next line, in a new cell, prints what to send:"
+            "instructor or a forum, and send what its check says."
         )
-        command = f"!labkit submit-check --forum {assignment}.ipynb"
     elif 1 < level == len(hints) and name not in desk().attempted:
         text = (
             f"Hint {level} of {name} opens after an attempt: write your best answer, run the "
@@ -253,8 +279,6 @@ def hint(name: str, level: int = 1) -> None:
         text = f'(hint("{name}", {level + 1}) says more)' if level < len(hints) else ""
     if text:
         print(wrapped(text))
-    if command:
-        print(command)  # on a line of its own, to be copied
 
 
 def use(
@@ -283,22 +307,23 @@ def use(
     wrong = verdict.outcome is Outcome.WRONG
     calls = (x for x in desk().question(name).calls if isinstance(x, Call))
     yours = yours or in_form(function, getattr(next(calls, None), "expected", None))
+    desk().anyway.discard(name)
     if verdict.right:
-        desk().stand_ins.pop(name, None)
         return yours
     if anyway and wrong:
+        desk().anyway.add(name)
         print(f"[anyway] {name}: your function is not right yet, and is used all the same.")
-        return desk().stand_ins.give(name, WRONG, yours, shell())
+        return yours
     text = f"[stand-in] {name}: yours is replaced here by a stand-in ({HEADS[verdict.outcome]})."
     if wrong:
         text += " To see what your function does, add anyway=True to this use(...)."
     elif anyway:
         text += " anyway=True works only with a function that returns an answer in every case."
     print(wrapped(text))
-    return desk().stand_ins.give(name, STAND_IN, given, shell())
+    return given
 
 
-def _say(says: Message, verdict: Verdict, found: Mismatch | None, judged: str) -> None:
+def _say(says: Message, verdict: Verdict, found: Mismatch | None) -> None:
     """Print a message; in a notebook, show a card, whose output also stores the verdict."""
     if shell() is None:
         print(says)
@@ -307,4 +332,4 @@ def _say(says: Message, verdict: Verdict, found: Mismatch | None, judged: str) -
 
     outcome = Outcome.NOT_TRIED if awaits_marking(verdict) else verdict.outcome
     shown = card(says, outcome, found and picture(found))
-    display(shown, metadata=verdict_metadata(verdict, judged), raw=True)
+    display(shown, metadata=verdict_metadata(verdict), raw=True)

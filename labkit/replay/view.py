@@ -63,7 +63,6 @@ def live(
         UnknownName: Neither a controller nor the plant has a number of a dial's name.
         OutOfRange: A dial starts outside its range, or the rate does not fit the physics step.
     """
-    from .. import plotting
     from .front import Live
 
     if not isinstance(arm, Arm):
@@ -76,7 +75,6 @@ def live(
     widget.session = Session(arm, laws, target, found, rate, widget.send)
     widget.on_msg(lambda _, message, __: widget.session.tell(message))
     first = widget.session.numbers()
-    by = " and ".join(plotting.drawn_by())
     widget.data = compact(
         {
             "kind": "live",
@@ -85,7 +83,6 @@ def live(
             "side": arm.robot.name,
             **({} if arm.robot.name in SIDES else {"robot": drawn(arm.robot)}),
             "laws": list(laws),
-            **({"by": f"Here with {by}."} if by else {}),
             "dials": [asdict(dial) for dial in found.values()],
             "joints": [n.removeprefix(f"{arm.robot.name}_") for n in arm.robot.joint_names],
             "first": first,

@@ -9,7 +9,6 @@ import numpy as np
 
 from .. import se3
 from ..errors import TypeMismatch
-from ..plotting import as_drawn
 from ..shapes import Array, shown
 from .motion import Motion
 from .saved import body, still
@@ -46,7 +45,7 @@ def show(motion: Motion) -> Replay:
     from .front import Replay
 
     made = Replay(data=motion.to_json())
-    made.words = as_drawn(f"{motion.title}. {motion.description}")
+    made.words = f"{motion.title}. {motion.description}"
     made.picture = lambda: motion_still(motion)
     return made
 

@@ -13,10 +13,10 @@ from dataclasses import replace
 from typing import Any, cast
 
 from ...course.authoring.bundle import Bundle
+from ...course.handin import receipt
 from ...course.marking import PublicResult, all_alike, mark, not_counted, try_public
 from ...course.messages import why_not_counted
 from ...course.question import Question
-from ...course.receipt import receipt
 from ...course.serialize import read_record, record_data
 from ...course.verdict import Kind, Outcome, Verdict
 from ...course.withheld import withheld_tools

@@ -7,12 +7,11 @@ their text.  What a student's metadata says about points and roles is never read
 from __future__ import annotations
 
 import ast
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from itertools import chain
 from typing import Any
 
-from ...course.definitions import needed_cells, written_cells
 from ...course.source import analyse, plain
 from ...errors import listed
 from ..sandbox.session import Step
@@ -103,7 +102,7 @@ def plan(cells: Sequence[Cell], manifest: Sequence[Cell]) -> Plan:
     in_order = [places[m["grade_id"]] for m in manifest if m.get("grade_id") in places]
     if in_order != sorted(in_order):
         notes.setdefault("", []).append("the cells are in another order than in the release")
-    needed = needed_cells(code, places.values())
+    needed = _needed_cells(code, places.values())
     by_hand = {m["grade_id"]: _find_cells(cells, m) for m in manifest if "points" in m}
     known = (*by_hand.values(), *unread.values())
     steps = [Step(k - len(setup), source) for k, source in enumerate(setup)]
@@ -122,6 +121,43 @@ def plan(cells: Sequence[Cell], manifest: Sequence[Cell]) -> Plan:
         written={name: _join_sources(cells, found) for name, found in by_hand.items() if found},
         looks=tuple(looks),
     )
+
+
+def _written_cells(cells: Mapping[int, Cell], home: Collection[int], name: str) -> list[int]:
+    """The positions of the cells that answer a question; the last one counts.
+
+    An empty stub answers nothing.  A function counts in any cell; a value counts in another cell
+    only if the one that was made for it does not define it.
+
+    Args:
+        cells: What `analyse` found in each cell of code, by position.
+        home: The positions of the cells that were made for the question.
+        name: The question's name.
+    """
+    functions = {k for k, cell in cells.items() if name in cell["functions"]}
+    binds = {k for k, cell in cells.items() if name in cell["binds"]}
+    stubs = {k for k in functions if name in cells[k]["stubs"]}
+    return sorted((functions - stubs) or (binds & {*home}) - stubs or binds - stubs)
+
+
+def _needed_cells(cells: Mapping[int, Cell], places: Iterable[int]) -> set[int]:
+    """The positions of the cells on which others depend, directly or through other cells.
+
+    Args:
+        cells: What `analyse` found in each cell of code, by position.
+        places: The positions of the others, which are returned as well.
+    """
+    binders: dict[str, list[int]] = {}
+    for k, cell in cells.items():
+        for name in cell["binds"]:
+            binders.setdefault(name, []).append(k)
+    needed, waiting = {*places}, [*places]
+    while waiting:
+        for name in cells[waiting.pop()]["uses"]:
+            found = {*binders.pop(name, ())} - needed
+            needed |= found
+            waiting += found
+    return needed
 
 
 def imports(manifest: Sequence[Cell]) -> tuple[str, ...]:
@@ -168,7 +204,7 @@ def _answer(
     name = m["grade_id"]
     home = _home_cells(own, m)
     stubs = {k for k, cell in own.items() if name in cell["stubs"]}
-    written = written_cells(own, home, name)
+    written = _written_cells(own, home, name)
     if len(written) > 1:
         notes.append(f"{len(written)} cells define {name}; the last one counts")
     if written:

@@ -1,0 +1,298 @@
+"""Handing in: the receipt in the last cell, and `labkit submit-check`, which runs the notebook.
+
+A copy runs from top to bottom in a fresh kernel, in a folder with nothing else, and its answers are
+tried once more after the last cell, as the grader tries them.  So what is said of them is observed.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import os
+import re
+import shutil
+import tempfile
+import textwrap
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from contextlib import suppress
+from dataclasses import dataclass
+from datetime import UTC, datetime
+from importlib.metadata import PackageNotFoundError, distribution, packages_distributions, requires
+from pathlib import Path
+from typing import Any
+
+from ..errors import LabkitError
+from .brief import WORDS, words_in_all, words_of
+from .checks_file import FILE, read_checks
+from .messages import head, wrapped
+from .notebook import cells_made_for, last_verdict, read_cells, verdict_metadata
+from .source import analyse
+from .student import desk, last_run, shell
+from .verdict import Outcome, Verdict
+
+SILENT = "LABKIT_SUBMIT_CHECK"
+"""The environment variable that is set while `submit_check` runs a notebook."""
+LARGEST = 10.0
+"""Size in megabytes above which a learning platform may reject a notebook."""
+_FOREIGN = "labkit-foreign"
+_BEGIN, _END = (f'__import__("{__name__}", fromlist=["_"]).{name}()' for name in ("_begin", "_end"))
+"""The cells around those of the notebook, which bind no name in it."""
+
+
+def hand_in(name: str) -> None:
+    """Print a receipt for the saved file, or in one sentence why it cannot be handed in yet.
+
+    With the receipt and the file, students can prove what they had done by then.  The feedback
+    page shows the receipt of the file that was marked.
+
+    Args:
+        name: Name of the notebook in the working directory, without ``.ipynb``.
+    """
+    if SILENT not in os.environ:
+        try:
+            print(wrapped(_told(name, Path.cwd())))
+        except LabkitError as error:
+            print(wrapped(f"{error}."))
+
+
+def _told(name: str, folder: Path) -> str:
+    data = read_checks(folder)
+    path = folder / f"{data['assignment']}.ipynb"
+    if name != path.stem:
+        return f"This notebook is {path.stem}; write lk.hand_in({path.stem!r})."
+    opened = Path(os.environ.get("JPY_SESSION_NAME", ""))  # its name when the kernel started
+    if opened.name != path.name and (folder / opened.name).is_file():
+        return f"This notebook is called {opened.name}; rename it {path.name} and open it again."
+    cells = read_cells(path)
+    saved = path.stat().st_mtime
+    if saved < last_run():
+        return "Save this notebook (Ctrl+S), then run this cell again."
+    if data["questions"] and not any(last_verdict(cells, x["name"]) for x in data["questions"]):
+        return f"{path.name} holds no result of a check; run all cells, save, run this one again."
+    when = datetime.fromtimestamp(saved, UTC).astimezone()
+    text = receipt(cell["source"] for cell in cells)
+    return f"receipt: {text} of {path.name}, saved {when:%Y-%m-%d %H:%M %Z}. Hand in this file."
+
+
+def receipt(sources: Iterable[str]) -> str:
+    """A short hash of the text in a notebook's cells, in order.
+
+    Outputs and empty cells do not count, because running the cell that prints the receipt changes
+    the outputs, and Shift+Enter in the last cell appends an empty one.
+    """
+    text = "\0".join(filter(str.strip, sources)).encode(errors="surrogatepass")
+    return hashlib.sha256(text).hexdigest()[:16]
+
+
+@dataclass(frozen=True)
+class Tried:
+    """What was found when a copy of a notebook ran.
+
+    Attributes:
+        assignment: Its assignment.
+        problems: Sentences about what to correct before handing in.
+        notes: Sentences about what is worth knowing.
+        verdicts: The verdict on each question after all cells; None if nothing defines its answer.
+    """
+
+    assignment: str
+    problems: tuple[str, ...]
+    notes: tuple[str, ...]
+    verdicts: Mapping[str, Verdict | None]
+
+    def __str__(self) -> str:
+        lines = [f"[fix] {text}" for text in self.problems]
+        lines += [f"[note] {text}" for text in self.notes]
+        for name, verdict in self.verdicts.items():
+            lines.append(f"  {head(verdict) if verdict else f'{name}: no answer'}")
+        right = sum(v is not None and v.right for v in self.verdicts.values())
+        end = "correct what is marked with [fix] first" if self.problems else "it can be handed in"
+        of = f"{right} of {len(self.verdicts)} answers are right"
+        return "\n".join([*lines, f"{self.assignment}: {of}; {end}."])
+
+
+def submit_check(path: Path, seconds: float = 600.0) -> Tried:
+    """Run a copy of a notebook that is about to be handed in, and read what its checks say.
+
+    Args:
+        path: The notebook; ``checks.json`` must be in the same folder.
+        seconds: Time limit of a cell.
+
+    Raises:
+        LabkitError: The file is missing, is not a notebook, or is another person's.
+    """
+    cells, folder = read_cells(path), path.resolve().parent
+    mine = not hasattr(os, "getuid") or path.stat().st_uid == os.getuid()
+    if "submitted" in folder.parts or not mine:
+        raise LabkitError(f"{path} is not yours, and its code would run as you; use labkit grade")
+    data = read_checks(folder)
+    name, asked = data["assignment"], [x["name"] for x in data["questions"]]
+    code = [cell["source"] for cell in cells if cell["cell_type"] == "code"]
+    ran, stopped = _run(code, folder / FILE, seconds)
+    errors, own = _errors(ran[1:-1])
+    at_check = {question: last_verdict(ran[:-1], question) for question in asked}
+    verdicts = {question: last_verdict(ran[-1:], question) for question in asked}
+    problems, notes = [], []
+    if path.name != f"{name}.ipynb":
+        problems.append(f"the file is called {path.name}; rename it {name}.ipynb")
+    if (size := path.stat().st_size / 1e6) > LARGEST:
+        problems.append(f"the file has {size:.0f} MB, over {LARGEST:g}; clear the largest outputs")
+    problems += [stopped] if stopped else errors
+    for question, verdict in verdicts.items() if not stopped else ():
+        problems += _gaps(question, at_check[question], verdict, question in own)
+    none = [q for q, v in verdicts.items() if v and v.outcome is Outcome.NOT_ATTEMPTED]
+    notes += [f"not answered: {', '.join(none)}"] if none else []
+    for output in ran[-1]["outputs"]:
+        notes += [
+            f"{x} does not come with labkit; an answer that needs it may earn nothing when marked"
+            for x in output["metadata"].get(_FOREIGN, ())
+        ]
+    lost, told = _texts(cells, data["texts"])
+    return Tried(name, (*problems, *lost), (*notes, *told), verdicts)
+
+
+def _gaps(
+    question: str, at_check: Verdict | None, at_end: Verdict | None, measured: bool
+) -> Iterator[str]:
+    """What must be corrected about an answer, by the verdicts at its check and at the end."""
+    if at_end is None and measured:
+        yield f"{question} comes from runs of your arm, which marking does not repeat; type a value"
+    elif at_end is None:
+        yield f"no cell defines {question}; write it in its cell, which a fresh notebook has"
+    elif at_end.withheld:
+        yield head(at_end)
+    elif at_check and at_check.right and not at_end.right:
+        yield (
+            f"{question} is right at its check but not after the last cell, which is what counts; "
+            "a cell below the check changes it or what it uses"
+        )
+
+
+def _run(code: Sequence[str], checks: Path, seconds: float) -> tuple[list[dict[str, Any]], str]:
+    """The cells after a run in a fresh kernel, between two of ours, and why it stopped, if so."""
+    from nbclient import NotebookClient
+    from nbclient.exceptions import CellTimeoutError, DeadKernelError
+    from nbformat import v4
+
+    made = v4.new_notebook(cells=[v4.new_code_cell(x) for x in (_BEGIN, *code, _END)])
+    stopped = ""
+    with tempfile.TemporaryDirectory() as folder:
+        shutil.copy(checks, folder)
+        client = NotebookClient(
+            made,
+            timeout=seconds,
+            allow_errors=True,
+            store_widget_state=False,
+            extra_arguments=["--log-level=ERROR"],
+            resources={"metadata": {"path": folder}},
+        )
+        try:
+            client.execute(env={**os.environ, SILENT: "1"})
+        except CellTimeoutError:
+            stopped = f"a cell ran for more than {seconds:g} s; does every loop in it end?"
+        except DeadKernelError:
+            stopped = "the kernel died while the notebook ran; is there enough memory?"
+    return made.cells, stopped
+
+
+def _errors(cells: Sequence[Mapping[str, Any]]) -> tuple[list[str], set[str]]:
+    """A sentence for each cell that raised, and the names that runs of one's own arm would bind.
+
+    These runs are not made here, as they are not made when the notebook is marked.
+    """
+    said, own = list[str](), set[str]()
+    for cell in cells:
+        for output in cell["outputs"]:
+            if output["output_type"] != "error":
+                continue
+            kind, text = str(output["ename"]), str(output["evalue"])
+            missing = re.match(r"name '(\w+)' is not defined", text)
+            if kind == NoOwnArm.__name__ or (missing and missing[1] in own):
+                own |= {*analyse(cell["source"])["binds"]}
+                continue
+            beside = "; only the notebook is handed in, without the files beside it"
+            why = beside if kind in ("ModuleNotFoundError", "FileNotFoundError") else ""
+            said.append(
+                f"the cell that begins with `{_first_line(cell['source'])}` ends with an error "
+                f"({textwrap.shorten(f'{kind}: {text}', 120, placeholder=' ...')}){why}"
+            )
+    return said, own
+
+
+def _first_line(source: str) -> str:
+    """The first line of a cell that is not a comment, shortened."""
+    lines = (line.strip() for line in source.splitlines())
+    line = next((line for line in lines if line and line[0] != "#"), "")
+    return textwrap.shorten("".join(x for x in line if x.isprintable()), 60, placeholder=" ...")
+
+
+def _texts(
+    cells: Sequence[dict[str, Any]], asked: Mapping[str, str]
+) -> tuple[list[str], list[str]]:
+    """Problems and notes about the texts that a person marks, by their names and their cells."""
+    problems, notes = [], []
+    for name, home in asked.items():
+        found = cells_made_for(cells, name, home)
+        count = sum(len(words_of(cell["source"])) for cell in found)
+        if not found:
+            problems.append(f"no cell holds the text {name}; copy its cell from a fresh notebook")
+        elif any(cell["cell_type"] == "code" for cell in found):
+            problems.append(f"the cell of {name} is code; click on it, press Esc and then M")
+        elif count < WORDS[0]:
+            notes.append(f"{name} has {words_in_all(count)}; it needs at least {WORDS[0]}")
+    return problems, notes
+
+
+class NoOwnArm(LabkitError):
+    """A cell runs the student's own arm, which is not done when a notebook is tried or marked."""
+
+
+def _begin() -> None:
+    """Before the first cell: withdraw what the grader does not have."""
+    import labkit
+
+    def none(*_: Any, **__: Any) -> None:
+        raise NoOwnArm("your own arm does not run while the notebook is tried")
+
+    vars(labkit).update(my_arm=none, my_bug=none)
+
+
+def _end() -> None:
+    """After the last cell: try each answer as it is now, and name libraries that labkit lacks.
+
+    A name that has been given to something else than a function still means the function that was
+    checked, as in marking.
+    """
+    from IPython.display import display
+
+    names, place = shell().user_ns, desk()
+    for name in place.questions:
+        known = name in place.checked
+        if name in names and (callable(names[name]) or not known):
+            now = names[name]
+        elif known:
+            now = place.checked[name][0]
+        else:
+            continue
+        verdict, *_ = place.verdict(name, now)
+        display({"text/plain": name}, metadata=verdict_metadata(verdict), raw=True)
+    display({"text/plain": ""}, metadata={_FOREIGN: sorted(_foreign(names))}, raw=True)
+
+
+def _foreign(names: Mapping[str, Any]) -> set[str]:
+    """Modules that a notebook uses and that labkit does not bring."""
+    things = [x for key, x in names.items() if not key.startswith("_")]
+    roots = {
+        str(getattr(x, "__module__", None) or getattr(x, "__name__", "")).partition(".")[0]
+        for x in things
+    }
+    waiting, ours = ["labkit"], set[str]()
+    for one in waiting:  # the list grows
+        with suppress(PackageNotFoundError):  # what only another system needs
+            ours.add(distribution(one).name)
+            for need in requires(one) or ():
+                extra = re.search(r"extra == ['\"](\w+)", need)
+                if not extra or (one == "labkit" and extra[1] == "notebook"):
+                    found = re.split(r"[^\w.-]", need)[0]
+                    waiting += [found] if found not in waiting else []
+    owners: Mapping[str, Sequence[str]] = packages_distributions()
+    return {x for x in roots if x in owners and not ours.intersection(owners[x])}

@@ -1,0 +1,171 @@
+"""`labkit submit-check` runs a copy: it is silent about what is harmless, and tells each gap."""
+
+# ruff: noqa: E501
+
+import json
+import os
+from dataclasses import replace
+
+import pytest
+from nbformat import v4
+from questions import DOUBLE
+
+from labkit import LabkitError
+from labkit.course import Choose, Prediction, question_data
+from labkit.course.brief import PLACEHOLDER
+from labkit.course.checks_file import FILE
+from labkit.course.cli import submit_check as command
+from labkit.course.handin import submit_check
+from labkit.course.verdict import Outcome
+from labkit.formats import stamp
+
+SETUP = "import numpy as np\nimport labkit as lk\nfrom labkit.course import check, predict, use"
+RIGHT = "def {q}(x): return 2 * x"
+CHECK = "check('{q}', {q})"
+
+HARMLESS = {
+    "a variable reused below with its value": ["n{k} = 2\ndef {q}(x): return n{k} * x", CHECK, "n{k}, m{k} = 2, 3"],
+    "a variable that the answer binds itself": ["def {q}(x):\n    s = 2\n    return s * x", CHECK, "s = 5"],
+    "a loop that ends at the same value": ["n{k} = 2\ndef {q}(x): return n{k} * x", CHECK, "for n{k} in range(3): pass"],
+    "a guarded global": ["def {q}(x): return (f{k} if 'f{k}' in globals() else 2) * x", CHECK],
+    "a guarded global that is set below": ["def {q}(x): return 2 * x if 'z{k}' in globals() else 2 * x", CHECK, "z{k} = 9"],
+    "exec": ["exec('w{k} = 2')\ndef {q}(x): return w{k} * x", CHECK, "exec('w{k} = 2.0')"],
+    "an answer made by exec": ["exec('def {q}(x): return 2 * x')", CHECK],
+    "a helper above": ["def h{k}(x): return x + x", "def {q}(x): return h{k}(x)", CHECK],
+    "a helper defined again alike": ["def h{k}(x): return x + x\ndef {q}(x): return h{k}(x)", CHECK, "def h{k}(x):\n    return 2 * x"],
+    "a callback that sets a global to its value": ["g{k} = 2\ndef {q}(x): return g{k} * x", CHECK, "def moved(change):\n    global g{k}\n    g{k} = change\nmoved(2)"],
+    "a record of the calls": ["calls{k} = []\ndef {q}(x):\n    calls{k}.append(x)\n    return 2 * x", CHECK, "calls{k}.clear()"],
+    "a cache": ["import functools\n@functools.lru_cache\ndef {q}(x): return 2 * x", CHECK],
+    "a class": ["class Twice:\n    def __call__(self, x): return 2 * x\n{q} = Twice()", CHECK],
+    "a lambda": ["{q} = lambda x: 2 * x", CHECK],
+    "a partial": ["from functools import partial\n{q} = partial(np.dot, 2.0)", CHECK],
+    "an answer in another cell": ["# nothing here", "def {q}(x): return 2 * x", CHECK],
+    "a copy above, the answer below": ["def {q}(x): return 3 * x", "def {q}(x): return 2 * x", CHECK],
+    "the answer again below": [RIGHT, CHECK, "def {q}(x):\n    return x + x"],
+    "a check in the answer's cell": [f"{RIGHT}\n{CHECK}"],
+    "two checks": [RIGHT, CHECK, CHECK],
+    "no check": [RIGHT],
+    "a check that has moved up": [RIGHT, CHECK, "print('below')"],
+    "an experiment with the answer": [RIGHT, CHECK, "ys = [{q}(x) for x in range(5)]\nmax(ys)"],
+    "a name of the answer for a number": [RIGHT, CHECK, "{q} = 4.0"],
+    "the name of an answer as a loop variable": [RIGHT, CHECK, "for {q} in (1, 2): pass"],
+    "the answer wrapped by use": [RIGHT, CHECK, "mine{k} = use('{q}', {q}, lambda x: 0)\nmine{k}(2)"],
+    "imports again": [RIGHT, CHECK, "import numpy as np\nfrom math import *"],
+    "a star import above": ["from math import *\ndef {q}(x): return 2 * x + floor(0.5)", CHECK],
+    "an import in the function": ["def {q}(x):\n    import math\n    return math.fsum([x, x])", CHECK],
+    "a comprehension variable": ["t{k} = 2\ndef {q}(x): return t{k} * x", CHECK, "[t{k} for t{k} in range(9)]"],
+    "magics": ["%time u{k} = 2", "def {q}(x): return u{k} * x", CHECK, "%%time\n1 + 1"],
+    "a shell command": [RIGHT, "!true", CHECK],
+    "a deleted helper of an experiment": [RIGHT, CHECK, "v{k} = 1\ndel v{k}"],
+    "a caught error": [RIGHT, CHECK, "try:\n    1 / 0\nexcept ZeroDivisionError:\n    print('no')"],
+    "a warning": [RIGHT, CHECK, "import warnings\nwarnings.warn('careful')"],
+    "a random start": ["r{k} = np.random.default_rng()\ndef {q}(x): return 2 * x + 0 * r{k}.random()", CHECK],
+    "a type alias and annotations": ["X{k} = float\ndef {q}(x: X{k}) -> X{k}: return 2 * x", CHECK],
+    "a nested function": ["def {q}(x):\n    def inner(): return 2 * x\n    return inner()", CHECK],
+    "a default argument": ["a{k} = 2\ndef {q}(x, a=a{k}): return a * x", CHECK, "a{k} = 7"],
+    "a setting that is restored": ["b{k} = 2\ndef {q}(x): return b{k} * x", CHECK, "b{k} = 3\nprint({q}(1))\nb{k} = 2"],
+    "an own figure": [RIGHT, CHECK, "import matplotlib.pyplot as plt\nplt.plot([{q}(1)])\nlk.plotting.show('One.')"],
+    "a text of another language": ["def {q}(x):\n    'Größe → 2×'\n    return 2 * x", CHECK],
+    "an empty cell and a comment": [RIGHT, "", "# done", CHECK],
+    "numpy's settings": [RIGHT, CHECK, "np.set_printoptions(precision=3)"],
+}  # fmt: skip
+"""Cells that a student may well write, each below `SETUP` and with an answer that is right."""
+
+GAPS = {
+    "not defined": (["# nothing"], "no cell defines {q}"),
+    "another name": (["def {q}_(x): return 2 * x"], "no cell defines {q}"),
+    "changed below": (["n{k} = 2\ndef {q}(x): return n{k} * x", CHECK, "n{k} = 3"], "{q} is right at its check but not"),
+    "a helper changed below": (["def h{k}(x): return 2 * x\ndef {q}(x): return h{k}(x)", CHECK, "def h{k}(x): return x"], "{q} is right at its check but not"),
+    "changed by a loop": (["n{k} = 2\ndef {q}(x): return n{k} * x", CHECK, "for n{k} in range(9): pass"], "{q} is right at its check but not"),
+    "changed by exec": (["n{k} = 2\ndef {q}(x): return n{k} * x", CHECK, "exec('n{k} = 8')"], "{q} is right at its check but not"),
+    "changed by a callback": (["n{k} = 2\ndef {q}(x): return n{k} * x", CHECK, "def moved(v):\n    global n{k}\n    n{k} = v\nmoved(5)"], "{q} is right at its check but not"),
+    "changed in place": (["n{k} = np.array(2.0)\ndef {q}(x): return n{k} * x", CHECK, "n{k} += 1"], "{q} is right at its check but not"),
+    "deleted below": (["n{k} = 2\ndef {q}(x): return n{k} * x", CHECK, "del n{k}"], "{q} is right at its check but not"),
+    "defined again below": ([RIGHT, CHECK, "def {q}(x): return x"], "{q} is right at its check but not"),
+    "another function checked": (["def other(x): return 2 * x\ndef {q}(x): return x", "check('{q}', other)"], "{q} is right at its check but not"),
+    "a memory": (["m{k} = [0]\ndef {q}(x):\n    m{k}[0] += 1\n    return 2 * x + (m{k}[0] > 3)", CHECK], "{q} is right at its check but not"),
+    "a syntax error": (["def {q}(x) return 2 * x"], "SyntaxError"),
+    "a module of one's own": (["from my_module import two\ndef {q}(x): return two * x"], "my_module'); only the notebook is handed in"),
+    "a file": (["n{k} = float(open('data.txt').read())\ndef {q}(x): return n{k} * x"], "data.txt'); only the notebook is handed in"),
+    "an error in an experiment": ([RIGHT, CHECK, "{q}(1)[0]"], "`{q}(1)[0]` ends with an error"),
+    "a name from nowhere": ([RIGHT, CHECK, "print(from_an_older_run{k})"], "from_an_older_run{k}"),
+    "another magic": (["%%bash\ndef {q}(x): return 2 * x"], "no cell defines {q}"),
+    "a withheld tool": (["def {q}(x): return np.multiply(2, x)", CHECK], "{q}: not counted"),
+    "runs of one's own arm": (["{q} = lk.my_arm().plant.payload"], "{q} comes from runs of your arm"),
+}  # fmt: skip
+"""Cells that leave a gap, and what is said of it."""
+
+
+def notebook(folder, cases, tail=()):
+    """The notebook of a question for each case, with its questions beside it."""
+    questions, cells = [], [SETUP]
+    for k, parts in enumerate(cases):
+        questions.append(question_data(replace(DOUBLE, name=f"q{k}")))
+        cells += [part.replace("{q}", f"q{k}").replace("{k}", str(k)) for part in parts]
+    guess = Prediction("guess", "Which?", Choose({"a": "this", "b": "that"}), "a").question()
+    questions.append(question_data(guess))
+    data = {**stamp(), "assignment": "sample", "questions": questions, "texts": {"why": "home"}}
+    (folder / FILE).write_text(json.dumps(data))
+    made = v4.new_notebook(cells=[v4.new_code_cell(x) for x in [*cells, *tail]])
+    text = v4.new_markdown_cell("word " * 30, metadata={"nbgrader": {"grade_id": "why"}})
+    made.cells.append(text)
+    path = folder / "sample.ipynb"
+    path.write_text(json.dumps(made))
+    return path
+
+
+GUESS = "guess = predict('guess', 'b')\ncheck('guess', guess)\nlk.hand_in('sample')"
+
+
+def test_of_what_is_harmless_nothing_is_said(tmp_path):
+    """Of none of forty notebooks' cells; the file itself stays as it is."""
+    path = notebook(tmp_path, HARMLESS.values(), [GUESS])
+    before = path.read_bytes()
+    found = submit_check(path)
+    assert (found.problems, found.notes) == ((), ())
+    assert all(verdict.right for verdict in found.verdicts.values())
+    assert path.read_bytes() == before and {x.name for x in tmp_path.iterdir()} == {FILE, path.name}
+
+
+def test_each_gap_is_told(tmp_path):
+    """Also of what only the run shows, and of a module or a file that lies beside the notebook."""
+    (tmp_path / "my_module.py").write_text("two = 2")
+    (tmp_path / "data.txt").write_text("2")
+    path = notebook(tmp_path, [cells for cells, _ in GAPS.values()])
+    found = submit_check(path.rename(tmp_path / "sample (1).ipynb"))
+    text = "\n".join(found.problems)
+    for k, (case, (_, says)) in enumerate(GAPS.items()):
+        assert says.replace("{q}", f"q{k}").replace("{k}", str(k)) in text, case
+    assert "rename it sample.ipynb" in text and "no cell defines guess" in text
+
+
+def test_what_is_unanswered_is_a_note(tmp_path, monkeypatch, capsys):
+    """A stub, a prediction without a letter and an empty text are no gaps; a loop is stopped."""
+    stub = "def {q}(x): raise NotImplementedError"
+    path = notebook(tmp_path, [[stub]], ["guess = predict('guess', None)"])
+    data = json.loads(path.read_text())
+    data["cells"][-1]["source"] = PLACEHOLDER
+    path.write_text(json.dumps(data))
+    assert command.main([str(path)], standalone_mode=False) == 0
+    said = capsys.readouterr().out
+    assert "[note] why has 0 words" in said and "[fix]" not in said
+    found = submit_check(notebook(tmp_path, [[stub]], ["while True: pass"]), seconds=5.0)
+    assert len(found.problems) == 1 and "more than 5 s" in found.problems[0]
+    assert Outcome.NOT_ATTEMPTED not in {x and x.outcome for x in found.verdicts.values()}
+
+
+def test_the_code_of_others_does_not_run(tmp_path, monkeypatch):
+    """Below `submitted`, also through a link, and in a file of another user."""
+    folder = tmp_path / "submitted" / "ada" / "sample"
+    folder.mkdir(parents=True)
+    path = notebook(folder, [], [f"open({str(tmp_path / 'ran')!r}, 'w')"])
+    (tmp_path / "link").symlink_to(folder)
+    mine = notebook(tmp_path, [], [f"open({str(tmp_path / 'ran')!r}, 'w')"])
+    for given in (path, tmp_path / "link" / path.name):
+        with pytest.raises(LabkitError, match="is not yours"):
+            submit_check(given)
+    if hasattr(os, "getuid"):
+        monkeypatch.setattr(os, "getuid", lambda: 12345)
+        with pytest.raises(LabkitError, match="is not yours"):
+            submit_check(mine)
+    assert not (tmp_path / "ran").exists()
