@@ -11,8 +11,6 @@ from labkit.__main__ import main, program
 from labkit.course.authoring.layout import Course
 
 VERBS = program().commands
-WARMUP = ROOT / "assignments/00_warmup/00_warmup.ipynb"
-PATHS = ROOT / "assignments/01_paths/01_paths.ipynb"
 
 
 def test_help_shows_examples(capsys):
@@ -25,7 +23,7 @@ def test_help_shows_examples(capsys):
 
 def test_instructors_have_at_most_fourteen_verbs():
     """Fourteen verbs run a term; whatever is written for others is a layout of `export`."""
-    assert len(set(VERBS) - {"submit-check", "merge"}) <= 14
+    assert len(set(VERBS) - {"submit-check"}) <= 14
 
 
 @pytest.mark.parametrize("words", [[], ["dance"], ["report-card", "--seed", "many"]])
@@ -68,8 +66,6 @@ def test_a_number_that_makes_no_sense_is_a_sentence(words, sentence, capsys):
     ("words", "sentence"),
     [
         (["submit-check", "."], ". is a folder, a pipe or a device"),
-        (["merge", PATHS, PATHS, "--to", "nowhere/x.ipynb"], "nowhere/x.ipynb: No such file"),
-        (["merge", WARMUP, PATHS, "--to", "x.ipynb"], "releases of the same assignment?"),
         (["term", "new", "--course", "nowhere"], "there is no "),
         (["feedback", "99_dance", "--course", ROOT], "'01_paths'"),
         (["grade", "--course", ROOT], "which assignment? "),
@@ -152,15 +148,15 @@ def test_ctrl_c_is_not_a_traceback(monkeypatch, capsys):
     def stopped(notebook):
         raise KeyboardInterrupt
 
-    monkeypatch.setattr("labkit.course.before_handing_in.examine", stopped)
+    monkeypatch.setattr("labkit.course.handin.submit_check", stopped)
     assert main(["submit-check", "01_paths.ipynb"]) == 130
     assert capsys.readouterr().err == "labkit submit-check: stopped\n"
 
 
 def test_a_students_labkit_has_the_students_commands_alone(monkeypatch):
-    """Where the grader's folder is missing, two verbs are left."""
+    """Where the grader's folder is missing, one verb is left."""
     monkeypatch.setattr("labkit.__main__.find_spec", lambda name: None)
-    assert set(program().commands) == {"submit-check", "merge"}
+    assert set(program().commands) == {"submit-check"}
 
 
 @pytest.mark.parametrize("package", ["sqlalchemy", "labkit_tests_miss_this"])
@@ -170,7 +166,7 @@ def test_a_missing_package_of_instructors_is_a_sentence(package, monkeypatch, ca
     def missing(notebook):
         raise ModuleNotFoundError(name=f"{package}.exc")
 
-    monkeypatch.setattr("labkit.course.before_handing_in.examine", missing)
+    monkeypatch.setattr("labkit.course.handin.submit_check", missing)
     if package == "sqlalchemy":
         assert main(["submit-check", "x"]) == 2
         assert "pip install 'labkit[grader]'" in capsys.readouterr().err

@@ -706,8 +706,8 @@ view
 # ## Hand in
 #
 # Run everything once more from the top (*Kernel, Restart Kernel and Run All Cells*) and save the file. Then
-# run only the last cell once more, because it looks at the saved file. It says what is missing and prints a
-# receipt; keep it. Hand in the file without renaming it, in the way your course asks. The grader runs your
+# run only the last cell once more: it prints a receipt for the saved file; keep it. `!labkit submit-check 05_impedance.ipynb`
+# in a new cell runs a copy of that file and says what is missing. Hand in the file without renaming it, in the way your course asks. The grader runs your
 # functions on further cases; the text above each stub says what kind of cases.
 
 # %% setup=true

@@ -252,8 +252,8 @@ mine = lk.my_arm(HANDLE)
 # ## Hand in
 #
 # Run everything once more from the top (*Kernel, Restart Kernel and Run All Cells*) and save the file. Then
-# run only the last cell once more, because it looks at the saved file. It says what is missing and prints a
-# receipt; keep it. One member hands in the file for the team, without renaming it, in the way your course asks.
+# run only the last cell once more: it prints a receipt for the saved file; keep it. `!labkit submit-check 08_report.ipynb`
+# in a new cell runs a copy of that file and says what is missing. One member hands in the file for the team, without renaming it, in the way your course asks.
 
 # %% setup=true
 lk.hand_in("08_report")

@@ -25,7 +25,6 @@ from labkit.course.authoring.layout import Course
 from labkit.course.authoring.refusals import GUESSED, guessable
 from labkit.course.bugs import CAUSES, MOVES, Bug, tells_apart
 from labkit.course.differences import sentence
-from labkit.course.gaps import calculated_from_runs
 from labkit.course.identification import on_the_public_arm, personalised
 from labkit.course.messages import message
 from labkit.course.own_arm import FILE, RANGES, Arms, draw, public_arm
@@ -234,7 +233,6 @@ def test_only_a_calculation_from_runs_is_warned_of_above_the_cell():
     """A fraction such as 1/33 counts, because the cell is run when it is marked; runs are not."""
     asked = Identification("m", "?", Measured("lag", "s", 0.0, 0.5, 0.01), 0.3, "a number", 3.0)
     assert "do not calculate them from your runs, which are not repeated" in asked.brief()
-    assert not calculated_from_runs(["m = 1 / 33"], "m")
 
 
 def test_a_measurement_of_the_public_arm_is_right_or_wrong_at_once(monkeypatch):

@@ -33,13 +33,6 @@ def test_the_verdict_comes_first():
     assert head(mark(DOUBLE, lambda x: 1 / 0)) == "double: it stopped with an error. 0 of 4 points."
 
 
-def test_what_will_be_lost_is_said_beside_the_verdict():
-    """An answer that is there now, and will not be when it is marked, is told why."""
-    lines = str(message(COMPLETE, mark(COMPLETE, double))).splitlines()
-    told = str(message(COMPLETE, mark(COMPLETE, double), lost="it is calculated")).splitlines()
-    assert told == [lines[0], "  But it is calculated.", *lines[1:]]
-
-
 def test_not_attempted_says_what_to_do():
     """A stub is told the task and the hint, and no failures."""
     words = said(stub)

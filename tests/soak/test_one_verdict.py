@@ -17,7 +17,7 @@ from handmade import put, raw
 from labkit.course import question_data
 from labkit.course.authoring.bundle import Bundle
 from labkit.course.authoring.layout import Course
-from labkit.course.before_handing_in import examine
+from labkit.course.handin import submit_check
 from labkit.course.notebook import manifest, source_notebook, verdict_in
 from labkit.grader.grading.grade import grade
 from labkit.grader.sandbox.launch import Sandbox
@@ -125,7 +125,7 @@ def test_three_verdicts_are_one(assignment, sandbox, tmp_path):
                 said[name] = seen(verdict_in(output[0]))
         file = tmp_path / f"{assignment}.ipynb"
         file.write_bytes(raw(notebook))
-        verdicts = examine(file).verdicts  # also of predictions, which have no right answer
+        verdicts = submit_check(file).verdicts  # also of predictions, which have no right answer
         repeated = {name: seen(verdicts[name]) for name in said}
         result = grade(raw(notebook), "ada", bundle, sandbox, Limits())
         counted = {q.verdict.name: seen(q.verdict) for q in result.questions}
