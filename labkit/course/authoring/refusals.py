@@ -163,7 +163,8 @@ def _key(args: tuple[Any, ...], kwargs: Mapping[str, Any]) -> str:
 
 def _stand_in_earns(question: Question, text: str) -> float:
     """The points that the stand-in earns as an answer; none if it uses a withheld tool."""
-    if withheld_tools([analyse(text)], STAND_IN, question.withheld):
+    cell = analyse(text)  # the stand-in and what it calls
+    if any(withheld_tools([cell], name, question.withheld) for name in cell["binds"]):
         return 0.0
     return _earned(question, LocalFunction(_run(text)))
 
