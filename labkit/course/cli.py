@@ -67,7 +67,7 @@ def verb(example: str) -> Callable[[Callable[..., int]], Verb]:
 @verb("01_paths.ipynb")
 @click.argument("notebook", type=PATH)
 def submit_check(notebook: Path) -> int:
-    """Check before you hand in: a copy of the notebook runs from top to bottom."""
+    """Run a copy of your notebook before you hand in."""
     from .handin import submit_check
 
     print(f"Running a copy of {notebook.name}, which takes as long as Run All ...", flush=True)

@@ -106,7 +106,7 @@ class Tried:
             lines.append(f"  {head(verdict) if verdict else f'{name}: no answer'}")
         right = sum(v is not None and v.right for v in self.verdicts.values())
         end = "correct what is marked with [fix] first" if self.problems else "it can be handed in"
-        of = f"{right} of {len(self.verdicts)} answers are right"
+        of = f"{right} of {len(self.verdicts)} answers are right as far as can be tested here"
         return "\n".join([*lines, f"{self.assignment}: {of}; {end}."])
 
 
