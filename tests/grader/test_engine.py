@@ -14,7 +14,6 @@ from labkit.course.authoring.bundle import Bundle
 from labkit.course.judges import Close
 from labkit.course.marking import mark
 from labkit.course.messages import why
-from labkit.course.own_arm import Arms
 from labkit.course.question import Question, Test
 from labkit.course.source import analyse
 from labkit.course.verdict import Outcome
@@ -106,20 +105,6 @@ def test_an_answer_from_the_students_own_arm_is_told_to_be_typed(marks, solved):
     asked = next(q.verdict for q in marks(solved).questions if q.verdict.name == "witness")
     said = why(asked.tests[0])
     assert "witness comes from runs of your arm, which are not made here; type the value" in said
-
-
-def test_a_result_says_that_the_public_arm_was_measured(bundle, sandbox, blank):
-    """Where a student has an arm of their own, and nowhere else; the last HANDLE counts."""
-    given = replace(bundle, arms=Arms("7", {"ada": "ada"}))
-
-    def said(student):
-        notes = grade(raw(blank), student, given, sandbox, QUICK).notes
-        return sum("is not true of the arm that the course gave this student" in x for x in notes)
-
-    add(blank, 'HANDLE = "demo"  # in a course: the name that your instructor gave you')
-    assert (said("ada"), said("bob")) == (1, 0)
-    add(blank, "HANDLE = 'ada'", at=len(blank["cells"]))
-    assert said("ada") == 0
 
 
 def test_an_answer_may_lean_on_cells_of_any_kind(marks, solved):
