@@ -176,7 +176,7 @@ def dials(
     """
     import ipywidgets
 
-    from .replay.saved import in_its_place
+    from .replay.player import in_its_place
 
     def drawn() -> tuple[dict[str, Any], dict[str, Any]]:
         figure, told = draw(**{name: slider.value for name, slider in sliders.items()})

@@ -10,7 +10,8 @@ from pathlib import Path
 
 from labkit.errors import OutOfRange, UnknownName
 from labkit.replay import Motion
-from labkit.replay.figure import VIEWER, compact, figure_html
+from labkit.replay.motion import compact
+from labkit.replay.player import VIEWER, figure_html
 
 LIMIT = 40_000  # bytes of a page for one motion
 

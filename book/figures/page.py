@@ -21,7 +21,7 @@ from PIL import Image
 
 from labkit import Arm, Log, Plant, Table, World, metrics, plotting
 from labkit.replay import Motion, motion_of
-from labkit.replay.widget import motion_still
+from labkit.replay.player import motion_still
 from labkit.tags.camera import Camera, looking_at
 from labkit.tags.intrinsics import Intrinsics
 

@@ -2,10 +2,8 @@
 
 from __future__ import annotations
 
-from .figure import recorded_html, viewer_scripts
-from .motion import Motion
-from .recorded import motion_of
+from .motion import Motion, motion_of
+from .player import recorded_html, show, viewer_scripts
 from .view import live
-from .widget import show
 
 __all__ = ["Motion", "live", "motion_of", "recorded_html", "show", "viewer_scripts"]

@@ -2,18 +2,22 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+import json
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
 from functools import cached_property
 from typing import Any
 
 import numpy as np
 
+from .. import metrics
 from ..baxter import as_robot
 from ..errors import OutOfRange, listed
+from ..log import Log
 from ..robot import SIDES, Robot
 from ..shapes import Array, as_array
-from .figure import compact
+from ..trajectory import PoseSample
+from .surroundings import drawn_thing
 
 STEPS = {  # resolution of each channel
     "q": 1e-4,  # rad
@@ -26,6 +30,10 @@ STEPS = {  # resolution of each channel
     "tau": 1e-2,  # N m
     "force": 1e-2,  # N
 }
+
+STOP, AFTER = 0.02, 0.1
+"""Distance from a limit at which a joint may have met its stop, in [rad], and how long the torque
+sensors feel that, in [s]."""
 
 STILL = 0.005
 """A joint that travels less than this, in [rad], is described as being at rest."""
@@ -170,6 +178,69 @@ class Motion:
         return " ".join(words)
 
 
+def motion_of(
+    log: Log,
+    title: str,
+    *,
+    label: str = "",
+    ghosts: Mapping[str, Log] | None = None,
+    reference: bool = True,
+    torque: bool = False,
+    force: bool = False,
+    things: Iterable[Any] = (),
+) -> Motion:
+    """Convert a run to the form that the viewer shows.
+
+    Args:
+        log: The run.
+        title: A title of a few words.
+        label: Name of the arm; by default the name of the controller.
+        ghosts: Other runs by name; the arm of a shorter run waits at its end.
+        reference: Whether to draw an arm that follows perfectly as a ghost, if the target consists
+            of joint angles.
+        torque: Whether to include the torques, which take the most space.
+        force: Whether to draw the force on the tip as the torque sensors estimated it, except
+            while a joint is at its stop, which its sensor also feels.
+        things: The `Wall`, `Table` and `Spring` objects of the arm's world.
+
+    Returns:
+        The motion, including the position error of the tip.
+    """
+    T_wd = metrics.target_poses(log)
+    arms = {name: resampled(other.q, other.t, log.t) for name, other in (ghosts or {}).items()}
+    if reference and not isinstance(log.target, PoseSample):
+        arms["the target"] = log.target.position
+    return Motion(
+        log.robot,
+        log.t,
+        log.q,
+        title=title,
+        label=label or log.controller,
+        target_position=T_wd[:, :3, 3],
+        target_rotation=T_wd[:, :3, :3],
+        path=T_wd[:: max(1, len(log) // 120), :3, 3],
+        error=np.linalg.norm(metrics.tip_error(log)[:, :3], axis=1),
+        tau=log.tau if torque else None,
+        force=_felt(log) if force else None,
+        ghosts=arms,
+        things={
+            f"{type(x).__name__.lower()} {k}": data
+            for k, x in enumerate(things, start=1)
+            if (data := drawn_thing(x))
+        },
+    )
+
+
+def _felt(log: Log) -> Any:
+    """Force on the tip, shape (N, 3) in [N], set to zero within `AFTER` of contact with a stop."""
+    from scipy.ndimage import binary_dilation
+
+    room = np.minimum(log.q - log.robot.lower, log.robot.upper - log.q).min(axis=1)
+    ticks = max(1, round(AFTER * len(log) / max(AFTER, float(np.ptp(log.t)))))
+    unknown = binary_dilation(room < STOP, iterations=ticks)
+    return np.where(unknown[:, None], 0.0, metrics.felt_wrench(log)[:, :3])
+
+
 def pack(x: Array, step: float) -> dict[str, Any]:
     """Convert a channel to multiples of `step`, differenced along its rows, column after column.
 
@@ -244,3 +315,8 @@ def _turns(R: Array) -> Array:
 
 def _mm(metres: float) -> str:
     return f"{1000 * metres:.1f} mm"
+
+
+def compact(data: Any) -> str:
+    """Data as JSON without spaces."""
+    return json.dumps(data, separators=(",", ":"), ensure_ascii=False)

@@ -9,20 +9,21 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from ..arm import Arm
-from ..errors import TypeMismatch
+from ..errors import OutOfRange, TypeMismatch, UnknownName
+from ..plant import EVIDENCE, Plant
 from ..robot import SIDES
 from ..run import check_order, name_of
-from ..shapes import shown
+from ..shapes import as_number, shown
 from ..trajectory import Target
-from .dials import read_dials
-from .figure import compact
-from .motion import drawn
-from .saved import still
-from .session import Session
+from .motion import compact, drawn
+from .player import still
+from .session import OF_PLANT, Dial, Session, arguments
 from .surroundings import faces
 
 if TYPE_CHECKING:
-    from .front import Live
+    from .widgets import Live
+
+_UNITS = {name: source.unit for name, source in EVIDENCE.items()}
 
 
 def live(
@@ -37,8 +38,8 @@ def live(
     """Show an arm in real time that the user can pull with the mouse, by touch or with keys.
 
     Nothing runs before "Start" is pressed.  From then on the arm belongs to the cell, and its use
-    in other cells raises an error.  If a controller raises, loses the arm, is too slow or never
-    returns, the arm is left at rest, and a message beside the picture names the controller.
+    in other cells raises an error.  If a controller raises, loses the arm or is too slow, the arm
+    is left at rest, and a message beside the picture names the controller.
 
     Args:
         arm: A simulated arm, preferably one made for this cell; it starts where it is.
@@ -63,7 +64,7 @@ def live(
         UnknownName: Neither a controller nor the plant has a number of a dial's name.
         OutOfRange: A dial starts outside its range, or the rate does not fit the physics step.
     """
-    from .front import Live
+    from .widgets import Live
 
     if not isinstance(arm, Arm):
         raise TypeMismatch(f"arm is {shown(arm)}, expected a simulated lk.Arm")
@@ -98,3 +99,43 @@ def live(
         arm.robot, first["q"], around=elbow[None, :], alone=True, through=faces(first["things"])
     )
     return widget
+
+
+def read_dials(
+    given: Mapping[str, Any], plant: Plant, laws: Mapping[str, Callable[..., Any]]
+) -> dict[str, Dial]:
+    """The dials by name.
+
+    Args:
+        given: For each dial, a range (low, high) or (low, high, start), and perhaps a unit.
+        plant: The plant with the starting values of its dials.
+        laws: The controllers that read the other dials, by name.
+
+    Raises:
+        TypeMismatch: A dial has no range.
+        OutOfRange: A start is outside its range.
+        UnknownName: A dial is neither a number of the plant nor an argument of a controller.
+    """
+    dials = {}
+    for name, span in given.items():
+        try:
+            *numbers, unit = span if isinstance(span[-1], str) else (*span, _UNITS.get(name, ""))
+            low, high, *start = (as_number(x, name) for x in numbers)
+        except (TypeError, ValueError, LookupError):
+            raise TypeMismatch(
+                f"the dial {name} is {shown(span)}; give its range, {name}=(low, high) or "
+                f"{name}=(low, high, start)"
+            ) from None
+        if name in OF_PLANT:
+            own = getattr(plant, name)
+            usual = max(own) if isinstance(own, tuple) else own
+        elif any(name in arguments(law) for law in laws.values()):
+            usual = low
+        else:
+            known = {*OF_PLANT, *(x for law in laws.values() for x in arguments(law)[2:])}
+            raise UnknownName("dial", name, sorted(known))
+        value = start[0] if start else min(max(usual, low), high)
+        if not low <= value <= high or low >= high:
+            raise OutOfRange(f"the dial {name} starts at {value:g}, outside {low:g} to {high:g}")
+        dials[name] = Dial(name, low, high, value, unit)
+    return dials

@@ -13,7 +13,7 @@ from figures.embed import (
 )
 from samples import swing
 
-from labkit.replay.saved import in_its_place
+from labkit.replay.player import in_its_place
 
 ROOT = Path(__file__).parents[2]
 POLICY = "default-src 'none'; script-src file:; img-src file: data:; style-src file:"

@@ -4,19 +4,16 @@ import re
 import sys
 import threading
 import time
-from contextlib import suppress
 
 import numpy as np
 import pytest
 
 import labkit as lk
 from labkit.errors import Closed, NothingKept, OutOfRange, TypeMismatch, UnknownName
-from labkit.replay.dials import read_dials
 from labkit.replay.hand import FRESH, SLOW_PAGE, STEADY, STRONGEST, Hand
-from labkit.replay.pacer import FRAME
-from labkit.replay.session import Session
+from labkit.replay.session import FRAME, TURN, Session
 from labkit.replay.surroundings import Surroundings
-from labkit.replay.watch import _LOOK, TURN, Watch
+from labkit.replay.view import read_dials
 
 READY = np.array(lk.robot("left").ready)
 T_READY = lk.Model("left").pose(READY)
@@ -194,7 +191,7 @@ def test_a_hand_holds_on_for_as_long_as_its_page_may_be_silent(live, hand, lasts
     """0.2 s for a pointer, more where the page is slow, and seconds for a button's steady push."""
     session, _ = live({"springs": springy})
     session.tell({"kind": "hand", "link": 3, "local": [0, 0, 0], **hand})
-    assert session._hand.patience == pytest.approx(lasts)
+    assert session.hand.patience == pytest.approx(lasts)
 
 
 def test_a_push_outlasts_a_page_that_says_nothing_for_a_second(live):
@@ -316,19 +313,6 @@ def test_dials_take_effect_and_a_kept_run_says_which(live):
     assert session.arm.plant == TEXTBOOK
 
 
-def never(state, target):
-    while True:
-        pass
-
-
-def stubborn(state, target):
-    while True:
-        try:
-            time.sleep(0.001)
-        except Exception:
-            continue
-
-
 def runs_away(state, target):
     return lk.JointTorque(60.0 * (state.q - READY + 0.1) + 60.0 * state.dq)
 
@@ -345,15 +329,13 @@ def slow(state, target):
 @pytest.mark.parametrize(
     ("law", "words"),
     [
-        (never, r"did not return.*line: (pass|while True)"),
-        (stubborn, "did not return"),
         (runs_away, "lost the arm.*check the sign"),
         (wrong, "asked the target's sample for its position.*line: return lk.JointTorque"),
         (slow, "law takes .* ms, but is called every 5 ms"),
     ],
 )
 def test_a_bad_law_stops_with_its_sentence_and_the_arm_rests(live, law, words):
-    """It raises, diverges, is too slow or loops for ever: one sentence, and the arm at rest."""
+    """It raises, diverges or is too slow: one sentence, and the arm at rest."""
     session, frames = live({"law": law})
     session.tell({"kind": "go"})
     stopped = until(frames, lambda f: f.get("state") == "stopped")
@@ -362,25 +344,21 @@ def test_a_bad_law_stops_with_its_sentence_and_the_arm_rests(live, law, words):
     np.testing.assert_array_equal(session.arm.truth().dq, 0.0)
 
 
-def test_a_law_that_nothing_can_end_asks_for_a_new_kernel(monkeypatch):
-    """A loop around a bare `except:` outlives whatever is thrown into it; the page says so."""
-    monkeypatch.setattr("labkit.replay.watch.PATIENCE", 0.1)
-    monkeypatch.setattr("labkit.replay.watch.GIVES_UP", 0.3)
-    said, told = [], threading.Event()
-    watch = Watch(0.005, lambda words: (said.append(words), "Restart" in words and told.set()))
+def test_a_law_that_never_returns_is_named_at_the_next_message(live, monkeypatch):
+    """Nothing ends it but a new kernel, and the page says so."""
+    monkeypatch.setattr("labkit.replay.session.PATIENCE", 0.1)
+    free = threading.Event()
 
-    def law():
-        watch.begins("law")
-        while not told.is_set():
-            with suppress(BaseException):  # as a bare `except: pass` does
-                time.sleep(0.01)
+    def law(state, target):
+        free.wait()
+        return springy(state, target)
 
-    thread = threading.Thread(target=law)
-    thread.start()
-    watch.over(thread)
-    thread.join(60.0)
-    assert "it is being ended" in said[0]
-    assert "could not be ended so far" in said[-1] and "choose Kernel, Restart Kernel" in said[-1]
+    session, frames = live({"law": law})
+    session.tell({"kind": "go"})
+    told = until(frames, lambda f: f["kind"] == "note", lambda: session.tell({"kind": "here"}))
+    assert told["note"].startswith("law has not returned")
+    free.set()
+    until(frames, lambda f: f["kind"] == "frame" and f["t"] > 0.0)
 
 
 def test_two_laws_pause_step_and_reset(live):
@@ -417,20 +395,14 @@ def test_stop_is_told_and_start_begins_again(live, first):
     assert until(frames, lambda f: f["state"] == "running")["note"] == ""
 
 
-def test_the_last_of_two_live_arms_leaves_the_threads_as_they_were():
-    """While one is live, threads change often."""
-    time.sleep(6 * _LOOK)  # the watch of the test before has ended
-    usual, ends = sys.getswitchinterval(), (threading.Event(), threading.Event())
-    for end in ends:
-        thread = threading.Thread(target=end.wait)
-        thread.start()
-        Watch(0.005, print).over(thread)
-        time.sleep(6 * _LOOK)
-    ends[0].set()
-    time.sleep(6 * _LOOK)
+def test_threads_change_often_while_an_arm_is_live_and_as_usual_afterwards(live):
+    """Else a busy cell would delay the arm."""
+    usual = sys.getswitchinterval()
+    session, frames = live({"springs": springy})
+    session.tell({"kind": "go"})
+    until(frames, lambda f: f["state"] == "running")
     assert sys.getswitchinterval() == pytest.approx(TURN)
-    ends[1].set()
-    time.sleep(6 * _LOOK)
+    session.close()
     assert sys.getswitchinterval() == pytest.approx(usual)
 
 

@@ -8,7 +8,7 @@ from accessibility import violations
 from figures.embed import shared_files
 
 import labkit as lk
-from labkit.replay.figure import VIEWER
+from labkit.replay.player import VIEWER
 from labkit.replay.surroundings import POINTS
 
 

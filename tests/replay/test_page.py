@@ -21,7 +21,7 @@ import labkit as lk
 from labkit.errors import OutOfRange, TypeMismatch, UnknownName
 from labkit.replay import motion_of, show
 from labkit.replay.motion import unpack
-from labkit.replay.widget import motion_still
+from labkit.replay.player import motion_still
 
 
 class Reader(HTMLParser):

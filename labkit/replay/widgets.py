@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from collections.abc import Callable
 from html import escape
 from pathlib import Path
 from typing import Any
@@ -12,13 +13,20 @@ import traitlets
 
 from ..errors import NothingKept
 from ..log import Log
-from .figure import VIEWER, figure_html, filled, viewer_scripts
-from .saved import Saved
+from .player import VIEWER, figure_html, filled, in_its_place, viewer_scripts
 from .session import Session
 
 
-class Widget(Saved, anywidget.AnyWidget):
-    """Shows data in the viewer, whose files go to the page once and not into the notebook."""
+class Widget(anywidget.AnyWidget):
+    """Shows data in the viewer, whose files go to the page once, and leaves a picture behind.
+
+    Attributes:
+        words: Caption and description.
+        picture: Function that returns the picture as the bytes of a PNG file.
+    """
+
+    words: str
+    picture: Callable[[], bytes]
 
     _esm = (VIEWER / "widget.js").read_text(encoding="utf-8")
     data = traitlets.Unicode().tag(sync=True)
@@ -32,6 +40,17 @@ class Widget(Saved, anywidget.AnyWidget):
         if message.get("kind") == "files":
             files = [(VIEWER / name).read_bytes() for name in ("viewer.js", "robot.js")]
             self.send({"kind": "files"}, buffers=files)
+
+    def _ipython_display_(self) -> None:
+        from IPython.display import display
+
+        display(self.fallback(), raw=True)
+        data, metadata = self._repr_mimebundle_()  # type: ignore[misc]
+        display(data, metadata=metadata, raw=True)
+
+    def fallback(self) -> dict[str, str]:
+        """The picture and its caption as a notebook output."""
+        return in_its_place(self.words, self.picture())
 
     def __repr__(self) -> str:
         return self.words
