@@ -8,7 +8,7 @@ from typing import Any
 from .errors import LabkitError
 
 FORMAT = 2
-"""Version of checks.json, bundles, results and logs; files of version 0.1 have none and mean 1."""
+"""Version of checks.json, bundles and results."""
 PHYSICS = 2
 """Version of the plant and its engines; the same run gives a different log in another version."""
 
@@ -24,14 +24,13 @@ def check_stamp(data: Mapping[str, Any], what: str, remedy: str) -> None:
     Args:
         data: The contents of the file.
         what: The name of the file for the message, such as "checks.json".
-        remedy: What to do about an older file, in the imperative.
+        remedy: What to do, in the imperative.
 
     Raises:
         LabkitError: The file's format or physics differs from that of this labkit.
     """
     for name, mine in stamp().items():
-        found = data.get(name, 1)
-        if found != mine:
-            newer = isinstance(found, int) and found > mine
-            todo = "install the labkit that it came with" if newer else remedy
-            raise LabkitError(f"{what} has {name} {found!r}, but this labkit reads {mine}; {todo}")
+        if data.get(name) != mine:
+            raise LabkitError(
+                f"{what} has {name} {data.get(name)!r}, but this labkit reads {mine}; {remedy}"
+            )

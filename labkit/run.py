@@ -97,7 +97,7 @@ def run_driven(
     """Do the same as `run` for an adapted arm; `live` brings an adapter with its own clock."""
     last = _ticks(target, duration, driven.period) - 1
     samples = _Samples(target, f"the target {name_of(target)}")
-    recorder = Recorder(driven.robot, driven.plant, name_of(controller), samples.first)
+    recorder = Recorder(driven.robot, driven.plant, name_of(controller), samples.first, last + 1)
     try:
         _loop(driven, controller, last, samples, recorder)
         log = recorder.log()

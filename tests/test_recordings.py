@@ -47,20 +47,6 @@ def test_what_was_replaced_in_a_robot_is_saved_with_its_log(tmp_path):
     assert back.robot.data() == REPLACED.data()
 
 
-def test_a_log_of_another_physics_is_refused_and_one_without_a_number_is_read(
-    tmp_path, monkeypatch
-):
-    """The first logs, such as those that ship, have no number."""
-    with monkeypatch.context() as past:
-        past.setattr("labkit.formats.PHYSICS", 1)
-        short().save(tmp_path / "old.npz")
-        past.setattr("labkit.log.stamp", dict)
-        short().save(tmp_path / "first.npz")
-    with pytest.raises(lk.LabkitError, match=r"old.npz has physics 1, but this .* reads 2; run it"):
-        lk.Log.load(tmp_path / "old.npz")
-    assert len(lk.Log.load(tmp_path / "first.npz")) == len(short())
-
-
 def test_every_recording_that_ships_is_a_run_one_can_study():
     """There is at least one, and each has an RMS error below 100 mm."""
     assert recordings.names()
