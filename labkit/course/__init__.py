@@ -5,9 +5,9 @@ A notebook uses `check`, `hint` and `use`; the graders apply `mark` to the same 
 
 from __future__ import annotations
 
-from .bugs import Found, Telling
+from .bugs import Found
 from .equivalence import AtTip, Response, TipTorque
-from .forms import Choose, Curve, Measured, Number, Rank
+from .forms import Choose, Curve, Measured, Number
 from .handin import hand_in
 from .identification import Identification
 from .judges import AtMost, Close, Gains, Within
@@ -41,9 +41,7 @@ __all__ = [
     "Prediction",
     "Question",
     "Raised",
-    "Rank",
     "Response",
-    "Telling",
     "Test",
     "TestResult",
     "TipTorque",

@@ -10,13 +10,13 @@ import numpy as np
 
 from ..arm import Arm
 from ..control import JointTorque, State
-from ..errors import Diverged, LabkitError
+from ..errors import Diverged
 from ..log import Log
 from ..model import Model
 from ..paths import Line, Quintic
 from ..plant import Plant
 from ..run import run
-from ..shapes import Array, as_array
+from ..shapes import Array
 from ..trajectory import Chain, Hold, Sample, Trajectory
 from .forms import Choose, RightOrWrong, shown
 from .verdict import Difference, Kind
@@ -92,34 +92,9 @@ def there_and_back(move: Any) -> Chain:
     )
 
 
-def tells_apart(one: str, other: str, start: Any, move: Any) -> float:
-    """How clearly an experiment tells two causes apart.
-
-    Args:
-        one: A letter of `CAUSES`; the mistake is in the law from the beginning.
-        other: Another letter.
-        start: Offset of the arm's start from its target, shape (7,) in [rad].
-        move: Displacement to which the arm goes and from which it returns, shape (7,) in [rad].
-
-    Returns:
-        The RMS difference between the joints of the two runs, divided by that between two right
-        runs with different noise.
-    """
-    target = there_and_back(move)
-    runs = [_run(target, cause, 0.0, 1, start) for cause in (one, other)]
-    noise = [_run(target, "", 0.0, seed, start) for seed in (1, 2)]
-    return _apart(*runs) / _apart(*noise)
-
-
-def _apart(a: Log, b: Log) -> float:
-    n = min(len(a), len(b))
-    return float(np.sqrt(np.mean((a.q[:n] - b.q[:n]) ** 2)))
-
-
-def _run(target: Chain, cause: str, onset: float, seed: int, start: Any = 0.0) -> Log:
+def _run(target: Chain, cause: str, onset: float, seed: int) -> Log:
     model = Model("left", PLANT)
-    q0 = target(0.0).position + start
-    with Arm("left", PLANT, seed, q0=model.within_limits(q0, "the start")) as arm:
+    with Arm("left", PLANT, seed, q0=target(0.0).position) as arm:
         try:
             return run(arm, target, _law(model, target, cause, onset), RATE)
         except Diverged as error:
@@ -132,8 +107,6 @@ def _law(
     model: Model, target: Chain, cause: str, onset: float
 ) -> Callable[[State, Sample], JointTorque]:
     """Computed torque, which has one mistake from `onset` on."""
-    if cause and cause not in CAUSES:
-        raise LabkitError(f"{cause!r} is not a cause; choose one of {', '.join(CAUSES)}")
     before: list[State] = []
     last = target(target.duration)
 
@@ -170,8 +143,6 @@ def _exchanged(e: Array) -> Array:
 CHOICE = Choose(CAUSES)
 NEAR = 0.15
 """Tolerance of the time at which a mistake is first visible, in [s]."""
-CLEAR = 5.0
-"""Smallest ratio to the noise by which an experiment must tell two suspects apart."""
 
 
 @dataclass(frozen=True)
@@ -202,44 +173,3 @@ class Found(RightOrWrong):
         """The right diagnosis for a student's `OwnArm`."""
         bug: Bug = arm.bugs[self.number]
         return bug.cause, bug.first_visible()
-
-
-@dataclass(frozen=True)
-class Telling(RightOrWrong):
-    """The judge of an experiment that tells the cause of a run from another suspect.
-
-    Both suspects are simulated.
-
-    Attributes:
-        number: Index of the misbehaving run, from 0.
-    """
-
-    number: int
-
-    def __call__(self, answer: Any, expected: Any) -> Difference | None:
-        """None if the first suspect is right and the two runs differ by `CLEAR` times the noise."""
-        try:
-            suspects, start, move = answer
-            one, other = suspects
-            ratio = tells_apart(
-                one, other, as_array(start, (7,), "start"), as_array(move, (7,), "move")
-            )
-        except LabkitError as error:
-            return Difference(Kind.REFUSED, found=str(error))
-        except (TypeError, ValueError):
-            what = 'it should be (suspects, start, move), such as ("ad", [0, ...], [0.3, ...])'
-            return Difference(Kind.REFUSED, found=what)
-        if one == other:
-            says = f"both suspects are {one!r}; name two different ones"
-            return Difference(Kind.REFUSED, found=says)
-        if not ratio >= CLEAR:
-            says = f"the two runs differ by {ratio:.1f} times the noise; {CLEAR:g} are needed"
-            return Difference(Kind.REFUSED, found=says)
-        if expected is not None and one != expected:
-            return Difference(Kind.VALUE, expected=str(expected), found=str(one))
-        return None
-
-    def expected(self, arm: Any) -> str:
-        """The right first suspect for a student's `OwnArm`."""
-        bug: Bug = arm.bugs[self.number]
-        return bug.cause

@@ -10,7 +10,7 @@ import numpy as np
 from ..control import JointTorque
 from ..errors import OutOfRange
 from ..shapes import Array
-from .bugs import Found, Telling
+from .bugs import Found
 from .forms import Form, Measured
 from .judges import Close, Gains, Within, value
 from .verdict import Difference, Kind, Value
@@ -155,7 +155,7 @@ def as_expected(known: Any, expected: Any) -> Any:
     return known
 
 
-Judge = Close | Within | Response | Gains | AtTip | Form | Measured | Found | Telling
+Judge = Close | Within | Response | Gains | AtTip | Form | Measured | Found
 
 
 def accepts(judge: Judge, answer: Any, expected: Any) -> bool:

@@ -1,4 +1,4 @@
-"""Forms of an answer that students write down: a letter, an order, a number, or a curve.
+"""Forms of an answer that students write down: a letter, a number, or a curve.
 
 A form is the judge of a prediction.  It accepts every plausible value, right or wrong, because the
 point is given for committing.  `Measured` judges a number that was measured on an arm.
@@ -16,6 +16,9 @@ from .verdict import Difference, Kind
 
 COMMITTED = "committed before the arm answers"
 """The one test of a prediction."""
+
+UNSAID = "?"
+"""What stands in the place of a prediction until a student writes one."""
 
 OWN_ARM = "it is right for your own arm"
 """The test of a number that a student measured; only the grader knows the arm."""
@@ -53,7 +56,7 @@ class RightOrWrong:
 
 
 class _Form(RightOrWrong):
-    """The base of the four forms: a prediction of the right form is accepted, whatever it says."""
+    """The base of the three forms: a prediction of the right form is accepted, whatever it says."""
 
     def problem(self, said: Any) -> str:
         """What is wrong with the form of a prediction, or ""."""
@@ -95,35 +98,6 @@ class Choose(_Form):
     def words(self, said: Any) -> str:
         """The prediction in words, as the object of a sentence."""
         return f"({letters(said)}) {self.options[letters(said)]}"
-
-
-@dataclass(frozen=True)
-class Rank(_Form):
-    """Several things in order, as a text of their letters.
-
-    Attributes:
-        options: What each letter stands for.
-        first: What distinguishes the first one, such as "the largest".
-    """
-
-    options: Mapping[str, str] = field(hash=False)
-    first: str
-
-    @property
-    def how(self) -> str:
-        """How to write the prediction down."""
-        return f"their letters in order, {self.first} first, such as {''.join(self.options)!r}"
-
-    def problem(self, said: Any) -> str:
-        """What is wrong with the form of a prediction, or ""."""
-        if sorted(letters(said)) == sorted(self.options):
-            return ""
-        every = "".join(self.options)
-        return f"it is {shown(said)}; write a text with each of the letters {every} once"
-
-    def words(self, said: Any) -> str:
-        """The prediction in words, as the object of a sentence."""
-        return ", ".join(self.options[letter] for letter in letters(said))
 
 
 @dataclass(frozen=True)
@@ -198,7 +172,7 @@ class Curve(_Form):
         return ", ".join(f"{y:.3g} at {x:g}" for x, y in zip(self.at, said, strict=True))
 
 
-Form = Choose | Rank | Number | Curve
+Form = Choose | Number | Curve
 
 
 @dataclass(frozen=True)

@@ -6,7 +6,7 @@ from dataclasses import dataclass, replace
 from typing import Any
 
 from .brief import heading, where_hints_are
-from .bugs import Found, Telling
+from .bugs import Found
 from .forms import OWN_ARM, Measured
 from .own_arm import DEMO, OwnArm, public_arm
 from .question import Call, Question, Test
@@ -31,7 +31,7 @@ class Identification:
 
     name: str
     asks: str
-    judge: Measured | Found | Telling
+    judge: Measured | Found
     truth: Any
     form: str
     points: float
@@ -45,7 +45,7 @@ class Identification:
             Test(self.form, (Call(()),), 0.0),
             Test(
                 OWN_ARM,
-                (Call((), expected=self._expected(), hidden=True),),
+                (Call((), expected=self.truth, hidden=True),),
                 also="whether it is right for your own arm",
             ),
         )
@@ -59,9 +59,6 @@ class Identification:
             core=self.core,
             outcomes=self.outcomes,
         )
-
-    def _expected(self) -> Any:
-        return self.truth[0][0] if isinstance(self.judge, Telling) else self.truth
 
     def brief(self) -> str:
         """The text above the place for the answer."""
@@ -87,7 +84,7 @@ class Identification:
 
 def personalised(question: Question, arm: OwnArm) -> Question:
     """The question with the right answer for a student's arm; other questions are unchanged."""
-    if not isinstance(question.judge, Measured | Found | Telling):
+    if not isinstance(question.judge, Measured | Found):
         return question
     expected = question.judge.expected(arm)
     return question.with_cases(lambda c: replace(c, expected=expected) if c.hidden else c)

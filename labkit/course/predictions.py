@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Any
 
-from .forms import COMMITTED, Choose, Form, Rank
+from .forms import COMMITTED, UNSAID, Choose, Form
 from .question import Call, Question, Test, in_points
 
 
@@ -35,18 +35,16 @@ class Prediction:
     def brief(self) -> str:
         """The text above the place for the prediction."""
         form = self.form
-        options = form.options.items() if isinstance(form, Choose | Rank) else ()
+        options = form.options.items() if isinstance(form, Choose) else ()
         earns = f"{in_points(self.points)} for committing, right or wrong"
         head = f"**Predict first: `{self.name}`** · {earns}"
         lines = [head, "", self.asks, "", *(f"- ({letter}) {text}" for letter, text in options)]
-        mouse = "run the cell, choose with the mouse, and run the same cell again"
-        how = f"Write {form.how}, in place of `None`; or {mouse}."
-        stays = "Leave it in the cell: what the cell says is what is marked."
-        return "\n".join([*lines, "", f"{how} {stays}"])
+        how = f'Write {form.how}, in place of `"{UNSAID}"`, and run the cell.'
+        return "\n".join([*lines, "", how])
 
     def cell(self) -> str:
         """The cell that the student fills in."""
-        return f'{self.name} = predict("{self.name}", None)'
+        return f'{self.name} = predict("{self.name}", "{UNSAID}")'
 
     def solved(self) -> str:
         """The cell with a prediction that turns out right."""

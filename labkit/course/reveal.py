@@ -2,24 +2,22 @@
 
 from __future__ import annotations
 
-import json
-from html import escape
 from typing import Any
 
 import numpy as np
 
 from ..errors import LabkitError, listed
-from .forms import Choose, Curve, Form, Number, Rank
+from .forms import UNSAID, Curve, Form, Number
 from .messages import wrapped
-from .student import desk, shell
+from .student import desk
 
 
-def predict(name: str, said: Any = None, *more: Any, truth: Any = None) -> Any:
+def predict(name: str, said: Any = UNSAID, *more: Any, truth: Any = None) -> Any:
     """Commit to a prediction; or, with the truth, compare the prediction with it.
 
     Args:
         name: The prediction's name.
-        said: What you predict; None shows controls for choosing it.
+        said: What you predict; "?" if you have not yet.
         more: Nothing; what follows a decimal comma would be here.
         truth: The result: a letter, letters, a number, or a curve as (places, heights).
 
@@ -46,28 +44,16 @@ def predict(name: str, said: Any = None, *more: Any, truth: Any = None) -> Any:
     first = place.committed.get(name)
     if name in place.revealed and first is not None and not form.same(first, said):
         print(wrapped(f"The answer was shown, so your prediction stays: {first!r}."))
-        _write_down(name, first)
         return first
-    if said is None:
-        said = place.chosen.pop(name, None)
-        if said is None:
-            _controls(name, form)
-            return None
-        _write_down(name, said)
+    if said is None or (isinstance(said, str) and said == UNSAID):
+        print(wrapped(f'{name}: write {form.how}, in place of "{UNSAID}", and run the cell.'))
+        return None
     if found := form.problem(said):
         print(wrapped(f"{name}: {found}."))
     else:
         place.committed[name] = said
         print(wrapped(f"You are committed to: {form.words(said)}."))
     return said
-
-
-def _write_down(name: str, said: Any) -> None:
-    """Write the chosen value into the text of the running cell, where a grader reads it."""
-    notebook = shell()
-    if notebook is not None:
-        text = f'{name} = predict("{name}", {json.dumps(said)})'
-        notebook.set_next_input(text, replace=True)
 
 
 def _reveal(name: str, form: Form, truth: Any) -> None:
@@ -116,81 +102,3 @@ def _overlay(form: Curve, said: Any, truth: Any) -> None:
     plt.legend(frameon=False)
     came = form.words(np.interp(form.at, places, heights))
     plotting.show(f"{form.height} over {form.along}. You said {form.words(said)}. It was {came}.")
-
-
-def _controls(name: str, form: Form) -> None:
-    """Show controls for mouse and keyboard; running the cell again commits to their value."""
-    if shell() is None:
-        return
-    import ipywidgets as widgets
-    from IPython.display import display
-
-    again = "click into the cell above this line and press Shift+Enter once more to commit."
-    note = widgets.HTML(f"{_what_to_do(form)}; then {again}")  # a label would not wrap its text
-    parts = _inputs(form, widgets)
-    draft = desk().drafts.setdefault(name, [None] * len(parts))  # None until it is set
-
-    def show() -> None:
-        """Take the value of the controls if all are set, and else say what is missing."""
-        desk().chosen.pop(name, None)
-        waiting = [part.description for part, x in zip(parts, draft, strict=True) if x is None]
-        said = [*map(_number, draft)] if isinstance(form, Curve) else _number(draft[0])
-        if isinstance(form, Curve) and waiting:
-            note.value = f"Still to set: the {escape(form.height)} at {', '.join(waiting)}."
-        elif found := form.problem(said):
-            note.value = escape(found)
-        else:
-            desk().chosen[name] = said
-            note.value = f"{escape(form.words(said))}: not committed yet; {again}"
-
-    def changed(change: Any) -> None:
-        draft[parts.index(change["owner"])] = change["new"]
-        show()
-
-    for part, value in zip(parts, draft, strict=True):
-        if value is not None:
-            part.value = value
-        part.observe(changed, "value")
-    if any(value is not None for value in draft):
-        show()
-    box = widgets.HBox if isinstance(form, Curve) else widgets.VBox
-    display(widgets.VBox([box(parts), note]))
-
-
-def _what_to_do(form: Form) -> str:
-    match form:
-        case Choose():
-            return "Choose"
-        case Curve(_, along, height):
-            return escape(
-                f"The number at each slider is the {along}: set the slider to the {height} there"
-            )
-    return escape(f"Type {form.how}")
-
-
-def _number(said: Any) -> Any:
-    """A number without the rounding errors of its last digits; any other value unchanged."""
-    try:
-        return round(float(said), 9)
-    except (TypeError, ValueError):
-        return said
-
-
-def _inputs(form: Form, widgets: Any) -> list[Any]:
-    """One control for each value of a prediction."""
-    match form:
-        case Choose(options):
-            pairs = [(f"({letter}) {text}", letter) for letter, text in options.items()]
-            layout = widgets.Layout(width="auto")
-            return [widgets.RadioButtons(options=pairs, value=None, layout=layout)]
-        case Rank() | Number():  # a numeric field would start with a number that nobody chose
-            return [widgets.Text(placeholder=form.how, layout=widgets.Layout(width="30em"))]
-        case Curve(at, _, height, least, most):
-            middle, step = (least + most) / 2, (most - least) / 50
-            return [
-                widgets.FloatSlider(
-                    middle, min=least, max=most, step=step, description=f"{x:g}",
-                    orientation="vertical", tooltip=f"{height} at {x:g}",
-                )
-                for x in at
-            ]  # fmt: skip

@@ -48,8 +48,6 @@ class Desk:
         self.failing: dict[str, Call | None] = {}
         self.attempted: set[str] = set()
         self.committed: dict[str, Any] = {}
-        self.chosen: dict[str, Any] = {}
-        self.drafts: dict[str, list[Any]] = {}
         self.revealed: set[str] = set()
         self.anyway: set[str] = set()
 

@@ -3,65 +3,20 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from math import atan, hypot, radians
 from typing import Any
 
 import control
 import numpy as np
-from scipy.optimize import brentq
 from scipy.stats import t as student
 
-import labkit as lk
 from labkit.errors import OutOfRange
-from labkit.shapes import Array, as_array, as_number
-
-
-def rms_error(log: lk.Log, model: lk.Model) -> float:
-    """Root of the mean of the squared length of the tip's position error."""
-    squared = [
-        np.sum((T_wd[:3, 3] - model.pose(q)[:3, 3]) ** 2)
-        for q, T_wd in zip(log.q, log.target.pose, strict=True)  # type: ignore[union-attr]
-    ]
-    return float(np.sqrt(np.mean(squared)))
+from labkit.shapes import Array, as_array
 
 
 def open_loop(kp: float, lag: float, delay: float) -> Any:
     """The loop of a velocity-commanded joint: gain, lag, integrator, delay by Padé."""
     loop = control.tf([kp], [lag, 1.0, 0.0]) if lag else control.tf([kp], [1.0, 0.0])
     return loop * control.tf(*control.pade(delay, 4)) if delay else loop
-
-
-def kp_for_margin(lag: float, delay: float, margin_deg: float) -> float:
-    r"""The gain with a wanted phase margin.
-
-    The crossover w solves :math:`90^\circ - \arctan(w \tau) - w d = \varphi`, and there
-    :math:`k_p = w \sqrt{1 + (w \tau)^2}` makes the loop's gain 1.
-
-    Args:
-        lag: tau, in [s].
-        delay: d, in [s].
-        margin_deg: phi, in [degrees], between 0 and 90.
-
-    Returns:
-        kp in [1/s].
-
-    Raises:
-        OutOfRange: No gain, or any gain, has this margin.
-    """
-    lag, delay = as_number(lag, "lag", least=0.0), as_number(delay, "delay", least=0.0)
-    margin = radians(as_number(margin_deg, "margin_deg", above=0.0))
-    if margin >= radians(90.0):
-        raise OutOfRange(
-            f"margin_deg is {margin_deg:g}; the integrator leaves less than 90 degrees"
-        )
-    if lag == delay == 0.0:
-        raise OutOfRange("lag and delay are 0: an integrator keeps 90 degrees at any gain")
-
-    def excess(w: float) -> float:
-        return radians(90.0) - atan(w * lag) - w * delay - margin
-
-    w = brentq(excess, 0.0, 2.0 / max(lag, delay) * (1.0 + 1.0 / margin), xtol=1e-12)
-    return float(w * hypot(1.0, w * lag))
 
 
 def choose_gains(runner: Callable[..., float]) -> tuple[float, float]:

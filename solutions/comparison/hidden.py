@@ -5,18 +5,14 @@ from __future__ import annotations
 from collections.abc import Iterator
 from dataclasses import replace
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 
-import labkit as lk
 from labkit.course import Call, Choice
 from labkit.course.authoring.problem import call
 from labkit.recordings import LINE, Trials, read_trials
 
 Random = np.random.Generator
-MODEL = lk.Model("left")
-RIGHT = lk.Model("right")
 
 ON_THE_LINE = read_trials(LINE)
 UNSEEN = read_trials(Path(__file__).with_name("trials.json"))
@@ -50,54 +46,6 @@ SLOW = 4.0
 """How much slower the arm is that a student may try, too slow for any gains to suit both arms."""
 
 
-def drawn_log(
-    random: Random, rows: int, error: Any, *, moving: bool, model: lk.Model = MODEL
-) -> lk.Log:
-    """A short log in which the tip is off its target by a given error, (3,) in [m].
-
-    If the arm moves, it is also tilted, which does not count as an error of position.
-    """
-    q0 = model.robot.ready
-    q = q0 + (random.uniform(-0.2, 0.2, (rows, 7)) if moving else np.zeros((rows, 7)))
-    T_wd = np.array([model.pose(x) for x in q])
-    T_wd[:, :3, 3] += error
-    if moving:
-        T_wd[:, :3, :3] @= lk.se3.rotation([0.1, -0.2, 0.05])
-    t, zero = np.linspace(0.0, 0.005 * rows, rows), np.zeros((rows, 7))
-    return lk.Log(
-        t=t,
-        q=q,
-        dq=zero,
-        tau=zero,
-        command=zero,
-        target=lk.PoseSample(T_wd, np.zeros((rows, 6)), np.zeros((rows, 6))),
-        measured=lk.State(t, q, zero),  # type: ignore[arg-type]
-        saturated=np.zeros(rows, dtype=bool),
-        command_type=lk.JointVelocity,
-        controller="drawn",
-        plant=lk.IDEAL,
-        robot=model.robot,
-    )
-
-
-def still_logs(random: Random) -> Iterator[Call]:
-    """An arm at rest near its target."""
-    yield call(drawn_log(random, 4, random.uniform(-0.02, 0.02, 3), moving=False), MODEL)
-
-
-def moving_logs(random: Random) -> Iterator[Call]:
-    """A moving arm with a constant error."""
-    for _ in range(2):
-        yield call(drawn_log(random, 6, random.uniform(-0.02, 0.02, 3), moving=True), MODEL)
-
-
-def uneven_logs(random: Random) -> Iterator[Call]:
-    """Either arm in motion, with errors that change from row to row."""
-    for model in (MODEL, RIGHT):
-        error = random.uniform(-0.02, 0.02, (7, 3))
-        yield call(drawn_log(random, 7, error, moving=True, model=model), model)
-
-
 def loops(random: Random) -> Iterator[Call]:
     """Other gains, lags and delays, and a delay alone."""
     for _ in range(3):
@@ -116,19 +64,6 @@ def lagging(random: Random) -> Iterator[Call]:
 def pure_integrators(random: Random) -> Iterator[Call]:
     """No lag and no delay."""
     yield call(random.uniform(1.0, 20.0), 0.0, 0.0)
-
-
-def margins(random: Random) -> Iterator[Call]:
-    """Other lags, delays and margins."""
-    for _ in range(5):
-        yield call(
-            random.uniform(0.01, 0.08), random.uniform(0.005, 0.05), random.uniform(30.0, 75.0)
-        )
-
-
-def no_delay(random: Random) -> Iterator[Call]:
-    """Only a lag."""
-    yield call(random.uniform(0.01, 0.08), 0.0, random.uniform(30.0, 75.0))
 
 
 def on_the_line() -> Iterator[Choice]:

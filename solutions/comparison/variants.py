@@ -11,15 +11,6 @@ import control
 import numpy as np
 from scipy import stats
 
-import labkit as lk
-
-
-def rms_vectorised(log: lk.Log, model: lk.Model) -> Any:
-    """With arrays and norms."""
-    tips = np.stack([model.pose(q) for q in log.q])[:, :3, 3]
-    gaps = np.linalg.norm(log.target.pose[:, :3, 3] - tips, axis=1)  # type: ignore[union-attr]
-    return np.sqrt((gaps**2).mean())
-
 
 def loop_from_s(kp: float, lag: float, delay: float) -> Any:
     """Written with the symbol s, and a Padé approximation of another order."""
@@ -27,25 +18,6 @@ def loop_from_s(kp: float, lag: float, delay: float) -> Any:
     loop = kp / (s * (lag * s + 1))
     num, den = control.pade(delay, 6) if delay else ([1.0], [1.0])
     return loop * control.tf(num, den)
-
-
-def margin_by_search(lag: float, delay: float, margin_deg: float) -> float:
-    """Bisects the gain itself, with the phase margin worked out from the frequency response."""
-
-    def crossover(kp: float) -> float:
-        low, high = 0.0, kp
-        for _ in range(200):
-            w = (low + high) / 2
-            low, high = (w, high) if kp > w * sqrt(1 + (lag * w) ** 2) else (low, w)
-        return low
-
-    low, high = 1e-6, 1e4
-    for _ in range(200):
-        kp = sqrt(low * high)
-        w = crossover(kp)
-        phase = 180 - 90 - np.degrees(np.arctan(lag * w) + delay * w)
-        low, high = (kp, high) if phase > margin_deg else (low, kp)
-    return low
 
 
 def by_doubling(runner: Callable[..., float]) -> list[float]:

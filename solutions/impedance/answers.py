@@ -10,12 +10,6 @@ import labkit as lk
 from labkit.shapes import Array
 
 
-def msd(state: Any, target: Any, force: float, *, m: float, b: float, k: float) -> float:
-    """Newton's law of a mass between its target and a hand that pushes."""
-    (x, dx), (x_d, dx_d, ddx_d) = state, target
-    return float(ddx_d + (force + b * (dx_d - dx) + k * (x_d - x)) / m)
-
-
 def operational_inertia(M: Any, J: Any) -> Array:
     """The inertia felt at the tip (Khatib 1987): its inverse is how easily a wrench moves it."""
     return np.linalg.inv(J @ np.linalg.solve(M, J.T))
@@ -53,10 +47,3 @@ def shaped_impedance(
     a = a - model.tip_jacobian_rate(q, dq) @ dq
     needed = model.operational_inertia(q) @ a - wrench  # the hand does its share of the work
     return lk.JointTorque(J.T @ needed + model.coriolis(q, dq) @ dq + model.gravity(q))
-
-
-def apparent_stiffness(force: Any, displacement: Any) -> Array:
-    """The matrix K of force = K displacement + offset, by least squares."""
-    F, x = np.asarray(force), np.asarray(displacement)
-    K_transposed = np.linalg.lstsq(x - x.mean(axis=0), F - F.mean(axis=0), rcond=None)[0]
-    return np.asarray(K_transposed.T)

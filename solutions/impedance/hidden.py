@@ -15,33 +15,6 @@ from labkit.course.question import Case
 Random = np.random.Generator
 
 
-def _mass(random: Random, *, push: bool, off: bool, moving: bool) -> Call:
-    x, dx, x_d, dx_d, ddx_d = random.uniform(-1.0, 1.0, 5)
-    m, b, k = random.uniform((0.3, 1.0, 20.0), (5.0, 20.0, 400.0))
-    state = (x if off else x_d, dx if moving else 0.0)
-    target = (x_d, dx_d if moving else 0.0, ddx_d if moving else 0.0)
-    return call(
-        state, target, float(random.uniform(2.0, 20.0)) if push else 0.0, m=m, b=b, k=float(k)
-    )
-
-
-def pushed(random: Random) -> Iterator[Call]:
-    """A mass that rests at its target and is pushed."""
-    yield _mass(random, push=True, off=False, moving=False)
-
-
-def let_go(random: Random) -> Iterator[Call]:
-    """A mass at rest that is off its target."""
-    for _ in range(2):
-        yield _mass(random, push=False, off=True, moving=False)
-
-
-def everything_of_one_mass(random: Random) -> Iterator[Call]:
-    """A mass that is pushed, off its target and moving."""
-    for _ in range(4):
-        yield _mass(random, push=True, off=True, moving=True)
-
-
 def _model(random: Random) -> lk.Model:
     return lk.Model(random.choice(["left", "right"]), lk.Plant(armature=0.05))
 
@@ -190,38 +163,3 @@ def everything_shaped(random: Random) -> Iterator[Call]:
     """Arms with any inertia, pushed, off their target and moving."""
     for _ in range(4):
         yield _shaped(random, times=0.0, wrench=10.0, moving=True)
-
-
-def _pushes(random: Random, K: Any, offset: Any, noise: float, rows: int) -> Call:
-    x = random.uniform(-0.04, 0.04, (rows, 3))
-    return call(x @ K.T + offset + noise * random.standard_normal((rows, 3)), x)
-
-
-def _stiffness(random: Random, coupled: float) -> Any:
-    K = np.diag(random.uniform(100.0, 600.0, 3))
-    return K + coupled * random.uniform(-60.0, 60.0, (3, 3))
-
-
-def straight_springs(random: Random) -> Iterator[Call]:
-    """Stiffnesses without coupling between the axes."""
-    yield _pushes(random, _stiffness(random, 0.0), np.zeros(3), 0.0, 12)
-
-
-def coupled_springs(random: Random) -> Iterator[Call]:
-    """Stiffnesses with coupling, not quite symmetric."""
-    for _ in range(2):
-        yield _pushes(random, _stiffness(random, 1.0), np.zeros(3), 0.0, 12)
-
-
-def springs_with_offset(random: Random) -> Iterator[Call]:
-    """Springs with a force at zero displacement."""
-    for _ in range(2):
-        offset = random.uniform(-5.0, 5.0, 3)
-        yield _pushes(random, _stiffness(random, 0.0), offset, 0.0, 12)
-
-
-def measured_springs(random: Random) -> Iterator[Call]:
-    """Coupled springs with an offset, and noise in the force."""
-    for rows in (8, 20, 60):
-        offset = random.uniform(-5.0, 5.0, 3)
-        yield _pushes(random, _stiffness(random, 1.0), offset, 0.5, rows)

@@ -1,6 +1,6 @@
 """What notebook 05 lets students predict."""
 
-from labkit.course import Choose, Identification, Measured, Number, Prediction
+from labkit.course import Identification, Measured, Number, Prediction
 
 PREDICTIONS = (
     Prediction(
@@ -10,21 +10,6 @@ PREDICTIONS = (
         "wall and the finger's tip together, how hard does the tip press?",
         Number("N", 0.0, 100.0),
         truth=8.3,
-    ),
-    Prediction(
-        "four_times_the_mass",
-        "A hand pushes with 10 N and keeps pushing. The tip behaves as if it weighed 5 kg, then "
-        "as if it weighed 20 kg. Its springs of 300 N/m stay the same, and the damping is "
-        "critical for either mass. After two seconds, how far from its target is the heavy tip?",
-        Choose(
-            {
-                "a": "a quarter as far as the light one",
-                "b": "half as far",
-                "c": "as far",
-                "d": "farther",
-            }
-        ),
-        truth="c",
     ),
     Identification(
         "my_payload",
@@ -48,24 +33,6 @@ PREDICTIONS = (
             "squares. Take J where the arm really swings, at the mean of `log.q`: the springs give "
             "way under the load, and with the levers of the ready pose s1 and e1 disagree. A second "
             "of averaging is not enough; take several swings.",
-        ),
-    ),
-    Identification(
-        "my_wall",
-        "A wall stands somewhere in front of your arm, at right angles to x. How far can the tip move "
-        "forwards from its ready pose before it touches?",
-        Measured("wall", "m", 0.0, 0.5, 0.004),
-        truth=0.0586,
-        form="one number, in m",
-        points=2.0,
-        hints=(
-            "Go forwards slowly and watch the force that the joints feel "
-            "(`lk.metrics.felt_wrench`).",
-            "The wall gives way, by F / k. Where the arm comes to rest is therefore not where it "
-            "touched.",
-            "Subtract the force that was felt before the contact, and read off the position where "
-            "the force begins to rise. Or subtract F / `contact_stiffness(wall)`, with 3,333 N/m "
-            "here, from the position where the arm rests.",
         ),
     ),
 )

@@ -9,24 +9,6 @@ import numpy as np
 import labkit as lk
 
 
-def msd_by_error(state: Any, target: Any, force: float, *, m: float, b: float, k: float) -> Any:
-    """With arrays, and the error as actual minus target."""
-    y = np.subtract(state, target[:2])
-    return target[2] + (force - np.dot([k, b], y)) / m
-
-
-class Mass:
-    """A callable object."""
-
-    def __call__(
-        self, state: Any, target: Any, force: float, *, m: float, b: float, k: float
-    ) -> Any:
-        """Newton's law, m times the acceleration first."""
-        x, dx = state
-        pull = k * (target[0] - x) + b * (target[1] - dx)
-        return (m * target[2] + pull + force) / m
-
-
 def inertia_by_inverse(M: Any, J: Any) -> Any:
     """With the inverse written out."""
     return np.linalg.inv(J @ np.linalg.inv(M) @ np.transpose(J))
@@ -138,15 +120,3 @@ def shaped_by_factor(
     F = damping * (target.twist - J @ state.dq) + stiffness * lk.se3.pose_error(target.pose, T)
     tip = L @ (target.dtwist - drift) + share @ F + (share - np.eye(6)) @ wrench
     return lk.JointTorque(J.T @ tip + c + g)
-
-
-def stiffness_with_ones(force: Any, displacement: Any) -> Any:
-    """With a column of ones for the offset."""
-    A = np.column_stack([displacement, np.ones(len(displacement))])
-    return np.linalg.lstsq(A, force, rcond=None)[0][:3].T
-
-
-def stiffness_by_covariances(force: Any, displacement: Any) -> Any:
-    """By the covariances of force and displacement, into lists."""
-    both = np.cov(np.column_stack([force, displacement]).T)
-    return (both[:3, 3:] @ np.linalg.inv(both[3:, 3:])).tolist()

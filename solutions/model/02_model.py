@@ -16,14 +16,14 @@
 # | **You need** | numpy; vectors, the cross product, derivatives in several variables; notebook 00 or its conventions: 1-D arrays, twists as (v, w), `T_ab` |
 # | **Given** | the simulated arm; where its joints and bodies are at any angles (`model.links`) |
 # | **You write** | the Jacobian, the mass matrix, gravity, the Coriolis matrix, the power balance |
-# | **Time** | core about 2.5 hours, all about 4 hours; 24 points |
+# | **Time** | core about 2 hours, all about 3.5 hours; 21 points |
 #
 # Questions marked *core* are for everybody. Those marked *extension* take the rest of the time: they earn points
 # too, but no later question depends on them.
 #
 # Every cell runs from the start, solved or not. If your part is missing, a stand-in replaces it and says so.
-# After each stub a check tells you in words what it found. The functions, your predictions and the text at
-# the end are marked; play with everything else as you like.
+# After each stub a check tells you in words what it found. The functions and your prediction are marked; play with
+# everything else as you like.
 
 # %% setup=true
 import labkit as lk
@@ -207,15 +207,6 @@ lk.plotting.show(
     "Inertia felt by three joints as the elbow bends from 0 to 2.4 rad: that of s1 is "
     f"{felt[0, 1]:.2f} kg m² at first and {felt[-1, 1]:.2f} kg m² at the end."
 )
-
-# %% predict="heaviest_direction"
-
-# %%
-Jv = model.tip_jacobian(q0)[:3]
-felt_at_tip = 1.0 / np.diag(Jv @ np.linalg.inv(model.mass_matrix(q0)) @ Jv.T)
-if heaviest_direction is not None:
-    print("a tap at the tip meets", ", ".join(f"{x:.1f} kg along {a}" for a, x in zip("xyz", felt_at_tip)))
-predict("heaviest_direction", truth="".join("xyz"[k] for k in np.argsort(-felt_at_tip)))
 
 # %% [markdown]
 # ## Gravity: what it takes to stay
@@ -479,16 +470,6 @@ lk.plotting.show(
     + "; ".join(f"{name}, up to {np.abs(x).max():.1f} W" for name, x in left.items())
     + ". With friction the balance follows what friction takes."
 )
-
-# %% [markdown] why="why_base_joint"
-# What torque did you see at s0, and why? Use what $g_k = \partial V / \partial q_k$ says about the axis of
-# s0, and say how the answer would change if Baxter's torso leaned forwards by 30 degrees.
-#
-# ### BEGIN SOLUTION
-# s0 needs no torque at all. Its axis is vertical, so turning it changes the height of no body: the
-# potential energy does not depend on q_0 and its slope is zero, however heavy the arm. Were the torso to
-# lean, the axis would lean too, turning s0 would lift or lower the arm, and s0 would carry weight.
-# ### END SOLUTION
 
 # %% [markdown]
 # ## Hand in

@@ -34,11 +34,6 @@ def turns_first(axes: Any, origins: Any, tip: Any) -> Array:
     return np.vstack([J[3:], J[:3]])
 
 
-def axis_for_velocity(axes: Any, origins: Any, tip: Any) -> Array:
-    """The columns of joints that slide instead of turning."""
-    return np.vstack([np.transpose(axes), np.zeros((3, 7))])
-
-
 def inertia_not_turned(masses: Any, inertias: Any, rotations: Any, com_jacobians: Any) -> Array:
     """The links' inertia left in their own axes."""
     return mass_matrix(masses, inertias, [np.eye(3)] * 7, com_jacobians)
@@ -67,16 +62,6 @@ def falls_faster(masses: Any, com_jacobians: Any) -> Array:
 def all_at_the_hand(masses: Any, com_jacobians: Any) -> Array:
     """The whole weight at the last link."""
     return np.asarray(9.81 * np.sum(masses) * com_jacobians[-1][2])
-
-
-def only_the_hand(masses: Any, com_jacobians: Any) -> Array:
-    """Only the last link has weight: the report's formula sees nothing but the tip."""
-    return np.asarray(9.81 * masses[-1] * com_jacobians[-1][2])
-
-
-def a_tenth(masses: Any, com_jacobians: Any) -> Array:
-    """The 0.981 of the report."""
-    return 0.1 * gravity(masses, com_jacobians)
 
 
 def _slopes(mass_matrix: Callable[[Any], Array], q: Any) -> Array:
@@ -122,26 +107,11 @@ def motors_minus_energy(log: lk.Log, model: lk.Model) -> Array:
     return -power_balance(log, model)
 
 
-def absolute(log: lk.Log, model: lk.Model) -> Array:
-    """The difference without its sign."""
-    return np.abs(power_balance(log, model))
-
-
-def friction_alone(log: lk.Log, model: lk.Model) -> Array:
-    """The power of friction by its formula."""
-    return np.asarray(-np.sum(np.asarray(log.plant.viscous) * log.dq**2, axis=1))
-
-
 def steps_not_seconds(log: lk.Log, model: lk.Model) -> Array:
     """The growth per row, not per second."""
     power = np.sum(log.tau * log.dq, axis=1)
     dt = float(log.t[1] - log.t[0])
     return np.asarray((power_balance(log, model) + power) * dt - power)
-
-
-def without_the_last_joint(log: lk.Log, model: lk.Model) -> Array:
-    """The motors' power without the last one's."""
-    return np.asarray(power_balance(log, model) + log.tau[:, 6] * log.dq[:, 6])
 
 
 def arm_of_the_tip(axes: Any, origins: Any, tip: Any) -> Array:
@@ -167,39 +137,10 @@ def all_signs_plus(mass_matrix: Callable[[Any], Array], q: Any, dq: Any) -> Arra
     )
 
 
-def origin_before(axes: Any, origins: Any, tip: Any) -> Array:
-    """The origin of the joint before."""
-    return _columns(axes, tip - np.roll(np.asarray(origins), 1, axis=0))
-
-
-def distance_for_product(axes: Any, origins: Any, tip: Any) -> Array:
-    """The axis times the distance, where a cross product belongs."""
-    arms = tip - np.asarray(origins)
-    along = np.linalg.norm(arms, axis=1)[:, None] * np.asarray(axes)
-    return np.vstack([along.T, np.transpose(axes)])
-
-
-def product_by_element(axes: Any, origins: Any, tip: Any) -> Array:
-    """The product element by element, where a cross product belongs."""
-    along = np.asarray(axes) * (tip - np.asarray(origins))
-    return np.vstack([along.T, np.transpose(axes)])
-
-
 def unit_arms(axes: Any, origins: Any, tip: Any) -> Array:
     """The moment arms scaled to length 1."""
     arms = tip - np.asarray(origins)
     return _columns(axes, arms / np.linalg.norm(arms, axis=1)[:, None])
-
-
-def vertical_axes(axes: Any, origins: Any, tip: Any) -> Array:
-    """Every joint turns about the vertical in the linear rows."""
-    J = _columns(np.tile([0.0, 0.0, 1.0], (7, 1)), tip - np.asarray(origins))
-    return np.vstack([J[:3], np.transpose(axes)])
-
-
-def joints_reversed(axes: Any, origins: Any, tip: Any) -> Array:
-    """The columns from hand to base."""
-    return _columns(axes, tip - np.asarray(origins))[:, ::-1]
 
 
 @dataclass(frozen=True)
@@ -326,19 +267,7 @@ class Balance:
         return np.asarray(self.growth(energy, log.t) - self.power * power)
 
 
-def mean_power(log: lk.Log, model: lk.Model) -> Array:
-    """The joints' powers averaged, not added."""
-    return Balance(power=1.0 / 7.0)(log, model)
-
-
 def sizes_of_power(log: lk.Log, model: lk.Model) -> Array:
     """The powers of the joints without their signs."""
     lost = np.abs(log.tau * log.dq) - log.tau * log.dq
     return np.asarray(power_balance(log, model) - lost.sum(axis=1))
-
-
-def as_energies(log: lk.Log, model: lk.Model) -> Array:
-    """Energies for powers: the growth since the start without the work since the start."""
-    dt = float(log.t[1] - log.t[0])
-    work = np.cumsum(np.sum(log.tau * log.dq, axis=1)) * dt
-    return Balance(power=0.0, growth=lambda energy, t: energy - energy[0])(log, model) - work

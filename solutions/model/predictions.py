@@ -1,16 +1,8 @@
 """What notebook 02 lets students predict."""
 
-from labkit.course import Choose, Prediction, Rank
+from labkit.course import Choose, Prediction
 
 PREDICTIONS = (
-    Prediction(
-        "heaviest_direction",
-        "You tap the resting arm's tip along x (forwards), y (sideways) and z (upwards). In "
-        "which direction does the tip feel heaviest? The arm rests in its ready pose. Its motors "
-        "compensate its weight and do nothing else.",
-        Rank({"x": "forwards", "y": "sideways", "z": "upwards"}, "the heaviest"),
-        truth="zyx",
-    ),
     Prediction(
         "base_joint",
         "The first joint, s0, carries the whole arm. Compared with the elbow e1, which carries a third "

@@ -77,13 +77,6 @@ JACOBIAN = Problem(
             "Twist order is a convention: settle it once.",
         ),
         Wrong(
-            "columns of sliding joints",
-            "These are the columns of joints that slide along their axes. Baxter's joints turn: "
-            "the linear part is z × r, the angular part is z.",
-            mistakes.axis_for_velocity,
-            "A revolute joint's linear part is z × r.",
-        ),
-        Wrong(
             "every axis through the origin",
             "The moment arm r goes from the joint's axis to the tip, so it is tip minus the "
             "joint's origin, not the tip alone.",
@@ -91,45 +84,11 @@ JACOBIAN = Problem(
             "A moment arm begins at the axis.",
         ),
         Wrong(
-            "the origin of the joint before",
-            "Joint k turns about its own axis, through origins[k]. You used the origin of the "
-            "joint before it.",
-            mistakes.origin_before,
-            "Say which index belongs to which joint.",
-        ),
-        Wrong(
-            "a distance in place of the cross product",
-            "A turning joint moves the tip at right angles to its axis: z × (tip - p). Your "
-            "columns move it along the axis.",
-            mistakes.distance_for_product,
-            "A turn about an axis moves no point along this axis.",
-        ),
-        Wrong(
-            "the product element by element",
-            "* multiplies element by element. The tip moves with the cross product z × (tip - "
-            "p): use np.cross.",
-            mistakes.product_by_element,
-            "A turn about an axis moves no point along this axis.",
-        ),
-        Wrong(
             "moment arms scaled to length 1",
             "The farther the tip is from the axis, the faster it moves. Do not divide the moment "
             "arm by its length.",
             mistakes.unit_arms,
             "Speed is angular speed times distance.",
-        ),
-        Wrong(
-            "every axis vertical",
-            "Your linear rows use a vertical axis for every joint, but only the first axis is "
-            "vertical in every pose. Each joint has its own axis, axes[k].",
-            mistakes.vertical_axes,
-            "Say which index belongs to which joint.",
-        ),
-        Wrong(
-            "the joints in reverse order",
-            "Column k belongs to joint k, counted from the base. Your columns begin at the hand.",
-            mistakes.joints_reversed,
-            "Say which index belongs to which joint.",
         ),
     ),
     variants=(variants.jacobian_by_rows, variants.jacobian_by_hat),
@@ -215,25 +174,6 @@ MASS_MATRIX = Problem(
             "Vectors turn with one R, matrices with two.",
         ),
         Wrong(
-            "Rᵀ I without the second R",
-            "To change the axes of a matrix, multiply it on both sides: R I Rᵀ. You multiplied "
-            "only on the left, and by Rᵀ.",
-            mistakes.Kinetic(inertia=lambda I_l, R: R.T @ I_l),
-            "Vectors turn with one R, matrices with two.",
-        ),
-        Wrong(
-            "the masses left out",
-            "The linear part is m Jᵥᵀ Jᵥ: multiply the part of each link by its mass.",
-            mistakes.Kinetic(power=0.0),
-            "Kinetic energy: m v²/2.",
-        ),
-        Wrong(
-            "the masses squared",
-            "The linear part is m Jᵥᵀ Jᵥ: the mass occurs only once.",
-            mistakes.Kinetic(power=2.0),
-            "Kinetic energy: m v²/2.",
-        ),
-        Wrong(
             "the inertia multiplied by the mass",
             "The inertia of a link, in kg m², already includes its mass.",
             mistakes.Kinetic(mass=True),
@@ -244,38 +184,6 @@ MASS_MATRIX = Problem(
             "The links' centres of mass move as well: the part m Jᵥᵀ Jᵥ is missing.",
             mistakes.Kinetic(linear=0.0),
             "Kinetic energy has two parts.",
-        ),
-        Wrong(
-            "half of the linear part",
-            "The factor 1/2 of m v²/2 is already in ½ dqᵀ M dq; leave it out of the matrix.",
-            mistakes.Kinetic(linear=0.5),
-            "T = ½ dqᵀ M dq.",
-        ),
-        Wrong(
-            "half of the angular part",
-            "The factor 1/2 of wᵀ I w/2 is already in ½ dqᵀ M dq; leave it out of the matrix.",
-            mistakes.Kinetic(angular=0.5),
-            "T = ½ dqᵀ M dq.",
-        ),
-        Wrong(
-            "the two parts subtracted",
-            "Add the two parts of the kinetic energy; do not subtract them.",
-            mistakes.Kinetic(angular=-1.0),
-            "Kinetic energy has two parts.",
-        ),
-        Wrong(
-            "all six rows multiplied by the mass",
-            "The mass belongs only to the linear rows, J[:3]. The angular rows are multiplied by "
-            "the inertia.",
-            mistakes.Kinetic(whole=True),
-            "Kinetic energy has two parts.",
-        ),
-        Wrong(
-            "the inertia as a number",
-            "A link's inertia differs from axis to axis: keep the matrix; do not replace it by "
-            "its trace or by a mean.",
-            mistakes.Kinetic(inertia=lambda I_l, R: np.trace(I_l) / 3.0 * np.eye(3)),
-            "An inertia is a matrix.",
         ),
         Wrong(
             "the last link only",
@@ -337,19 +245,6 @@ GRAVITY = Problem(
             "The weight of each link acts at its own centre of mass.",
         ),
         Wrong(
-            "only the hand has weight",
-            "In your formula gravity acts only on the hand, as in the report's formula. The hand "
-            "has less than a twentieth of the arm's mass: sum over all links.",
-            mistakes.only_the_hand,
-            "Sum over all links.",
-        ),
-        Wrong(
-            "a tenth of the torques",
-            "Your torques are ten times too small. The report has 0.981 in place of 9.81.",
-            mistakes.a_tenth,
-            "Print a number with its unit, and ask whether you believe it.",
-        ),
-        Wrong(
             "masses in place of weights",
             "These numbers are in kg m, not in N m. The weight of a mass is the mass times 9.81 "
             "m/s².",
@@ -364,49 +259,10 @@ GRAVITY = Problem(
             "The potential energy depends only on height.",
         ),
         Wrong(
-            "the row of y",
-            "Weight acts along z, so use the third row of each Jacobian, J[2]. You used the row "
-            "of y.",
-            mistakes.Weights(lambda J: J[1]),
-            "The potential energy depends only on height.",
-        ),
-        Wrong(
             "an angular row, the first",
             "Rows 3 to 5 are angular. Weight does work only along z: use row J[2].",
             mistakes.Weights(lambda J: J[3]),
             "The rows of a Jacobian are (v, w), linear part first.",
-        ),
-        Wrong(
-            "the angular row of z",
-            "Row 5 is the angular velocity about z. Weight does work only along z: use row J[2].",
-            mistakes.Weights(lambda J: J[5]),
-            "The rows of a Jacobian are (v, w), linear part first.",
-        ),
-        Wrong(
-            "all rows added",
-            "Weight acts only along z: use row J[2], not the sum of the rows.",
-            mistakes.Weights(lambda J: J.sum(axis=0)),
-            "The potential energy depends only on height.",
-        ),
-        Wrong(
-            "the length of the velocity",
-            "The power that a weight needs depends only on how fast the link rises, not on its "
-            "speed: use row J[2].",
-            mistakes.Weights(lambda J: np.linalg.norm(J[:3], axis=0)),
-            "The potential energy depends only on height.",
-        ),
-        Wrong(
-            "the whole mass on every link",
-            "Multiply each link's Jacobian by the mass of this link, not by the mass of the "
-            "whole arm.",
-            mistakes.Weights(mass=lambda m, masses: float(np.sum(masses))),
-            "Every link has its own weight.",
-        ),
-        Wrong(
-            "the mean mass for every link",
-            "Use each link's own mass, not their mean.",
-            mistakes.Weights(mass=lambda m, masses: float(np.mean(masses))),
-            "Every link has its own weight.",
         ),
         Wrong(
             "the masses left out",
@@ -415,41 +271,10 @@ GRAVITY = Problem(
             "Every link has its own weight.",
         ),
         Wrong(
-            "the masses squared",
-            "A weight is m g: the mass occurs only once.",
-            mistakes.Weights(mass=lambda m, masses: m**2),
-            "Every link has its own weight.",
-        ),
-        Wrong(
             "9.8 for g",
             "In this question g is 9.81 m/s²; you used 9.8.",
             mistakes.Weights(g=9.8),
             "Use the value of a constant that the question states.",
-        ),
-        Wrong(
-            "10 for g",
-            "In this question g is 9.81 m/s²; you used 10.",
-            mistakes.Weights(g=10.0),
-            "Use the value of a constant that the question states.",
-        ),
-        Wrong(
-            "9.80665 for g",
-            "In this question g is 9.81 m/s²; you used the standard gravity, 9.80665.",
-            mistakes.Weights(g=9.80665),
-            "Use the value of a constant that the question states.",
-        ),
-        Wrong(
-            "g squared",
-            "A weight is m g: g occurs only once.",
-            mistakes.Weights(g=9.81**2),
-            "A weight is m g.",
-        ),
-        Wrong(
-            "the absolute values added",
-            "Weights on opposite sides of an axis balance each other: keep the signs of their "
-            "torques.",
-            mistakes.Weights(size=True),
-            "A torque has a sign.",
         ),
         Wrong(
             "without the last link",
@@ -545,35 +370,10 @@ CORIOLIS = Problem(
             "Three slopes, one minus.",
         ),
         Wrong(
-            "two of three slopes: the first is missing",
-            "Christoffel's symbol has three slopes: of M_ij along k, of M_ik along j, minus that of M_jk along i. The first is missing.",
-            mistakes.Slopes((0.0, 1.0, -1.0)),
-            "Three slopes, one minus.",
-        ),
-        Wrong(
-            "two slopes with a minus",
-            "Only the slope of M_jk along q_i has a minus.",
-            mistakes.Slopes((1.0, -1.0, -1.0)),
-            "Three slopes, one minus.",
-        ),
-        Wrong(
             "multiplied by the speed of j",
             "Multiply the symbol of i, j, k by the speed of joint k, and sum over k.",
             mistakes.Slopes(along="j"),
             "Sum over the index that does not occur in the result.",
-        ),
-        Wrong(
-            "multiplied by the speed of i",
-            "Multiply the symbol of i, j, k by the speed of joint k, and sum over k.",
-            mistakes.Slopes(along="i"),
-            "Sum over the index that does not occur in the result.",
-        ),
-        Wrong(
-            "steps too large",
-            "Your steps are so large that M is not a straight line between q + h and q - h. Use "
-            "about 1e-5 rad.",
-            mistakes.Slopes(h=0.3),
-            "A difference approximates a slope only for small steps.",
         ),
     ),
     variants=(variants.coriolis_in_loops,),
@@ -643,27 +443,6 @@ POWER_BALANCE = Problem(
             "A watt is a joule per second.",
         ),
         Wrong(
-            "the absolute value",
-            "An absolute value hides whether energy was added or removed. Keep the sign: "
-            "friction is a loss, below zero, and a helping hand is a gain.",
-            mistakes.absolute,
-            "Say in words what a positive number means.",
-        ),
-        Wrong(
-            "the power of friction instead",
-            "This is the power of the plant's friction alone; the power of a helping hand is "
-            "missing. Subtract the motors' power from the growth of the energy.",
-            mistakes.friction_alone,
-            "A balance also finds the sources that you do not know of.",
-        ),
-        Wrong(
-            "the power of only some joints",
-            "The last wrist joint turns too, and its motor does work: sum torque times speed "
-            "over all seven joints.",
-            mistakes.without_the_last_joint,
-            "Count the motors.",
-        ),
-        Wrong(
             "the motors' power added",
             "The question asks for the growth of the energy without what the motors supply: "
             "subtract their power.",
@@ -689,28 +468,10 @@ POWER_BALANCE = Problem(
             "T - U is for equations of motion, T + U is conserved.",
         ),
         Wrong(
-            "the energy, not its growth",
-            "The energy itself is not a power. Take its slope over time, np.gradient(energy, log.t).",
-            mistakes.Balance(growth=lambda energy, t: energy),
-            "Units: joules are not watts.",
-        ),
-        Wrong(
             "torque times angle",
             "Power is torque times speed: use log.dq, not log.q.",
             mistakes.Balance(by=lambda log: log.q),
             "Units: joules are not watts.",
-        ),
-        Wrong(
-            "half of the kinetic energy",
-            "model.kinetic_energy already includes the factor 1/2.",
-            mistakes.Balance(kinetic=0.5),
-            "Energy has two parts.",
-        ),
-        Wrong(
-            "the mean of the joints' powers",
-            "Add the powers of the joints; do not average them.",
-            mistakes.mean_power,
-            "Power adds up.",
         ),
         Wrong(
             "the powers without their signs",
@@ -719,15 +480,14 @@ POWER_BALANCE = Problem(
             mistakes.sizes_of_power,
             "A power has a sign.",
         ),
-        Wrong(
-            "energies, not powers",
-            "This is the growth of the energy since the start minus the work since the start. "
-            "The question asks for the rate at each time.",
-            mistakes.as_energies,
-            "Units: joules are not watts.",
-        ),
     ),
     variants=(variants.balance_in_loops, variants.balance_from_theory),
 )
 
-PROBLEMS = (JACOBIAN, MASS_MATRIX, GRAVITY, CORIOLIS, POWER_BALANCE)
+PROBLEMS = (
+    JACOBIAN,
+    MASS_MATRIX,
+    GRAVITY,
+    CORIOLIS,
+    POWER_BALANCE,
+)

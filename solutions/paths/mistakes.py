@@ -14,28 +14,6 @@ import labkit as lk
 from .answers import Path, Scaling, circle
 
 
-def accelerates_on(t: float, duration: float) -> tuple[float, float, float]:
-    """The second half starts from the speed formula of the first."""
-    if t < 0.0:
-        return 0.0, 0.0, 0.0
-    if t >= duration:
-        return 1.0, 0.0, 0.0
-    a = 4.0 / duration**2
-    if t < duration / 2.0:
-        return a * t**2 / 2.0, a * t, a
-    left = duration - t
-    return 1.0 - a * left**2 / 2.0, a * t, -a
-
-
-def runs_past_the_ends(t: float, duration: float) -> tuple[float, float, float]:
-    """No hold before the start and after the end."""
-    a = 4.0 / duration**2
-    if t < duration / 2.0:
-        return a * t**2 / 2.0, a * t, a
-    left = duration - t
-    return 1.0 - a * left**2 / 2.0, a * left, -a
-
-
 def twice_too_slow(t: float, duration: float) -> tuple[float, float, float]:
     """Forgets that only half of the time is there to speed up: a = 2 / T^2."""
     if t < 0.0:
@@ -153,37 +131,6 @@ def time_for_s(path: Path, scaling: Scaling, t: float) -> lk.Sample:
     return lk.Sample(x, dx * ds, ddx * ds**2 + dx * dds)
 
 
-def sums_through_the_segment(durations: Sequence[float], t: float) -> tuple[int, float]:
-    """Subtracts the segment's own duration, too (the report's equation 15)."""
-    index, total = 0, durations[0]
-    while index < len(durations) - 1 and t >= total:
-        index += 1
-        total += durations[index]
-    return index, t - total
-
-
-def one_segment_early(durations: Sequence[float], t: float) -> tuple[int, float]:
-    """Counts the segments that are over, from -1: the arm starts at the last corner."""
-    index, begun = -1, 0.0
-    for k, duration in enumerate(durations):
-        if t > begun:
-            index = k
-            start = begun
-        begun += duration
-    if index < 0:
-        return -1, t
-    return index, t - start
-
-
-def runs_out_of_segments(durations: Sequence[float], t: float) -> tuple[int, float]:
-    """Looks for the segment that t falls in, and finds none at the end."""
-    index = 0
-    while t >= durations[index]:
-        t -= durations[index]
-        index += 1
-    return index, t
-
-
 def an_end_point(theta: float, duration: float) -> float:
     """The end of the motion, where the angle is wrong but does not jump."""
     return duration
@@ -212,14 +159,6 @@ def way_for_s(t: float, distance: float, v_max: float, a_max: float) -> tuple[fl
     return s * distance, ds * distance, dds * distance
 
 
-def way_until_the_end(
-    t: float, distance: float, v_max: float, a_max: float
-) -> tuple[float, float, float]:
-    """The distance in metres, but 1 after the end."""
-    way = way_for_s(t, distance, v_max, a_max)
-    return (1.0, 0.0, 0.0) if way == (distance, 0.0, 0.0) else way
-
-
 def clockwise(s: float, start: Any, centre: Any) -> lk.Sample:
     """Goes round in the opposite direction."""
     x, dx, ddx = circle(-s, start, centre)
@@ -238,16 +177,6 @@ def half_an_arctangent(s: float, start: Any, centre: Any) -> lk.Sample:
     return circle(s, [*(centre[:2] + (out if out[0] > 0.0 else -out)[:2]), start[2]], centre)
 
 
-def arccosine_of_the_start(s: float, start: Any, centre: Any) -> lk.Sample:
-    """The angle from its cosine, which is wrong for a start with smaller y than the centre."""
-    return circle(s, [start[0], centre[1] + abs(start[1] - centre[1]), start[2]], centre)
-
-
-def still_by_s(path: Path, scaling: Scaling, t: float) -> lk.Sample:
-    """The path at s(t), but with the derivatives with respect to s."""
-    return path(scaling(t)[0])
-
-
 def schedule_twice(path: Path, scaling: Scaling, t: float) -> lk.Sample:
     """Pairs derivatives of the same order: ddx dds."""
     s, ds, dds = scaling(t)
@@ -255,70 +184,41 @@ def schedule_twice(path: Path, scaling: Scaling, t: float) -> lk.Sample:
     return lk.Sample(x, dx * ds, ddx * dds)
 
 
-def starts_anew_after_the_end(durations: Sequence[float], t: float) -> tuple[int, float]:
-    """Subtracts every duration, so that after the end the last segment starts again."""
-    for index, duration in enumerate(durations):
-        if t < duration:
-            return index, t
-        t -= duration
-    return len(durations) - 1, t
-
-
 @dataclass(frozen=True)
 class Bang:
     """Bang-bang with weighted terms; 1 is right, 0 omits a term, -1 reverses it.
 
     Attributes:
-        a: Factor of the acceleration 4 / T^2.
-        power: Power of T in the acceleration.
-        half: Factor of the halves in s.
         ds: Factor of the speed while braking.
         dds: Factor of the acceleration while braking.
         before: Whether the motion rests before the start.
         after: Whether it rests after the end.
         end: The value at which it rests after the end.
-        left: The seconds that are left, given t and T.
         middle: When it begins to brake, given T.
         brake: (s, ds, dds) while braking, given t, T and a; None takes the right ones.
     """
 
-    a: float = 1.0
-    power: float = 2.0
-    half: float = 1.0
     ds: float = 1.0
     dds: float = 1.0
     before: bool = True
     after: bool = True
     end: float = 1.0
-    left: Callable[[float, float], float] = lambda t, T: T - t
     middle: Callable[[float], float] = lambda T: T / 2.0
     brake: Callable[[float, float, float], tuple[float, float, float]] | None = None
 
     def __call__(self, t: float, duration: float) -> tuple[float, float, float]:
         """The motion at t."""
-        T, a = duration, 4.0 * self.a / duration**self.power
+        T, a = duration, 4.0 / duration**2
         if t < 0.0 and self.before:
             return 0.0, 0.0, 0.0
         if t >= T and self.after:
             return self.end, 0.0, 0.0
         if t < self.middle(T):
-            return self.half * a * t**2 / 2.0, a * t, a
+            return a * t**2 / 2.0, a * t, a
         if self.brake:
             return self.brake(t, T, a)
-        left = self.left(t, T)
-        return 1.0 - self.half * a * left**2 / 2.0, self.ds * a * left, -self.dds * a
-
-
-def from_rest_in_the_middle(t: float, T: float, a: float) -> tuple[float, float, float]:
-    """Brakes as if it had no speed in the middle."""
-    since = t - T / 2.0
-    return 0.5 - a * since**2 / 2.0, -a * since, -a
-
-
-def speed_of_the_middle_kept(t: float, T: float, a: float) -> tuple[float, float, float]:
-    """The speed of the middle, and nothing taken off it."""
-    since = t - T / 2.0
-    return 0.5 + a * T / 2.0 * since - a * since**2 / 2.0, a * T / 2.0, -a
+        left = T - t
+        return 1.0 - a * left**2 / 2.0, self.ds * a * left, -self.dds * a
 
 
 def half_the_way_lost(t: float, T: float, a: float) -> tuple[float, float, float]:
@@ -334,31 +234,21 @@ class Ramps:
     Attributes:
         ramp: Factor of the ramp in the duration.
         offset: Factor of half the ramp, by which the cruise is late.
-        half: Factor of the half in the length of the ramps.
-        ds: Factor of the speed while braking.
         dds: Factor of the acceleration while braking.
-        top: Factor of the peak speed over a short distance.
         reach: Factor of the shortest distance on which v_max is reached.
-        cruise: The acceleration while cruising, as a share of a_max.
-        brakes: Whether the motion brakes at all.
     """
 
     ramp: float = 1.0
     offset: float = 1.0
-    half: float = 1.0
-    ds: float = 1.0
     dds: float = 1.0
-    top: float = 1.0
     reach: float = 1.0
-    cruise: float = 0.0
-    brakes: bool = True
 
     def __call__(
         self, t: float, distance: float, v_max: float, a_max: float
     ) -> tuple[float, float, float]:
         """The motion at t."""
         d, a = distance, a_max
-        v = v_max if d >= self.reach * v_max**2 / a else self.top * sqrt(d * a)
+        v = v_max if d >= self.reach * v_max**2 / a else sqrt(d * a)
         ramp = v / a
         T = d / v + self.ramp * ramp
         if t < 0.0:
@@ -366,60 +256,19 @@ class Ramps:
         if t >= T:
             return 1.0, 0.0, 0.0
         if t < ramp:
-            way, speed, acc = self.half * a * t**2 / 2.0, a * t, a
-        elif t < T - ramp or not self.brakes:
-            way, speed, acc = v * (t - self.offset * ramp / 2.0), v, self.cruise * a
+            way, speed, acc = a * t**2 / 2.0, a * t, a
+        elif t < T - ramp:
+            way, speed, acc = v * (t - self.offset * ramp / 2.0), v, 0.0
         else:
             left = T - t
-            way = d - self.half * a * left**2 / 2.0
-            speed, acc = self.ds * a * left, -self.dds * a
+            way, speed, acc = d - a * left**2 / 2.0, a * left, -self.dds * a
         return way / d, speed / d, acc / d
 
 
-@dataclass(frozen=True)
-class Spoke:
-    """The circle by angles, with weighted terms; 1 is right, 0 omits a term, -1 reverses it.
-
-    Attributes:
-        start: Factor of the start's angle.
-        rates: Factor of the start's angle in the derivatives.
-        turn: Factor of 2 pi.
-        radius: Factor of the radius.
-        power: Power of the radius.
-        centre: Factor of the centre.
-        about_start: Whether the circle is around the start.
-        mirrored: Whether sine and cosine are exchanged.
-        swapped: Whether the start's angle is that of (y, x).
-    """
-
-    start: float = 1.0
-    rates: float = 1.0
-    turn: float = 1.0
-    radius: float = 1.0
-    power: float = 1.0
-    centre: float = 1.0
-    about_start: bool = False
-    mirrored: bool = False
-    swapped: bool = False
-
-    def __call__(self, s: float, start: Any, centre: Any) -> lk.Sample:
-        """The point and its derivatives."""
-        x, y = start[0] - centre[0], start[1] - centre[1]
-        r, yaw, w = (
-            self.radius * float(np.hypot(x, y)) ** self.power,
-            atan2(x, y) if self.swapped else atan2(y, x),
-            2.0 * pi * self.turn,
-        )
-
-        def spoke(angle: float) -> np.ndarray:
-            out = [cos(angle), sin(angle)]
-            return np.asarray(r * np.array([*(out[::-1] if self.mirrored else out), 0.0]))
-
-        at, rates = w * s + self.start * yaw, w * s + self.rates * yaw
-        c = start if self.about_start else self.centre * np.asarray(centre)
-        on, out = spoke(rates), spoke(rates)
-        quarter = np.array([out[1], -out[0], 0.0] if self.mirrored else [-out[1], out[0], 0.0])
-        return lk.Sample(np.array([c[0], c[1], start[2]]) + spoke(at), w * quarter, -w * w * on)
+def arctangent_of_x_over_y(s: float, start: Any, centre: Any) -> lk.Sample:
+    """The angle of the start with x and y exchanged."""
+    out = np.subtract(start, centre)[1::-1]
+    return circle(s, [*(np.asarray(centre)[:2] + out), start[2]], centre)
 
 
 @dataclass(frozen=True)
@@ -430,27 +279,17 @@ class Chained:
         bend: Factor of ddx ds^2.
         along: Factor of dx dds.
         velocity: Power of ds in the velocity.
-        late: Factor of dx ds in the acceleration, which does not belong there.
-        cross: Factor of ddx dds, which does not belong there.
-        plain: Whether the acceleration is that of the path.
-        dds_first: Whether ds and dds are exchanged.
     """
 
     bend: float = 1.0
     along: float = 1.0
     velocity: float = 1.0
-    late: float = 0.0
-    cross: float = 0.0
-    plain: bool = False
-    dds_first: bool = False
 
     def __call__(self, path: Path, scaling: Scaling, t: float) -> lk.Sample:
         """The sample at t."""
         s, ds, dds = scaling(t)
-        ds, dds = (dds, ds) if self.dds_first else (ds, dds)
         x, dx, ddx = path(s)
-        a = self.bend * ddx * ds**2 + self.along * dx * dds + self.late * dx * ds
-        a = ddx if self.plain else a + self.cross * ddx * dds
+        a = self.bend * ddx * ds**2 + self.along * dx * dds
         return lk.Sample(x, dx * ds**self.velocity, a)
 
 
@@ -461,32 +300,20 @@ class Segments:
     Attributes:
         joint: Whether the earlier segment is active where two meet.
         local: The local time, given t and the start and the duration of the segment.
-        after: (index, local_time) after the end, given n, t and the last duration; None is right.
-        before: (index, local_time) before the start, given the same.
         first: The index of the first segment.
-        swapped: Whether the two answers are exchanged.
     """
 
     joint: bool = False
     local: Callable[[float, float, float], float] = lambda t, begun, d: t - begun
-    after: Callable[[int, float, float], tuple[int, float]] | None = None
-    before: Callable[[int, float, float], tuple[int, float]] | None = None
     first: int = 0
-    swapped: bool = False
 
     def __call__(self, durations: Sequence[float], t: float) -> Any:
         """The segment, and the time in it."""
-        n, begun, found = len(durations), 0.0, (0, t)
-        if t < 0.0 and self.before:
-            return self.before(n, t, durations[0])
+        begun, last = 0.0, len(durations) - 1
         for k, d in enumerate(durations):
-            if t < begun + d or (self.joint and t <= begun + d) or k == n - 1:
-                found = k + self.first, self.local(t, begun, d)
-                break
+            if t < begun + d or (self.joint and t <= begun + d) or k == last:
+                return k + self.first, self.local(t, begun, d)
             begun += d
-        if t >= sum(durations) and self.after:
-            found = self.after(n, t, durations[-1])
-        return found[::-1] if self.swapped else found
 
 
 def the_start(theta: float, duration: float) -> float:

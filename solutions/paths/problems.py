@@ -62,22 +62,6 @@ BANG_BANG = Problem(
     ),
     wrong=(
         Wrong(
-            "the second half still uses a·t for the speed",
-            "Your speed grows until the end and then drops to zero at once. While braking, the "
-            "speed is a times the time until the end.",
-            mistakes.accelerates_on,
-            "The speed is the integral of the acceleration from the start; a·t is right only "
-            "while the acceleration is a.",
-        ),
-        Wrong(
-            "no rest before the start and after the end",
-            "Your formulas continue outside the motion: s is above 0 before the start, and "
-            "decreases from 1 after the end. Return the start before t = 0 and the goal from t = "
-            "T on, both at rest.",
-            mistakes.runs_past_the_ends,
-            "A reference can be evaluated at any time; outside the motion it is at rest.",
-        ),
-        Wrong(
             "an acceleration of 2/T²",
             "With this acceleration, s reaches only 1/4 by the middle, where it should be 1/2. "
             "Speeding up lasts T/2, so choose a such that a (T/2)²/2 = 1/2.",
@@ -127,20 +111,6 @@ BANG_BANG = Problem(
             "Slowing down is not going back.",
         ),
         Wrong(
-            "t in place of the time until the end",
-            "The second half mirrors the first, seen from the end. It needs T - t, the time "
-            "until the end, not t.",
-            mistakes.Bang(left=lambda t, T: t),
-            "Use the symmetry of the motion: put the origin of time at the end.",
-        ),
-        Wrong(
-            "the time since the middle in place of the time until the end",
-            "t - T/2 is the time since the middle. In 1 - a r²/2, the r is the time until the "
-            "end, T - t.",
-            mistakes.Bang(left=lambda t, T: t - T / 2.0),
-            "Say for each time from which instant it is measured.",
-        ),
-        Wrong(
             "a rounded middle: // in place of /",
             "duration // 2 drops the fraction, so the middle of a motion of 1 s is at 0 s, and "
             "it brakes from the start. Write duration / 2.",
@@ -148,51 +118,11 @@ BANG_BANG = Problem(
             "// rounds down; / divides.",
         ),
         Wrong(
-            "the braking half begins at rest",
-            "In the middle, the motion has the speed a T/2. Your second half begins at rest, so "
-            "s decreases.",
-            mistakes.Bang(brake=mistakes.from_rest_in_the_middle),
-            "Each phase starts with the position and speed at the end of the phase before.",
-        ),
-        Wrong(
-            "the speed of the middle kept",
-            "While braking, the speed decreases by a in each second since the middle. Your speed "
-            "stays at its peak.",
-            mistakes.Bang(brake=mistakes.speed_of_the_middle_kept),
-            "The speed is the integral of the acceleration.",
-        ),
-        Wrong(
             "the distance of the first half forgotten",
             "In the second half, s starts at 1/2, where the first half ended. Your s starts "
             "again at 0.",
             mistakes.Bang(brake=mistakes.half_the_way_lost),
             "Each phase starts with the position and speed at the end of the phase before.",
-        ),
-        Wrong(
-            "the factor 1/2 of a t²/2 forgotten",
-            "The integral of a t is a t²/2. Without the factor 1/2, s and ds do not fit together.",
-            mistakes.Bang(half=2.0),
-            "Check that ds is the slope of s.",
-        ),
-        Wrong(
-            "an acceleration of 4/T",
-            "The acceleration has T² in the denominator: (4/T²)(T/2)²/2 = 1/2. With 4/T, s is "
-            "1/2 in the middle only for T = 1.",
-            mistakes.Bang(power=1.0),
-            "Try a second duration: a formula that is right only for 1 s has lost a unit.",
-        ),
-        Wrong(
-            "an acceleration of 8/T²",
-            "With 8/T² the motion covers the whole distance in half of the time. Only half of "
-            "the distance is covered in T/2: a (T/2)²/2 = 1/2.",
-            mistakes.Bang(a=2.0),
-            "Check the middle of every symmetric motion: s(T/2) = 1/2.",
-        ),
-        Wrong(
-            "an acceleration of 1/T²",
-            "a (T/2)²/2 = 1/2 gives a = 4/T². With 1/T² the first half reaches only 1/8.",
-            mistakes.Bang(a=0.25),
-            "Check the middle of every symmetric motion: s(T/2) = 1/2.",
         ),
     ),
     variants=(variants.bang_bang_list, variants.bang_bang_array),
@@ -263,13 +193,6 @@ TRAPEZOID = Problem(
             "s has no unit.",
         ),
         Wrong(
-            "metres in place of s until the end",
-            "Your s is 1 after the end, but the distance covered, in metres, before it. Divide "
-            "distance covered, speed and acceleration by `distance` in every phase.",
-            mistakes.way_until_the_end,
-            "s has no unit.",
-        ),
-        Wrong(
             "a triangle that is too high",
             "√(2·distance·a_max) is the speed after speeding up over the whole distance. Only "
             "half of the distance is available for speeding up, because the other half is for "
@@ -307,51 +230,11 @@ TRAPEZOID = Problem(
             "Each phase starts with the position and speed at the end of the phase before.",
         ),
         Wrong(
-            "the distance of the ramp forgotten",
-            "v (t - ramp) starts the cruise at 0, although the ramp has already covered v·ramp/2.",
-            mistakes.Ramps(offset=2.0),
-            "Each phase starts with the position and speed at the end of the phase before.",
-        ),
-        Wrong(
             "still speeding up in the last phase",
             "Your dds stays positive while the speed decreases. Braking is a negative "
             "acceleration.",
             mistakes.Ramps(dds=-1.0),
             "The second derivative is the slope of the first.",
-        ),
-        Wrong(
-            "a negative speed while braking",
-            "Braking makes the speed smaller, not negative. The speed is a_max times the time "
-            "until the end.",
-            mistakes.Ramps(ds=-1.0),
-            "Slowing down is not going back.",
-        ),
-        Wrong(
-            "the factor 1/2 of a t²/2 forgotten",
-            "The integral of a t is a t²/2. Without the factor 1/2, distance and speed do not "
-            "fit together.",
-            mistakes.Ramps(half=2.0),
-            "Check that ds is the slope of s.",
-        ),
-        Wrong(
-            "a triangle that is too low",
-            "Half of the distance is available for speeding up: v²/(2 a) = distance/2, so v = "
-            "√(distance·a_max), without a 2 in the denominator.",
-            mistakes.Ramps(top=0.5**0.5),
-            "A triangle has two halves.",
-        ),
-        Wrong(
-            "it never brakes",
-            "Your motion speeds up and cruises, but the last phase is missing. From T - ramp on, "
-            "the speed is a_max times the time until the end.",
-            mistakes.Ramps(brakes=False),
-            "Draw the speed: a trapezoid has three sides above its base.",
-        ),
-        Wrong(
-            "an acceleration while cruising",
-            "While cruising, the speed stays the same, so dds is 0.",
-            mistakes.Ramps(cruise=1.0),
-            "The derivative of a constant is zero.",
         ),
     ),
     variants=(variants.trapezoid_by_phases,),
@@ -480,33 +363,6 @@ CIRCLE = Problem(
             "atan2 knows the quadrant, atan does not.",
         ),
         Wrong(
-            "the arccosine of the start",
-            "An arccosine is never negative, so a start at a smaller y than the centre's is "
-            "moved to the other side. Use np.arctan2(y, x), or turn the spoke without any angle.",
-            mistakes.arccosine_of_the_start,
-            "atan2 knows the quadrant, acos does not.",
-        ),
-        Wrong(
-            "the start's angle twice",
-            "You added the start's angle twice, so the circle begins elsewhere. The report's "
-            "circle does this in its second half. At s = 0 the answer must be start.",
-            mistakes.Spoke(start=2.0, rates=2.0),
-            "Evaluate every path at s = 0: it must begin at the start.",
-        ),
-        Wrong(
-            "the start's angle with the wrong sign",
-            "Your circle begins at minus the start's angle. The angle of the spoke is θ₀ + 2πs, "
-            "with a plus.",
-            mistakes.Spoke(start=-1.0, rates=-1.0),
-            "Evaluate every path at s = 0: it must begin at the start.",
-        ),
-        Wrong(
-            "no start angle in the derivatives",
-            "Your point has the right angle, but its derivatives do not: they need θ₀ + 2πs too.",
-            mistakes.Spoke(rates=0.0),
-            "Differentiating does not change the angle inside the cosine.",
-        ),
-        Wrong(
             "no start angle in the velocity",
             "Your point has the right angle, but your velocity does not: it needs θ₀ + 2πs too. "
             "The report's equations have this mistake.",
@@ -517,58 +373,7 @@ CIRCLE = Problem(
             "x and y exchanged in the arctangent",
             "Your circle begins elsewhere. np.arctan2 takes y first: the start's angle is "
             "np.arctan2(y, x), with x and y measured from the centre.",
-            mistakes.Spoke(swapped=True),
-            "Evaluate every path at s = 0: it must begin at the start.",
-        ),
-        Wrong(
-            "half a turn",
-            "Your angle grows by π, not 2π, so s = 1 is on the other side.",
-            mistakes.Spoke(turn=0.5),
-            "Evaluate every closed path at s = 1: it must come back to its start.",
-        ),
-        Wrong(
-            "s taken for the angle",
-            "Your angle grows by 1 rad over the whole path. Once round is 2πs.",
-            mistakes.Spoke(turn=0.5 / np.pi),
-            "Evaluate every closed path at s = 1: it must come back to its start.",
-        ),
-        Wrong(
-            "sine and cosine exchanged",
-            "For an angle measured from the x axis, x has the cosine and y has the sine.",
-            mistakes.Spoke(mirrored=True),
-            "Angles about z grow from x to y.",
-        ),
-        Wrong(
-            "round the start",
-            "Your circle goes round the start. Its middle should be on the axis through the "
-            "centre, and the start is a point of the circle.",
-            mistakes.Spoke(about_start=True),
-            "A path has a start and a shape: say which point is which.",
-        ),
-        Wrong(
-            "round the origin",
-            "You did not add the centre, so the circle goes round the origin.",
-            mistakes.Spoke(centre=0.0),
-            "A vector from the centre is not yet a point.",
-        ),
-        Wrong(
-            "the diameter for the radius",
-            "Your circle is twice as wide as it should be. The length of the spoke from the axis "
-            "to the start is the radius.",
-            mistakes.Spoke(radius=2.0),
-            "Evaluate every path at s = 0: it must begin at the start.",
-        ),
-        Wrong(
-            "the radius squared",
-            "x² + y² is the square of the radius: take its square root.",
-            mistakes.Spoke(power=2.0),
-            "Units: an area is not a length.",
-        ),
-        Wrong(
-            "a radius of 1 m",
-            "The radius of your circle is 1 m. It should be the level distance from the axis to "
-            "the start.",
-            mistakes.Spoke(power=0.0),
+            mistakes.arctangent_of_x_over_y,
             "Evaluate every path at s = 0: it must begin at the start.",
         ),
     ),
@@ -646,13 +451,6 @@ COMPOSE = Problem(
             "s says where, t says when.",
         ),
         Wrong(
-            "still the derivatives with respect to s",
-            "These are dx and ddx of the path. For derivatives with respect to time use the chain "
-            "rule: what is d/dt of x(s(t))?",
-            mistakes.still_by_s,
-            "Say with respect to which variable each derivative is taken.",
-        ),
-        Wrong(
             "the second derivatives multiplied",
             "Differentiate dx·ds once more: the product rule gives two terms.",
             mistakes.schedule_twice,
@@ -673,19 +471,6 @@ COMPOSE = Problem(
             "Say with respect to which variable each derivative is taken.",
         ),
         Wrong(
-            "the velocity scaled twice",
-            "The velocity is dx·ds: one derivative, one factor ds.",
-            mistakes.Chained(velocity=2.0),
-            "The inner derivative appears once for each derivative.",
-        ),
-        Wrong(
-            "the acceleration not scaled",
-            "Your acceleration is still ddx, the derivative with respect to s. Differentiate "
-            "dx·ds with respect to time: the product rule gives two terms.",
-            mistakes.Chained(plain=True),
-            "Say with respect to which variable each derivative is taken.",
-        ),
-        Wrong(
             "dx·dds with a minus",
             "The product rule adds its two terms.",
             mistakes.Chained(along=-1.0),
@@ -697,24 +482,6 @@ COMPOSE = Problem(
             "dx·dds occurs once.",
             mistakes.Chained(along=2.0),
             "Product rule: d/dt (dx ds) = ddx ds² + dx dds.",
-        ),
-        Wrong(
-            "dx·ds where dx·dds belongs",
-            "In the second term, ds is differentiated, which gives dds.",
-            mistakes.Chained(along=0.0, late=1.0),
-            "Product rule: d/dt (dx ds) = ddx ds² + dx dds.",
-        ),
-        Wrong(
-            "ddx·dds where dx·dds belongs",
-            "In the second term only ds is differentiated, and dx stays as it is: dx·dds.",
-            mistakes.Chained(along=0.0, cross=1.0),
-            "Product rule: d/dt (dx ds) = ddx ds² + dx dds.",
-        ),
-        Wrong(
-            "ds and dds exchanged",
-            "A scaling returns (s, ds, dds) in this order; you used dds as ds.",
-            mistakes.Chained(dds_first=True),
-            "Read in which order a function returns its results.",
         ),
     ),
     variants=(variants.compose_matrix,),
@@ -773,46 +540,11 @@ SEGMENT_AT = Problem(
     ),
     wrong=(
         Wrong(
-            "a sum that includes the current segment",
-            "Your local time is negative inside a segment, because the sum includes the "
-            "segment's own duration, as in the report's equation 15. Subtract only the durations "
-            "before it.",
-            mistakes.sums_through_the_segment,
-            "Sum over j < k, not over j <= k.",
-        ),
-        Wrong(
-            "index -1 at the start",
-            "At t = 0 your index is -1, which Python takes for the last segment: the arm would "
-            "start at the last corner, as in the authors' program. Return index 0 there.",
-            mistakes.one_segment_early,
-            "Python accepts the index -1, but it is wrong here.",
-        ),
-        Wrong(
-            "no segment left at the end",
-            "At the end, your loop finds no segment, and the index runs past the list. After the "
-            "end, stay in the last segment.",
-            mistakes.runs_out_of_segments,
-            "A reference can be evaluated at any time.",
-        ),
-        Wrong(
-            "the last segment begins again",
-            "After the end, the last segment stays active and its local time keeps growing. Do "
-            "not subtract its duration.",
-            mistakes.starts_anew_after_the_end,
-            "Say what happens at the ends before you write the loop.",
-        ),
-        Wrong(
             "the earlier one where two meet",
             "At the instant where two segments meet, the later one is active, and its local time "
             "is 0. A segment contains its start but not its end: begun <= t < begun + duration.",
             mistakes.Segments(joint=True),
             "Each interval contains its start but not its end.",
-        ),
-        Wrong(
-            "an index too large after the end",
-            "After the end no other segment begins: the last one stays active, with index n - 1.",
-            mistakes.Segments(after=lambda n, t, d: (n, t)),
-            "The last index is one less than the number of segments.",
         ),
         Wrong(
             "the local time stops at the end",
@@ -822,23 +554,10 @@ SEGMENT_AT = Problem(
             "Let the segment itself decide what it does after its end.",
         ),
         Wrong(
-            "the local time is 0 after the end",
-            "After the end, the last segment is still active and its local time keeps growing: t "
-            "minus the time at which it began.",
-            mistakes.Segments(after=lambda n, t, d: (n - 1, 0.0)),
-            "Let the segment itself decide what it does after its end.",
-        ),
-        Wrong(
             "the time since the start of the tour",
             "The local time is measured from the instant at which the segment began, not from "
             "the start of the tour.",
             mistakes.Segments(local=lambda t, begun, d: t),
-            "Say for each time from which instant it is measured.",
-        ),
-        Wrong(
-            "the time until the segment ends",
-            "The local time is the time since the segment began, not the time until it ends.",
-            mistakes.Segments(local=lambda t, begun, d: begun + d - t),
             "Say for each time from which instant it is measured.",
         ),
         Wrong(
@@ -855,30 +574,10 @@ SEGMENT_AT = Problem(
             "Let the segment itself decide what it does before its start.",
         ),
         Wrong(
-            "the last segment before the start",
-            "Before the start you returned the index of the last segment, so the arm would jump "
-            "to the end. The first segment is active there.",
-            mistakes.Segments(before=lambda n, t, d: (n - 1, t)),
-            "An index below 0 counts from the end.",
-        ),
-        Wrong(
-            "index -1 before the start",
-            "Before the start, the first segment is active, with index 0. In Python, index -1 "
-            "means the last one.",
-            mistakes.Segments(before=lambda n, t, d: (-1, t)),
-            "An index below 0 counts from the end.",
-        ),
-        Wrong(
             "counted from 1",
             "The first segment has the index 0.",
             mistakes.Segments(first=1),
             "Python counts from 0.",
-        ),
-        Wrong(
-            "index and time exchanged",
-            "The index comes first, then the local time.",
-            mistakes.Segments(swapped=True),
-            "Read in which order the question asks for the results.",
         ),
     ),
     variants=(variants.segment_by_searchsorted, variants.segment_by_walking),
@@ -950,4 +649,11 @@ WITNESS = Problem(
     variants=(variants.Witness(),),
 )
 
-PROBLEMS = (BANG_BANG, TRAPEZOID, CIRCLE, COMPOSE, SEGMENT_AT, WITNESS)
+PROBLEMS = (
+    BANG_BANG,
+    TRAPEZOID,
+    CIRCLE,
+    COMPOSE,
+    SEGMENT_AT,
+    WITNESS,
+)

@@ -10,8 +10,8 @@
 # |---|---|
 # | **You need** | numpy; matrices as poses (00), trajectories (01), or the two boxes below |
 # | **Given** | the camera, the detector of corners, a filter's update step, an arm that follows a reference |
-# | **You write** | a tag's corners, its pose from a picture, a sensor's quality, a blend, a prediction |
-# | **Time** | core about 3 hours, all about 4 hours; 24 points |
+# | **You write** | a tag's pose from a picture, a sensor's quality, a blend, a prediction |
+# | **Time** | core about 2.5 hours, all about 3 hours; 18 points |
 #
 # Questions marked *core* are for everybody. Those marked *extension* take the rest of the time: they earn points
 # too, but no later question depends on them.
@@ -24,8 +24,7 @@
 # > acceleration)`, three arrays.
 #
 # Every cell below runs from the start, solved or not. If your part is missing, a stand-in replaces it and
-# says so. The functions, your predictions and the text at the end are marked; play with everything else as
-# you like.
+# says so. The functions are marked; play with everything else as you like.
 
 # %% setup=true
 import labkit as lk
@@ -74,24 +73,17 @@ print(f"corners in pixels:\n{seen[0].corners.round(2)}")
 # %% [markdown]
 # Those pixels are all that the detector knows. To compute a pose from them, it must know where the corners
 # are *on the tag*: in which frame, in which order, and of which square. Two mistakes are common. Corners in
-# the opposite order show the tag from behind. And the size is that of the black square, not of the paper.
+# the opposite order show the tag from behind. And the size is that of the black square, not of the paper. Here they
+# are, clockwise as one looks at the tag, from the upper left:
 
-# %% question="tag_corners"
+# %%
 def tag_corners(size):
-    """The corners of a tag's black square in the tag's frame.
+    """The corners of a tag's black square in the tag's frame, shape (4, 3) in [m]."""
+    h = size / 2
+    return np.array([[-h, h, 0.0], [h, h, 0.0], [h, -h, 0.0], [-h, -h, 0.0]])
 
-    Args:
-        size: Side of the black square, in [m].
 
-    Returns:
-        Shape (4, 3) in [m]: clockwise as one looks at the tag, from the upper left.
-    """
-    ### BEGIN SOLUTION
-    from solutions.tags.answers import tag_corners as answer
-
-    return answer(size)
-    ### END SOLUTION
-
+print(tag_corners(0.1))
 
 # %% [markdown]
 # ## A pose
@@ -184,8 +176,6 @@ lk.plotting.show(
     f"deviation. Along z it is {1e3 * spread[2]:.2f} mm, across {1e3 * spread[:2].max():.2f} mm."
 )
 
-# %% predict="twice_as_far"
-
 # %%
 def depth_spread(distance, pictures=12):
     """Standard deviation of the depth of a tag that faces the camera askew, in [m]."""
@@ -197,12 +187,10 @@ def depth_spread(distance, pictures=12):
 
 
 near, far = depth_spread(0.6), depth_spread(1.2)
-if twice_as_far is not None:
-    print(f"the depth spreads by {1e3 * near:.2f} mm at 0.6 m and by {1e3 * far:.2f} mm at 1.2 m")
-    print("Twelve pictures tell a spread to a fifth, so the factor below is uncertain by 30 %. From 300 pictures")
-    print("at each distance it is about 5: the square of the distance gives 4, and the corners of a smaller")
-    print("square are found a little less well.")
-predict("twice_as_far", truth=round(float(far / near), 1))
+print(f"the depth spreads by {1e3 * near:.2f} mm at 0.6 m and by {1e3 * far:.2f} mm at 1.2 m")
+print("Twelve pictures tell a spread to a fifth, so their ratio is uncertain by 30 %. From 300 pictures")
+print("at each distance it is about 5: the square of the distance gives 4, and the corners of a smaller")
+print("square are found a little less well.")
 
 # %% [markdown]
 # The position along the line of sight is measured worst, because a tag that comes nearer changes the picture
@@ -346,17 +334,6 @@ def carry_forward(mean, covariance, age, accel_noise):
     ### END SOLUTION
 
 
-# %% predict="round_and_round"
-
-# %%
-turn = 2.0 * np.pi / 6.0 * 2.0  # how far the tag goes round in two seconds, in [rad]
-old_place = abs(np.exp(1j * turn) - 1.0)  # in radii, the circle as complex numbers
-straight_on = abs(np.exp(1j * turn) - (1.0 + 1j * turn))
-if round_and_round is not None:
-    print(f"error in radii: {old_place:.2f} with the old place, {straight_on:.2f} with the prediction")
-ratio = straight_on / old_place
-predict("round_and_round", truth="c" if ratio > 1.0 else "b" if ratio > 0.3 else "a")
-
 # %% [markdown]
 # ## Everything together, on the arm
 #
@@ -464,18 +441,6 @@ lk.plotting.show(
 
 # %%
 lk.replay.show(lk.replay.motion_of(log, "The arm in the same run", label="the hand"))
-
-# %% [markdown] why="why_round_and_round"
-# When did you see the prediction help and when not, and why? Say what the predictor believes about the tag,
-# how its error grows with the age of the picture, and whether you would use it for a conveyor, for a waving
-# hand, or for both.
-#
-# ### BEGIN SOLUTION
-# Where the circle turned by two radians during the picture's age, the prediction was farther off than the old
-# place. With the arm the tag turned by a third of a radian, and it helped: 6 mm off, without it 40 mm. It assumes
-# constant velocity; its error grows with the square of the age. A conveyor keeps its velocity and gains
-# all. A waving hand moves nearly straight within a tenth of a second, but not within two seconds.
-# ### END SOLUTION
 
 # %% [markdown]
 # Now move the tag yourself. Press *Start* and drag it with the mouse: the hand follows, some tenths of a

@@ -32,12 +32,6 @@ def pixels_of(T_cm: Array, size: float) -> Array:
     return np.asarray(image[:, :2] / image[:, 2:])
 
 
-def sizes(random: Random) -> Iterator[Call]:
-    """Other sizes."""
-    for size in random.uniform(0.02, 0.3, 3):
-        yield call(float(size))
-
-
 def oblique(random: Random) -> Iterator[Call]:
     """Tags seen obliquely, near and far."""
     for tilt in random.uniform(0.5, 1.0, 4):

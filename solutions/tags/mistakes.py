@@ -15,24 +15,6 @@ from labkit.shapes import Array
 from .answers import sensor_quality, tag_corners, tag_pose
 from .following import blend, carry_forward
 
-BORDER = 1.25  # an AprilTag 36h11 is eight cells wide, and ten with its white border
-
-
-def counter_clockwise(size: float) -> Array:
-    """The corners in reverse order, so the tag is mirrored, as if seen from behind."""
-    corners: Array = tag_corners(size)[[1, 0, 3, 2]]
-    return corners
-
-
-def border_counted(size: float) -> Array:
-    """Includes the white border in the size."""
-    return tag_corners(BORDER * size)
-
-
-def from_a_corner(size: float) -> Array:
-    """Puts the origin at a corner instead of the centre."""
-    return np.add(tag_corners(size), [size / 2.0, -size / 2.0, 0.0])
-
 
 @dataclass(frozen=True)
 class Reordered:
@@ -87,11 +69,6 @@ def camera_in_the_tag(pixels: Any, K: Any, size: float) -> Array:
     return se3.inverse(tag_pose(pixels, K, size))
 
 
-def border_in_the_pose(pixels: Any, K: Any, size: float) -> Array:
-    """The size with the border, which makes everything 1.25 times too far away."""
-    return tag_pose(pixels, K, BORDER * size)
-
-
 def vector_as_euler_angles(pixels: Any, K: Any, size: float) -> Array:
     """Reads the rotation vector as roll, pitch and yaw."""
     T = np.array(tag_pose(pixels, K, size))
@@ -100,18 +77,6 @@ def vector_as_euler_angles(pixels: Any, K: Any, size: float) -> Array:
     Rz, Ry, Rx = (se3.rotation(np.array(turn)) for turn in turns)
     T[:3, :3] = Rz @ Ry @ Rx
     return T
-
-
-def vector_in_the_rows(T: Array) -> Array:
-    """The pose with the rotation vector, shape (3,), in the place of the rotation matrix."""
-    R = np.broadcast_to(se3.rotation_log(T[:3, :3]), (3, 3))
-    return np.block([[R, T[:3, 3:]], [T[3:]]])
-
-
-def vector_in_the_columns(T: Array) -> Array:
-    """The same pose with a rotation vector of shape (3, 1), as OpenCV returns it."""
-    R = vector_in_the_rows(T)[:3, :3].T
-    return np.block([[R, T[:3, 3:]], [T[3:]]])
 
 
 def the_worse_answer(pixels: Any, K: Any, size: float) -> Array:
@@ -125,13 +90,6 @@ def the_worse_answer(pixels: Any, K: Any, size: float) -> Array:
     )
     worse = int(np.argmax(np.ravel(errors)))
     return se3.pose(cv2.Rodrigues(turns[worse])[0], np.ravel(places[worse]))
-
-
-def spread_about_zero(estimates: Any, truth: Any) -> tuple[Array, Array]:
-    """The covariance about zero, in which a constant offset counts as spread."""
-    bias, covariance = sensor_quality(estimates, truth)
-    n = len(estimates)
-    return bias, (covariance * (n - 1) + n * np.outer(bias, bias)) / n
 
 
 def the_other_sign(estimates: Any, truth: Any) -> tuple[Array, Array]:
@@ -199,16 +157,6 @@ def turn_first(estimates: Any, truth: Any) -> tuple[Array, Array]:
     return _quality(estimates, truth, lambda a, b: np.roll(se3.pose_error(a, b), 3))
 
 
-def everything_in_the_tag(estimates: Any, truth: Any) -> tuple[Array, Array]:
-    """The pose of the truth in the estimate's frame: all six numbers in the tag's axes."""
-
-    def error(T_cm: Array, T: Array) -> Array:
-        E = se3.inverse(T) @ T_cm
-        return np.concatenate([E[:3, 3], se3.rotation_log(E[:3, :3])])
-
-    return _quality(estimates, truth, error)
-
-
 def _euler(R: Array) -> Array:
     return np.array(
         [
@@ -228,12 +176,6 @@ def euler_subtracted(estimates: Any, truth: Any) -> tuple[Array, Array]:
         ]
     )
     return errors.mean(axis=0), np.cov(errors.T)
-
-
-def restarts_at_rest(t: float, reference: Sample, goal: Sample, duration: float) -> Sample:
-    """Begins every blend at rest, as the report's algorithm does: the velocity jumps."""
-    still = np.zeros_like(reference.velocity)
-    return blend(t, Sample(reference.position, still, still), goal, duration)
 
 
 @dataclass(frozen=True)
@@ -273,12 +215,6 @@ def never_ends(t: float, reference: Sample, goal: Sample, duration: float) -> Sa
     )
 
 
-def waits_at_the_goal(t: float, reference: Sample, goal: Sample, duration: float) -> Sample:
-    """After the end the goal's position is constant, but its velocity is still returned."""
-    x = blend(t, reference, goal, duration)
-    return Sample(goal.position, x.velocity, x.acceleration) if t > duration else x
-
-
 def speeds_up_for_ever(t: float, reference: Sample, goal: Sample, duration: float) -> Sample:
     """After the end the goal's acceleration goes on."""
     x, late = blend(t, reference, goal, duration), t - duration
@@ -286,43 +222,6 @@ def speeds_up_for_ever(t: float, reference: Sample, goal: Sample, duration: floa
         return x
     a = goal.acceleration
     return Sample(x.position + a * late**2 / 2, x.velocity + a * late, a)
-
-
-def acceleration_kept(t: float, reference: Sample, goal: Sample, duration: float) -> Sample:
-    """After the end the velocity is constant, but the acceleration that is returned is not zero."""
-    x = blend(t, reference, goal, duration)
-    return Sample(x.position, x.velocity, goal.acceleration) if t > duration else x
-
-
-def derivatives_by_share(t: float, reference: Sample, goal: Sample, duration: float) -> Sample:
-    """Derivatives with respect to x = t/T, returned as if with respect to t."""
-    x, T = blend(t, reference, goal, duration), duration
-    return x if t > T else Sample(x.position, x.velocity * T, x.acceleration * T**2)
-
-
-def the_ends_mixed(t: float, reference: Sample, goal: Sample, duration: float) -> Sample:
-    """Position, velocity and acceleration of reference and goal, each mixed linearly in time."""
-    s = min(t / duration, 1.0)
-    return Sample(*((1.0 - s) * a + s * b for a, b in zip(reference, goal, strict=True)))
-
-
-def three_alone(t: float, reference: Sample, goal: Sample, duration: float) -> Sample:
-    """The first three coordinates, as if every reference were a point."""
-    return blend(t, Sample(*(x[:3] for x in reference)), Sample(*(x[:3] for x in goal)), duration)
-
-
-def rates_not_scaled(t: float, reference: Sample, goal: Sample, duration: float) -> Sample:
-    """Solves in x = t/T with the derivatives in t, so they are wrong by powers of T."""
-    T = duration
-    a = Sample(reference.position, reference.velocity / T, reference.acceleration / T**2)
-    b = Sample(goal.position, goal.velocity / T, goal.acceleration / T**2)
-    return blend(t, a, b, T) if t < T else blend(t, reference, goal, T)
-
-
-def stops_at_the_goal(t: float, reference: Sample, goal: Sample, duration: float) -> Sample:
-    """Arrives at rest, although the goal moves on."""
-    still = np.zeros_like(goal.velocity)
-    return blend(t, reference, Sample(goal.position, still, still), duration)
 
 
 def without_the_bend(t: float, reference: Sample, goal: Sample, duration: float) -> Sample:
@@ -336,28 +235,6 @@ def without_the_bend(t: float, reference: Sample, goal: Sample, duration: float)
     return Sample(
         p0 + v0 * t + c2 * t**2 + c3 * t**3, v0 + 2 * c2 * t + 3 * c3 * t**2, 2 * c2 + 6 * c3 * t
     )
-
-
-def ignores_the_age(
-    mean: Any, covariance: Any, age: float, accel_noise: float
-) -> tuple[Array, Array]:
-    """Takes the old picture as the present."""
-    return np.array(mean), np.array(covariance)
-
-
-def noise_without_time(
-    mean: Any, covariance: Any, age: float, accel_noise: float
-) -> tuple[Array, Array]:
-    """Adds the same noise for every time step, so two half steps differ from one step."""
-    F = np.kron([[1.0, age], [0.0, 1.0]], np.eye(3))
-    return F @ mean, F @ covariance @ F.T + accel_noise * np.eye(6)
-
-
-def certain_for_ever(
-    mean: Any, covariance: Any, age: float, accel_noise: float
-) -> tuple[Array, Array]:
-    """Moves the mean and leaves the covariance."""
-    return carry_forward(mean, covariance, age, accel_noise)[0], np.array(covariance)
 
 
 @dataclass(frozen=True)
@@ -382,24 +259,6 @@ class Predicted:
         return F @ mean, F @ covariance @ F.T + Q
 
 
-def half_the_product(
-    mean: Any, covariance: Any, age: float, accel_noise: float
-) -> tuple[Array, Array]:
-    """F P, without F^T, which is not even symmetric."""
-    m, P = carry_forward(mean, covariance, age, accel_noise)
-    F = np.kron([[1.0, age], [0.0, 1.0]], np.eye(3))
-    return m, P - F @ covariance @ F.T + F @ covariance
-
-
-def product_turned_round(
-    mean: Any, covariance: Any, age: float, accel_noise: float
-) -> tuple[Array, Array]:
-    """F^T P F."""
-    m, P = carry_forward(mean, covariance, age, accel_noise)
-    F = np.kron([[1.0, age], [0.0, 1.0]], np.eye(3))
-    return m, P - F @ covariance @ F.T + F.T @ covariance @ F
-
-
 def back_in_time(mean: Any, covariance: Any, age: float, accel_noise: float) -> tuple[Array, Array]:
     """Predicts backwards in time."""
     F = np.kron([[1.0, -age], [0.0, 1.0]], np.eye(3))
@@ -422,18 +281,16 @@ class Seen:
 
     Attributes:
         pixels: A function of the pixels.
-        K: A function of the camera matrix.
         pose: A function of the pose.
     """
 
     pixels: Callable[[Array], Array] = lambda pixels: pixels
-    K: Callable[[Array], Array] = lambda K: K
     pose: Callable[[Array], Array] = lambda T: T
 
     def __call__(self, pixels: Any, K: Any, size: float) -> Array:
         """The pose."""
         seen = np.ascontiguousarray(self.pixels(np.array(pixels, dtype=float)))
-        return self.pose(tag_pose(seen, self.K(np.array(K)), size))
+        return self.pose(tag_pose(seen, np.array(K), size))
 
 
 @dataclass(frozen=True)
@@ -442,57 +299,36 @@ class Quality:
 
     Attributes:
         scale: Factors of position and orientation.
-        centre: The first answer, given the errors.
         spread: The second answer, given the errors.
-        tag: Whether the position is in the tag's axes.
-        turn: The rotation, given both rotations.
     """
 
     scale: tuple[float, float] = (1.0, 1.0)
-    centre: Callable[[Array], Any] = lambda e: e.mean(axis=0)
     spread: Callable[[Array], Any] = lambda e: np.cov(e.T)
-    tag: bool = False
-    turn: Callable[[Array, Array], Array] = lambda R, S: se3.rotation_log(R @ S.T)
 
     def __call__(self, estimates: Any, truth: Any) -> tuple[Array, Array]:
         """Mean and covariance."""
         errors = []
         for T in estimates:
-            place = truth[:3, 3] - T[:3, 3]
-            place = T[:3, :3].T @ place if self.tag else place
-            turn = self.turn(truth[:3, :3], T[:3, :3])
-            errors.append(np.concatenate([self.scale[0] * place, self.scale[1] * turn]))
+            errors.append(np.repeat(self.scale, 3) * se3.pose_error(truth, T))
         e = np.array(errors)
-        return np.asarray(self.centre(e)), np.asarray(self.spread(e))
+        return e.mean(axis=0), np.asarray(self.spread(e))
 
 
 @dataclass(frozen=True)
 class Ends:
-    """The blend between other ends, or with another rule after its end.
+    """The blend with another rule after its end.
 
     Attributes:
-        ends: Reference and goal, given both.
-        late: The sample after the end, given the goal, t and the duration; None is right.
-        made: A function of a sample before the end, t, reference, goal and duration.
+        late: The sample after the end, given the goal, t and the duration.
     """
 
-    ends: Callable[[Sample, Sample], tuple[Sample, Sample]] = lambda a, b: (a, b)
-    late: Callable[[Sample, float, float], Sample] | None = None
-    made: Callable[[Sample, float, Sample, Sample, float], Sample] = lambda x, t, a, b, T: x
+    late: Callable[[Sample, float, float], Sample]
 
     def __call__(self, t: float, reference: Sample, goal: Sample, duration: float) -> Sample:
         """The sample at t."""
-        a, b = self.ends(reference, goal)
         if t > duration:
-            return self.late(b, t, duration) if self.late else blend(t, a, b, duration)
-        return self.made(blend(t, a, b, duration), t, a, b, duration)
-
-
-def crossfade(x: Sample, t: float, a: Sample, b: Sample, T: float) -> Sample:
-    """A mixture of both motions with a smooth weight."""
-    s = t / T
-    w = 10.0 * s**3 - 15.0 * s**4 + 6.0 * s**5
-    return Sample(*((1.0 - w) * p + w * q for p, q in zip(a, b, strict=True)))
+            return self.late(goal, t, duration)
+        return blend(t, reference, goal, duration)
 
 
 @dataclass(frozen=True)

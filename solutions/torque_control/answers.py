@@ -35,23 +35,11 @@ def computed_torque(
     return lk.JointTorque(tau)
 
 
-def gains_for(frequency: Any, damping_ratio: Any) -> tuple[Any, Any]:
-    """Gains of an error that swings as a spring does: w^2 and 2 zeta w."""
-    w = 2.0 * np.pi * frequency
-    return w**2, 2.0 * damping_ratio * w
-
-
 def sampled_joint(inertia: float, kp: float, kd: float, dt: float) -> Array:
     """One period of a joint whose torque stands still meanwhile, exactly."""
     free = np.array([[1.0, dt], [0.0, 1.0]])
     kick = np.array([dt**2 / 2.0, dt]) / inertia
     return np.asarray(free - np.outer(kick, [kp, kd]))
-
-
-def gravity_factor(tau_hold: Any, gravity_model: Any) -> float:
-    """The factor of the model's gravity that explains the torques best, by least squares."""
-    tau, g = np.asarray(tau_hold), np.asarray(gravity_model)
-    return float(np.sum(tau * g) / np.sum(g * g))
 
 
 def choose_gains(model: lk.Model) -> tuple[Array, Array]:

@@ -111,18 +111,6 @@ def computed_runs(random: Random) -> Iterator[Case]:
     yield Loop(tour, given, side, model.plant, q0=q0, settle=1.0, expected={"rms_mm": 0.3})
 
 
-def gains(random: Random) -> Iterator[Call]:
-    """Other frequencies and ratios."""
-    for _ in range(4):
-        yield call(random.uniform(0.2, 8.0), random.uniform(0.2, 2.0))
-
-
-def gains_by_joint(random: Random) -> Iterator[Call]:
-    """A frequency for each joint."""
-    yield call(random.uniform(0.2, 8.0, 7), random.uniform(0.2, 2.0))
-    yield call(random.uniform(0.2, 8.0, 7), random.uniform(0.2, 2.0, 7))
-
-
 def joints(random: Random) -> Iterator[Call]:
     """Other joints, heavy and light."""
     for _ in range(4):
@@ -135,29 +123,6 @@ def slow_samples(random: Random) -> Iterator[Call]:
     for _ in range(4):
         m, w = 10.0 ** random.uniform(-3.0, 0.5), random.uniform(20.0, 80.0)
         yield call(m, m * w * w, m * 2.0 * w, random.uniform(0.01, 0.04))
-
-
-def _held(random: Random, factor: float, noise: float, poses: int) -> Call:
-    model = lk.Model("left", lk.BAXTER)
-    g = np.array([model.gravity(_angles(random, model)) for _ in range(poses)])
-    return call(factor * g + noise * random.standard_normal(g.shape), g)
-
-
-def clean_poses(random: Random) -> Iterator[Call]:
-    """Torques without noise."""
-    yield _held(random, random.uniform(0.2, 1.5), 0.0, 12)
-
-
-def noisy_poses(random: Random) -> Iterator[Call]:
-    """Torques with noise, more and fewer poses."""
-    for poses in (6, 12, 30):
-        yield _held(random, random.uniform(0.3, 1.5), 1.0, poses)
-
-
-def no_weight_poses(random: Random) -> Iterator[Call]:
-    """Torques that are unrelated to gravity, or have the other sign."""
-    for factor in (0.0, random.uniform(-1.0, -0.5)):
-        yield _held(random, factor, 0.6, 12)
 
 
 def tuned(random: Random, side: Any, payload: float) -> Tuned:

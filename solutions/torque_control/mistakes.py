@@ -27,13 +27,6 @@ def always_carries(
     return right.augmented_pd(state, target, model, kp=kp, kd=kd, arm_compensates=False)
 
 
-def never_carries(
-    state: lk.State, target: lk.Sample, model: lk.Model, *, kp: Any, kd: Any, arm_compensates: bool
-) -> lk.JointTorque:
-    """Leaves the weight out although nobody carries it."""
-    return right.augmented_pd(state, target, model, kp=kp, kd=kd, arm_compensates=True)
-
-
 def own_speed_in_coriolis(
     state: lk.State, target: lk.Sample, model: lk.Model, *, kp: Any, kd: Any, arm_compensates: bool
 ) -> lk.JointTorque:
@@ -41,14 +34,6 @@ def own_speed_in_coriolis(
     q, dq = state.q, state.dq
     tau = right.augmented_pd(state, target, model, kp=kp, kd=kd, arm_compensates=arm_compensates)
     return lk.JointTorque(tau.value + model.coriolis(q, dq) @ (dq - target.velocity))
-
-
-def no_motion_terms(
-    state: lk.State, target: lk.Sample, model: lk.Model, *, kp: Any, kd: Any, arm_compensates: bool
-) -> lk.JointTorque:
-    """Only springs and dampers."""
-    tau = kp * (target.position - state.q) + kd * (target.velocity - state.dq)
-    return lk.JointTorque(tau if arm_compensates else tau + model.gravity(state.q))
 
 
 def damps_the_motion(
@@ -67,17 +52,6 @@ def model_at_the_target(
     at_rest = target._replace(position=target.position)
     tau = right.augmented_pd(there, at_rest, model, kp=kp, kd=kd, arm_compensates=arm_compensates)
     return lk.JointTorque(tau.value + kp * (target.position - state.q))
-
-
-def the_reports_gravity(
-    state: lk.State, target: lk.Sample, model: lk.Model, *, kp: Any, kd: Any, arm_compensates: bool
-) -> lk.JointTorque:
-    """M J^T (0, 0, 0.981, 0, 0, 0): the report's gravity, which is not a torque."""
-    q = state.q
-    tau = right.augmented_pd(state, target, model, kp=kp, kd=kd, arm_compensates=True).value
-    if not arm_compensates:
-        tau = tau + model.mass_matrix(q) @ model.tip_jacobian(q)[2] * 0.981
-    return lk.JointTorque(tau)
 
 
 @dataclass(frozen=True)
@@ -134,24 +108,16 @@ class ComputedLaw:
     """Computed torque with weighted terms; 1 is right, 0 omits a term, -1 reverses it.
 
     Attributes:
-        e: Factor of the error of the angles.
         de: Factor of the error of the speeds.
         coriolis: Factor of C.
         power: Power of M; -1 is its inverse.
-        drift: Factor of the Coriolis torques, taken as an acceleration.
-        switch: Whether the gravity switch is inverted.
         swapped: Whether kp and kd are exchanged.
-        twice: Whether the weight is added once more.
     """
 
-    e: float = 1.0
     de: float = 1.0
     coriolis: float = 1.0
     power: int = 1
-    drift: float = 0.0
-    switch: bool = False
     swapped: bool = False
-    twice: bool = False
 
     def __call__(
         self,
@@ -167,20 +133,10 @@ class ComputedLaw:
         q, dq = state.q, state.dq
         kp, kd = (kd, kp) if self.swapped else (kp, kd)
         C = model.coriolis(q, dq) @ dq
-        a = target.acceleration + kp * self.e * (target.position - q)
-        a = a + kd * self.de * (target.velocity - dq) + self.drift * C
+        a = target.acceleration + kp * (target.position - q)
+        a = a + kd * self.de * (target.velocity - dq)
         tau = np.linalg.matrix_power(model.mass_matrix(q), self.power) @ a + self.coriolis * C
-        times = float(arm_compensates == self.switch) + float(self.twice)
-        return lk.JointTorque(tau + times * model.gravity(q))
-
-
-def gains_inside(
-    state: lk.State, target: lk.Sample, model: lk.Model, *, kp: Any, kd: Any, arm_compensates: bool
-) -> lk.JointTorque:
-    """Computed torque where the question asks for the augmented law."""
-    return right.computed_torque(
-        state, target, model, kp=kp, kd=kd, arm_compensates=arm_compensates
-    )
+        return lk.JointTorque(tau if arm_compensates else tau + model.gravity(q))
 
 
 def gains_outside(
@@ -211,13 +167,6 @@ def carries_twice(
     return right.computed_torque(state, target, model, kp=kp, kd=kd, arm_compensates=False)
 
 
-def weightless(
-    state: lk.State, target: lk.Sample, model: lk.Model, *, kp: Any, kd: Any, arm_compensates: bool
-) -> lk.JointTorque:
-    """No gravity, even where the law must carry it."""
-    return right.computed_torque(state, target, model, kp=kp, kd=kd, arm_compensates=True)
-
-
 def targets_speed_in_coriolis(
     state: lk.State, target: lk.Sample, model: lk.Model, *, kp: Any, kd: Any, arm_compensates: bool
 ) -> lk.JointTorque:
@@ -233,61 +182,6 @@ def no_target_acceleration(
     """The target's acceleration left out."""
     slow = target._replace(acceleration=np.zeros(7))
     return right.computed_torque(state, slow, model, kp=kp, kd=kd, arm_compensates=arm_compensates)
-
-
-def runs_away(
-    state: lk.State, target: lk.Sample, model: lk.Model, *, kp: Any, kd: Any, arm_compensates: bool
-) -> lk.JointTorque:
-    """The error with the other sign."""
-    return right.computed_torque(
-        state, target, model, kp=-kp, kd=-kd, arm_compensates=arm_compensates
-    )
-
-
-def without_the_two(frequency: Any, damping_ratio: Any) -> tuple[Any, Any]:
-    """Takes zeta w for kd, which is half the damping."""
-    kp, kd = right.gains_for(frequency, damping_ratio)
-    return kp, kd / 2.0
-
-
-def hertz_as_radians(frequency: Any, damping_ratio: Any) -> tuple[Any, Any]:
-    """Takes the frequency for an angular one."""
-    return right.gains_for(frequency / (2.0 * np.pi), damping_ratio)
-
-
-def other_way_round(frequency: Any, damping_ratio: Any) -> tuple[Any, Any]:
-    """Gives (kd, kp)."""
-    kp, kd = right.gains_for(frequency, damping_ratio)
-    return kd, kp
-
-
-def root_as_gain(frequency: Any, damping_ratio: Any) -> tuple[Any, Any]:
-    """Takes w for kp, without the square."""
-    kp, kd = right.gains_for(frequency, damping_ratio)
-    return np.sqrt(kp), kd
-
-
-def damping_is_the_ratio(frequency: Any, damping_ratio: Any) -> tuple[Any, Any]:
-    """Takes the damping ratio itself for the gain."""
-    kp, _ = right.gains_for(frequency, damping_ratio)
-    return kp, damping_ratio * np.ones_like(kp)
-
-
-def square_of_the_frequency_alone(frequency: Any, damping_ratio: Any) -> tuple[Any, Any]:
-    """2 pi f^2, without the brackets around 2 pi f."""
-    _, kd = right.gains_for(frequency, damping_ratio)
-    return 2.0 * np.pi * frequency**2, kd
-
-
-def divided_by_turns(frequency: Any, damping_ratio: Any) -> tuple[Any, Any]:
-    """Divides by 2 pi where it multiplies."""
-    return right.gains_for(frequency / (2.0 * np.pi) ** 2, damping_ratio)
-
-
-def stiffness_for_frequency(frequency: Any, damping_ratio: Any) -> tuple[Any, Any]:
-    """Takes kp for w in kd = 2 zeta w."""
-    kp, _ = right.gains_for(frequency, damping_ratio)
-    return kp, 2.0 * damping_ratio * kp
 
 
 def not_a_step(inertia: float, kp: float, kd: float, dt: float) -> Any:
@@ -308,12 +202,6 @@ def times_inertia(inertia: float, kp: float, kd: float, dt: float) -> Any:
 def gains_of_the_other(inertia: float, kp: float, kd: float, dt: float) -> Any:
     """Kp on the speed and kd on the angle."""
     return right.sampled_joint(inertia, kd, kp, dt)
-
-
-def second_order_series(inertia: float, kp: float, kd: float, dt: float) -> Any:
-    """I + A dt + A^2 dt^2 / 2, almost the loop in continuous time."""
-    A = dt * not_a_step(inertia, kp, kd, dt)
-    return np.eye(2) + A + A @ A / 2.0
 
 
 def half_forgotten(inertia: float, kp: float, kd: float, dt: float) -> Any:
@@ -356,64 +244,6 @@ def without_inertia(inertia: float, kp: float, kd: float, dt: float) -> Any:
     return right.sampled_joint(1.0, kp, kd, dt)
 
 
-def mean_of_ratios(tau_hold: Any, gravity_model: Any) -> float:
-    """Each torque divided by the model's, then the mean."""
-    with np.errstate(divide="ignore", invalid="ignore"):
-        return float(np.nanmean(np.asarray(tau_hold) / np.asarray(gravity_model)))
-
-
-def turned_sign(tau_hold: Any, gravity_model: Any) -> float:
-    """Takes the torque that holds the arm for the one that pulls it down."""
-    return -right.gravity_factor(tau_hold, gravity_model)
-
-
-def other_regression(tau_hold: Any, gravity_model: Any) -> float:
-    """Fits the model to the torques, and inverts the result."""
-    return float(np.sum(np.square(tau_hold)) / np.sum(np.asarray(tau_hold) * gravity_model))
-
-
-def with_an_offset(tau_hold: Any, gravity_model: Any) -> float:
-    """The slope of a line that need not go through the origin."""
-    return float(np.polyfit(np.ravel(gravity_model), np.ravel(tau_hold), 1)[0])
-
-
-def model_over_torque(tau_hold: Any, gravity_model: Any) -> float:
-    """Fits the model to the torques."""
-    return right.gravity_factor(gravity_model, tau_hold)
-
-
-def one_over_the_factor(tau_hold: Any, gravity_model: Any) -> float:
-    """The reciprocal of the right fit."""
-    return 1.0 / right.gravity_factor(tau_hold, gravity_model)
-
-
-def mean_over_poses(tau_hold: Any, gravity_model: Any) -> float:
-    """A factor for each pose, and their mean."""
-    pairs = zip(np.asarray(tau_hold), np.asarray(gravity_model), strict=True)
-    return float(np.mean([right.gravity_factor(*pair) for pair in pairs]))
-
-
-def mean_over_joints(tau_hold: Any, gravity_model: Any) -> float:
-    """The mean of a factor for each joint, in which a joint without load counts like any other."""
-    pairs = zip(np.asarray(tau_hold).T, np.asarray(gravity_model).T, strict=True)
-    return float(np.nanmean([right.gravity_factor(*pair) for pair in pairs]))
-
-
-def what_is_missing(tau_hold: Any, gravity_model: Any) -> float:
-    """How far the factor is from 1."""
-    return right.gravity_factor(tau_hold, gravity_model) - 1.0
-
-
-def ratio_of_lengths(tau_hold: Any, gravity_model: Any) -> float:
-    """The ratio of lengths, which have no sign and grow with noise."""
-    return float(np.linalg.norm(tau_hold) / np.linalg.norm(gravity_model))
-
-
-def ratio_of_sums(tau_hold: Any, gravity_model: Any) -> float:
-    """The ratio of sums, in which torques of opposite sign cancel."""
-    return float(np.sum(tau_hold) / np.sum(gravity_model))
-
-
 @dataclass(frozen=True)
 class Swings:
     """Gains with which every joint swings at the same frequency.
@@ -441,12 +271,6 @@ def pair_turned_round(model: lk.Model) -> Any:
     """Returns (kd, kp), hardly a spring but a very strong damper."""
     kp, kd = Swings()(model)
     return kd, kp
-
-
-def the_reports_gains(model: lk.Model) -> Any:
-    """Table 1 of the report, tuned on an arm with friction."""
-    kp = 8.0 * np.array([1.0, 1.0, 1.5, 1.5, 1.0, 1.0, 1.0])
-    return kp, 5.0 * np.array([2.0, 2.0, 1.0, 1.0, 0.8, 0.3, 0.3])
 
 
 class Terms(NamedTuple):
@@ -477,11 +301,6 @@ class Terms(NamedTuple):
     def drift(self) -> Any:
         """C dq."""
         return self.C @ self.state.dq
-
-    @property
-    def weight_there(self) -> Any:
-        """The weight at the target's angles."""
-        return self.model.gravity(self.target.position) * bool(np.any(self.g))
 
     @property
     def pull(self) -> Any:
@@ -518,68 +337,15 @@ class TorqueBy:
 
 
 @dataclass(frozen=True)
-class Fit:
-    """Another number computed from torques and model.
-
-    Attributes:
-        of: The number, given both, each of shape (poses, joints).
-    """
-
-    of: Callable[[Any, Any], Any]
-
-    def __call__(self, tau_hold: Any, gravity_model: Any) -> float:
-        """The number."""
-        with np.errstate(divide="ignore", invalid="ignore"):
-            return float(self.of(np.asarray(tau_hold), np.asarray(gravity_model)))
-
-
-@dataclass(frozen=True)
 class Stepped:
-    """One period with another free motion or another effect of the torque.
+    """One period with another free motion.
 
     Attributes:
         free: The free motion, given dt.
-        kick: The effect of a torque on angle and speed, given dt and the inertia.
     """
 
-    free: Callable[[float], Any] = lambda dt: [[1.0, dt], [0.0, 1.0]]
-    kick: Callable[[float, float], Any] = lambda dt, inertia: [
-        dt**2 / 2.0 / inertia,
-        dt / inertia,
-    ]
+    free: Callable[[float], Any]
 
     def __call__(self, inertia: float, kp: float, kd: float, dt: float) -> Any:
         """The matrix."""
-        return np.asarray(self.free(dt)) - np.outer(self.kick(dt, inertia), [kp, kd])
-
-
-@dataclass(frozen=True)
-class GainsOf:
-    """Other gains from frequency and damping ratio.
-
-    Attributes:
-        of: (kp, kd), given the angular frequency and the damping ratio.
-    """
-
-    of: Callable[[Any, Any], tuple[Any, Any]]
-
-    def __call__(self, frequency: Any, damping_ratio: Any) -> tuple[Any, Any]:
-        """The gains."""
-        return self.of(2.0 * np.pi * np.asarray(frequency), np.asarray(damping_ratio))
-
-
-@dataclass(frozen=True)
-class PullOnly:
-    """The right step with other gains.
-
-    Attributes:
-        p: Factor of kp.
-        d: Factor of kd.
-    """
-
-    p: float
-    d: float
-
-    def __call__(self, inertia: float, kp: float, kd: float, dt: float) -> Any:
-        """The matrix."""
-        return right.sampled_joint(inertia, self.p * kp, self.d * kd, dt)
+        return np.asarray(self.free(dt)) - np.outer([dt**2 / 2.0 / inertia, dt / inertia], [kp, kd])

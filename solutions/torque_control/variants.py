@@ -59,14 +59,6 @@ def computed_by_bias(
     return lk.JointTorque(tau + (0.0 if arm_compensates else 1.0) * g)
 
 
-def gains_by_roots(frequency: Any, damping_ratio: Any) -> Any:
-    """From the product and the sum of the two roots."""
-    w = 2 * np.pi * np.asarray(frequency)
-    root = -damping_ratio * w + 1j * w * np.sqrt(1 - damping_ratio**2 + 0j)
-    other = -damping_ratio * w - 1j * w * np.sqrt(1 - damping_ratio**2 + 0j)
-    return [(root * other).real, -(root + other).real]
-
-
 def held_by_exponential(inertia: float, kp: float, kd: float, dt: float) -> Any:
     """The exponential with the held torque as a third state."""
     A = np.zeros((3, 3))
@@ -80,11 +72,6 @@ def held_in_lists(inertia: float, kp: float, kd: float, dt: float) -> Any:
     """Four numbers in lists."""
     a = dt / inertia
     return [[1 - kp * a * dt / 2, dt - kd * a * dt / 2], [-kp * a, 1 - kd * a]]
-
-
-def factor_by_lstsq(tau_hold: Any, gravity_model: Any) -> Any:
-    """With numpy's least squares."""
-    return np.linalg.lstsq(np.reshape(gravity_model, (-1, 1)), np.ravel(tau_hold), rcond=None)[0][0]
 
 
 class ByFrequency:

@@ -11,7 +11,7 @@
 # | **You need** | numpy; notebook 00 or its conventions: the error is target minus actual, the error of an orientation is a rotation, R_wd R_wtᵀ, and not a difference; twists are (v, w) |
 # | **Given** | the simulated arm, as the textbook has it (`lk.IDEAL`) and with friction, lag and noise like Baxter's (`lk.BAXTER`); trajectories; the model with its Jacobian |
 # | **You write** | two controllers, the rate at which an error decays, a damped inverse, joint motion that leaves the tip at rest; the lag of your own arm |
-# | **Time** | core about 3 hours, all about 4 hours; 27 points |
+# | **Time** | core about 3 hours, all about 4 hours; 26 points |
 #
 # Questions marked *core* are for everybody. Those marked *extension* take the rest of the time: they earn points
 # too, but no later question depends on them.
@@ -243,8 +243,6 @@ def damped_inverse(J, damping):
     ### END SOLUTION
 
 
-# %% predict="worst_elbow"
-
 # %% [markdown]
 # How fast would the joints have to turn to move the tip at 10 cm/s in the direction that is hardest, while
 # the elbow stretches? The grey line is the limit of the larger joints, 1.5 rad/s.
@@ -256,7 +254,7 @@ def truncated_inverse(J, damping):
 
 
 def exact_inverse(J, damping):
-    """NumPy's pseudo-inverse: what no damping is, so that the prediction needs no answer of yours."""
+    """NumPy's pseudo-inverse: no damping."""
     return np.linalg.pinv(J, rcond=1e-12)
 
 
@@ -291,18 +289,12 @@ plt.ylim(1e-2, 1e2)
 plt.xlabel("elbow e1 [rad]")
 plt.ylabel("fastest joint [rad/s]")
 plt.legend(frameon=False)
-if worst_elbow is None:
-    plt.close()  # the figure waits for your prediction
-else:
-    lk.plotting.show(
-        "Joint speed for 10 cm/s of the tip in its worst direction, over the elbow's angle; the arm is "
-        f"straight at {straight:.2f} rad, because the elbow's axis is beside the upper arm. The most, in rad/s: "
-        + ", ".join(f"{speed:.3g} with {name}" for name, speed in speeds.items())
-        + ". Without damping the speeds become absurd near this pose; with damping the tip hardly moves there."
-    )
-
-# %%
-predict("worst_elbow", truth=round(float(angles[np.argmax(undamped)]), 2))
+lk.plotting.show(
+    "Joint speed for 10 cm/s of the tip in its worst direction, over the elbow's angle; the arm is "
+    f"straight at {straight:.2f} rad, because the elbow's axis is beside the upper arm. The most, in rad/s: "
+    + ", ".join(f"{speed:.3g} with {name}" for name, speed in speeds.items())
+    + ". Without damping the speeds become absurd near this pose; with damping the tip hardly moves there."
+)
 
 # %% [markdown]
 # ## A controller for the tip

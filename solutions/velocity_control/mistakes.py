@@ -15,12 +15,6 @@ from ..warmup.mistakes import euler_subtracted, in_tool_axes
 from .answers import damped_inverse
 
 
-def pushes_away(state: lk.State, target: lk.Sample, *, kp: Any, kd: Any) -> lk.JointVelocity:
-    """The error with the other sign."""
-    e, de = state.q - target.position, state.dq - target.velocity
-    return lk.JointVelocity(target.velocity + kp * e + kd * de)
-
-
 def adds_to_the_measured(state: lk.State, target: lk.Sample, *, kp: Any, kd: Any) -> Any:
     """The report's equation 17, which corrects the speed that the joint already has."""
     e, de = target.position - state.q, target.velocity - state.dq
@@ -71,11 +65,6 @@ def faster_with_d(kp: float, kd: float) -> float:
     return kp * (1.0 + kd)
 
 
-def second_order(kp: float, kd: float) -> float:
-    """The frequency of a mass on a spring, although there is no mass here."""
-    return float(np.sqrt(kp))
-
-
 def without_d(kp: float, kd: float) -> float:
     """D left out."""
     return kp
@@ -94,16 +83,6 @@ def d_turned_round(kp: float, kd: float) -> float:
 def gains_added(kp: float, kd: float) -> float:
     """The two gains added, whose units differ."""
     return kp + kd
-
-
-def what_is_left(kp: float, kd: float) -> float:
-    """What is left after a second, instead of the rate."""
-    return float(np.exp(-kp / (1.0 + kd)))
-
-
-def transposed(J: Any, damping: float) -> Array:
-    """The transpose instead of the inverse."""
-    return np.array(J.T)
 
 
 def undamped(J: Any, damping: float) -> Array:
@@ -197,11 +176,6 @@ def damping_ignored(
     return _law(state, target, J, _turn(state, target), kp, 0.0, 1.0)
 
 
-def logarithms_subtracted(R_wd: Array, R_wt: Array) -> Array:
-    """The difference of two rotation vectors."""
-    return lk.se3.rotation_log(R_wd) - lk.se3.rotation_log(R_wt)
-
-
 def turned_back(R_wd: Array, R_wt: Array) -> Array:
     """The rotation from the target to the tip."""
     return lk.se3.orientation_error(R_wt, R_wd)
@@ -212,119 +186,25 @@ def sine_of_the_turn(R_wd: Array, R_wt: Array) -> Array:
     return np.asarray(0.5 * np.cross(R_wt.T, R_wd.T).sum(axis=0))
 
 
-def arcsine_of_the_turn(R_wd: Array, R_wt: Array) -> Array:
-    """The axis times the arcsine of its sine: right up to 90 degrees."""
-    v = lk.se3.vee(R_wd @ R_wt.T)
-    n = float(np.linalg.norm(v))
-    return np.asarray(v / n * np.arcsin(min(n, 1.0))) if n else v
-
-
-def turned_back_in_tool_axes(R_wd: Array, R_wt: Array) -> Array:
-    """The turn from the target to the tip, in the target's axes."""
-    return lk.se3.rotation_log(R_wd.T @ R_wt)
-
-
 @dataclass(frozen=True)
 class WorkspaceLaw:
     """The workspace law with another error.
 
     Attributes:
-        place: Weight of the position error; -1 reverses it.
         turn: The error of orientation, given (R_wd, R_wt).
-        power: Power of the damping.
     """
 
-    place: float = 1.0
     turn: Callable[[Array, Array], Array] = lk.se3.orientation_error
-    power: float = 1.0
 
     def __call__(
         self, state: lk.State, target: lk.PoseSample, model: lk.Model, *, kp: Any, damping: float
     ) -> lk.JointVelocity:
         """The command."""
         T_wt = model.pose(state.q)
-        e_p = self.place * (target.pose[:3, 3] - T_wt[:3, 3])
+        e_p = target.pose[:3, 3] - T_wt[:3, 3]
         e = np.concatenate([e_p, self.turn(target.pose[:3, :3], T_wt[:3, :3])])
-        J_inv = damped_inverse(model.tip_jacobian(state.q), damping**self.power)
+        J_inv = damped_inverse(model.tip_jacobian(state.q), damping)
         return lk.JointVelocity(J_inv @ (target.twist + kp * e))
-
-
-@dataclass(frozen=True)
-class Measured:
-    """The workspace law with a term in the measured joint speeds.
-
-    Attributes:
-        law: The joint speeds, given J's damped inverse, the target's twist, kp times the error, J
-            and dq.
-    """
-
-    law: Callable[..., Any]
-
-    def __call__(
-        self, state: lk.State, target: lk.PoseSample, model: lk.Model, *, kp: Any, damping: float
-    ) -> lk.JointVelocity:
-        """The command."""
-        J, e = model.tip_jacobian(state.q), lk.se3.pose_error(target.pose, model.pose(state.q))
-        J_inv = damped_inverse(J, damping)
-        return lk.JointVelocity(self.law(J_inv, target.twist, kp * e, J, state.dq))
-
-
-def jacobian_of_ready(
-    state: lk.State, target: lk.PoseSample, model: lk.Model, *, kp: Any, damping: float
-) -> lk.JointVelocity:
-    """The Jacobian of the ready pose in all poses."""
-    J = model.tip_jacobian(model.robot.ready)
-    return _law(state, target, J, _turn(state, target), kp, damping, 1.0)
-
-
-def by_the_transpose(
-    state: lk.State, target: lk.PoseSample, model: lk.Model, *, kp: Any, damping: float
-) -> lk.JointVelocity:
-    """The transpose of the Jacobian instead of its inverse."""
-    e = lk.se3.pose_error(target.pose, model.pose(state.q))
-    return lk.JointVelocity(model.tip_jacobian(state.q).T @ (target.twist + kp * e))
-
-
-@dataclass(frozen=True)
-class InToolAxes:
-    """The whole error in the tool's axes.
-
-    Attributes:
-        body: Whether the Jacobian is in the tool's axes, too; the target's twist stays in the
-            world's.
-    """
-
-    body: bool
-
-    def __call__(
-        self, state: lk.State, target: lk.PoseSample, model: lk.Model, *, kp: Any, damping: float
-    ) -> lk.JointVelocity:
-        """The command."""
-        T_td = lk.se3.inverse(model.pose(state.q)) @ target.pose
-        e = np.concatenate([T_td[:3, 3], lk.se3.rotation_log(T_td[:3, :3])])
-        J = (model.body_jacobian if self.body else model.tip_jacobian)(state.q)
-        return lk.JointVelocity(damped_inverse(J, damping) @ (target.twist + kp * e))
-
-
-def one_for_the_identity(J: Any, dq_wish: Any) -> Array:
-    """The number 1 where the identity belongs, which numpy combines with every entry."""
-    return np.asarray((1.0 - np.linalg.pinv(J) @ J) @ dq_wish)
-
-
-def no_motion(J: Any, dq_wish: Any) -> Array:
-    """Zero, which does not move the tip, nor anything else."""
-    return np.zeros(7)
-
-
-def length_one(J: Any, dq_wish: Any) -> Array:
-    """The right direction with length 1."""
-    free = np.asarray(dq_wish - np.linalg.pinv(J) @ (J @ dq_wish))
-    return free / float(np.linalg.norm(free))
-
-
-def minus_the_free_part(J: Any, dq_wish: Any) -> Array:
-    """The right part with the other sign."""
-    return np.asarray(np.linalg.pinv(J) @ (J @ dq_wish) - dq_wish)
 
 
 def transpose_projector(J: Any, dq_wish: Any) -> Array:
@@ -340,11 +220,6 @@ def damped_projector(J: Any, dq_wish: Any) -> Array:
 def the_rest(J: Any, dq_wish: Any) -> Array:
     """The other part, which moves the tip."""
     return np.asarray(np.linalg.pinv(J) @ (J @ dq_wish))
-
-
-def all_of_it(J: Any, dq_wish: Any) -> Array:
-    """The wish, unchanged."""
-    return np.array(dq_wish)
 
 
 @dataclass(frozen=True)
@@ -399,61 +274,21 @@ class TwistLaw:
     """The workspace law with weighted terms; 1 is right, 0 omits a term, -1 reverses it.
 
     Attributes:
-        tool: Whether the error of position is in the tool's axes.
         turn_first: Whether the orientation error comes before the position error.
-        gain: Power of kp.
-        feed: Weights of the target's velocity and angular velocity.
         on_all: Whether kp multiplies the feed-forward, too.
-        inverse: The inverse, given J and the damping.
-        turn: The error of orientation, given (R_wd, R_wt).
-        twist_in_tool: Whether the target's twist is transformed to the tool's axes.
     """
 
-    tool: bool = False
     turn_first: bool = False
-    gain: float = 1.0
-    feed: tuple[float, float] = (1.0, 1.0)
     on_all: bool = False
-    inverse: Callable[[Array, float], Array] = damped_inverse
-    turn: Callable[[Array, Array], Array] = lk.se3.orientation_error
-    twist_in_tool: bool = False
 
     def __call__(
         self, state: lk.State, target: lk.PoseSample, model: lk.Model, *, kp: Any, damping: float
     ) -> lk.JointVelocity:
         """The command."""
-        T_wt, J, K = model.pose(state.q), model.tip_jacobian(state.q), kp**self.gain
-        place = target.pose[:3, 3] - T_wt[:3, 3]
-        place = T_wt[:3, :3].T @ place if self.tool else place
-        e = np.concatenate([place, self.turn(target.pose[:3, :3], T_wt[:3, :3])])
+        e = lk.se3.pose_error(target.pose, model.pose(state.q))
         e = np.roll(e, 3) if self.turn_first else e
-        V = np.repeat(self.feed, 3) * target.twist
-        if self.twist_in_tool:
-            V = np.concatenate([T_wt[:3, :3].T @ V[:3], T_wt[:3, :3].T @ V[3:]])
-        V = (kp * V if self.on_all else V) + K * e
-        return lk.JointVelocity(self.inverse(J, damping) @ V)
-
-
-def twice_the_quaternion(R_wd: Array, R_wt: Array) -> Array:
-    """The axis times 2 sin(angle / 2)."""
-    turn = lk.se3.orientation_error(R_wd, R_wt)
-    angle = float(np.linalg.norm(turn))
-    return turn / angle * 2.0 * np.sin(angle / 2.0) if angle else turn
-
-
-def matrices_subtracted(R_wd: Array, R_wt: Array) -> Array:
-    """The skew part of a difference of matrices."""
-    return lk.se3.vee(R_wd - R_wt)
-
-
-def euler_of_the_turn(R_wd: Array, R_wt: Array) -> Array:
-    """Roll, pitch and yaw of the turn."""
-    return np.asarray(euler_subtracted(R_wd @ R_wt.T, np.eye(3)))
-
-
-def no_inverse(J: Array, damping: float) -> Array:
-    """J^T (J J^T + damping), without the inverse."""
-    return np.asarray(J.T @ (J @ J.T + damping * np.eye(len(J))))
+        V = (kp * target.twist if self.on_all else target.twist) + kp * e
+        return lk.JointVelocity(damped_inverse(model.tip_jacobian(state.q), damping) @ V)
 
 
 def place_alone(J: Any, dq_wish: Any) -> Array:
@@ -465,15 +300,3 @@ def a_column_of_v(J: Any, dq_wish: Any) -> Array:
     """The last column of V^T where its last row belongs."""
     n = np.linalg.svd(np.asarray(J))[2][:, -1]
     return np.asarray(n * (n @ dq_wish))
-
-
-def length_for_component(J: Any, dq_wish: Any) -> Array:
-    """The null vector with the length of the wish."""
-    n = np.linalg.svd(np.asarray(J))[2][-1]
-    return np.asarray(n * np.linalg.norm(dq_wish))
-
-
-def two_freedoms(J: Any, dq_wish: Any) -> Array:
-    """The last two singular vectors, as if two freedoms were left."""
-    N = np.linalg.svd(np.asarray(J))[2][-2:]
-    return np.asarray(N.T @ (N @ dq_wish))

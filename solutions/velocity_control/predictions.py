@@ -1,6 +1,6 @@
 """What notebook 03 lets students predict."""
 
-from labkit.course import Curve, Identification, Measured, Number, Prediction
+from labkit.course import Curve, Identification, Measured, Prediction
 
 PREDICTIONS = (
     Prediction(
@@ -10,15 +10,6 @@ PREDICTIONS = (
         "it is 0.2, 0.08, 0.03, 0.01, ... rad. Draw the error for kp = 3 and kd = 3.",
         Curve((0.0, 0.3, 0.6, 0.9, 1.2, 1.5), "time [s]", "error [rad]", -0.2, 0.3),
         truth=[0.2, 0.16, 0.13, 0.1, 0.08, 0.07],
-    ),
-    Prediction(
-        "worst_elbow",
-        "The elbow stretches from 0.8 rad to 0 while the tip must move at 10 cm/s in its hardest "
-        "direction. At which angle of the elbow do the joints turn fastest, without damping? (At e1 = 0 the "
-        "elbow's axis is 36 cm in front of the shoulder's and 7 cm below it, and the wrist's axis is 37 cm in front "
-        "of the elbow's and 1 cm below it. A larger e1 bends the forearm downwards.)",
-        Number("rad", 0.0, 0.8),
-        truth=0.16,
     ),
     Identification(
         "my_lag",

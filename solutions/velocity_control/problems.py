@@ -84,14 +84,6 @@ JOINT_VELOCITY_PD = Problem(
     ),
     wrong=(
         Wrong(
-            "the error with the other sign",
-            "Actual minus target pushes the arm away from its target: use target minus actual. "
-            "With feed-forward and a start on the path, the mistake would not be visible for a "
-            "while.",
-            mistakes.pushes_away,
-            "Start from an offset; feed-forward hides broken feedback.",
-        ),
-        Wrong(
             "a correction of the measured speed",
             "You add the corrections to the measured speed, so they accumulate two hundred times "
             "a second: without kd nothing damps the arm, and it swings. Add them to the target's "
@@ -140,85 +132,10 @@ JOINT_VELOCITY_PD = Problem(
             "Test each gain by itself.",
         ),
         Wrong(
-            "the target's acceleration added",
-            "The command is a speed, and an acceleration has another unit. Leave the target's "
-            "acceleration out.",
-            mistakes.JointLaw(ddq=1.0),
-            "Add only quantities of the same unit.",
-        ),
-        Wrong(
             "kp on the feed-forward too",
             "Multiply only the error by the gain. The target's speed is commanded as it is.",
             mistakes.Fed(lambda ff, e, de, kp, kd, *_: kp * (ff + e) + kd * de),
             "A gain with a unit changes the unit of what it multiplies.",
-        ),
-        Wrong(
-            "the feed-forward twice",
-            "Add the target's speed only once as feed-forward. It also occurs in the error of "
-            "the speeds, where it belongs.",
-            mistakes.Fed(lambda ff, e, de, kp, kd, *_: 2.0 * ff + kp * e + kd * de),
-            "Write each term once.",
-        ),
-        Wrong(
-            "the feed-forward subtracted",
-            "The target's speed is the speed that the joint should have when there is no error: "
-            "add it.",
-            mistakes.Fed(lambda ff, e, de, kp, kd, *_: -ff + kp * e + kd * de),
-            "With no error, the command is the target's speed.",
-        ),
-        Wrong(
-            "kd times the measured speed, with a plus",
-            "Your term, kd times the measured speed, makes the arm faster. The error of the "
-            "speeds is target minus actual.",
-            mistakes.Fed(lambda ff, e, de, kp, kd, state, target: ff + kp * e + kd * state.dq),
-            "One convention for the whole course: target minus actual.",
-        ),
-        Wrong(
-            "the speeds added",
-            "You added the two speeds. The error of the speeds is target minus actual.",
-            mistakes.Fed(
-                lambda ff, e, de, kp, kd, state, target: ff + kp * e + kd * (ff + state.dq)
-            ),
-            "One convention for the whole course: target minus actual.",
-        ),
-        Wrong(
-            "the target's position as feed-forward",
-            "The target's position is not a speed: the feed-forward is target.velocity.",
-            mistakes.Fed(
-                lambda ff, e, de, kp, kd, state, target: target.position + kp * e + kd * de
-            ),
-            "Units: rad is not rad/s.",
-        ),
-        Wrong(
-            "the gains multiplied",
-            "You multiplied the error of the speeds by kp and kd. Multiply it by kd alone.",
-            mistakes.Fed(lambda ff, e, de, kp, kd, *_: ff + kp * e + kp * kd * de),
-            "A PD law has more than one form; here it is kp e + kd de.",
-        ),
-        Wrong(
-            "half of the feed-forward",
-            "The target's speed is commanded as it is, without a half.",
-            mistakes.Fed(lambda ff, e, de, kp, kd, *_: 0.5 * ff + kp * e + kd * de),
-            "With no error, the command is the target's speed.",
-        ),
-        Wrong(
-            "the gain squared",
-            "The error is multiplied by kp only once.",
-            mistakes.Fed(lambda ff, e, de, kp, kd, *_: ff + kp**2 * e + kd * de),
-            "Units: kp is in 1/s.",
-        ),
-        Wrong(
-            "a scalar product for the gains",
-            "np.dot and @ add up the seven joints to one number. The operator * multiplies each "
-            "joint's error by its own gain.",
-            mistakes.Fed(lambda ff, e, de, kp, kd, *_: ff + np.dot(kp * np.ones(7), e) + kd * de),
-            "Each joint has its own gain.",
-        ),
-        Wrong(
-            "the error of the speeds added twice",
-            "You also added the error of the speeds without its gain.",
-            mistakes.Fed(lambda ff, e, de, kp, kd, *_: ff + de + kp * e + kd * de),
-            "Write each term once.",
         ),
     ),
     variants=(variants.joint_in_a_loop, variants.joint_with_matrices),
@@ -258,13 +175,6 @@ DECAY_RATE = Problem(
             "In a velocity loop, D brakes the very speed that reduces the error.",
         ),
         Wrong(
-            "the frequency of a mass on a spring",
-            "√kp is the frequency of a second-order system. Here the speed itself is commanded: "
-            "write down the equation of the error, which is of first order.",
-            mistakes.second_order,
-            "Count the integrators between the command and the angle.",
-        ),
-        Wrong(
             "kd left out",
             "kp alone is right only for kd = 0. The measured speed is the commanded one, so the "
             "command depends on itself through kd: solve for the speed.",
@@ -293,54 +203,10 @@ DECAY_RATE = Problem(
             "Quantities of different units cannot be added.",
         ),
         Wrong(
-            "the part of the error that is left after one second",
-            "This is exp(-r), the part of the error that is left after one second. Return the r "
-            "in it.",
-            mistakes.what_is_left,
-            "Read what the question asks for: a rate, in 1/s.",
-        ),
-        Wrong(
             "the fraction upside down",
             "The rate grows with kp, so kp belongs in the numerator.",
             mistakes.Rate(lambda kp, kd: (1.0 + kd) / kp),
             "Check the formula at kd = 0: the rate must be kp.",
-        ),
-        Wrong(
-            "the gains multiplied",
-            "At kd = 0 the rate is kp, but your product would be 0.",
-            mistakes.Rate(lambda kp, kd: kp * kd),
-            "Check the formula at kd = 0: the rate must be kp.",
-        ),
-        Wrong(
-            "kd over kp",
-            "At kd = 0 the rate is kp, but kd/kp would be 0.",
-            mistakes.Rate(lambda kp, kd: kd / kp),
-            "Check the formula at kd = 0: the rate must be kp.",
-        ),
-        Wrong(
-            "a damping ratio",
-            "kd/(2 √kp) is the damping ratio of a mass on a spring. Here nothing has mass: the equation is of first order.",
-            mistakes.Rate(lambda kp, kd: kd / (2.0 * np.sqrt(kp))),
-            "Count the derivatives: one derivative, one rate.",
-        ),
-        Wrong(
-            "1 + kp in the numerator",
-            "Collect the factor of de/dt, which is 1 + kd, and the factor of e, which is kp alone.",
-            mistakes.Rate(lambda kp, kd: (1.0 + kp) / (1.0 + kd)),
-            "Collect the terms of de/dt and of e.",
-        ),
-        Wrong(
-            "the square root of the rate",
-            "A square root belongs to an equation of second order. In de/dt = -r e, the rate is "
-            "r itself.",
-            mistakes.Rate(lambda kp, kd: np.sqrt(kp / (1.0 + kd))),
-            "Count the derivatives: one derivative, one rate.",
-        ),
-        Wrong(
-            "1 + kd squared",
-            "The rate is divided by 1 + kd only once.",
-            mistakes.Rate(lambda kp, kd: kp / (1.0 + kd) ** 2),
-            "Collect the terms of de/dt and of e.",
         ),
         Wrong(
             "kd subtracted from kp",
@@ -348,20 +214,6 @@ DECAY_RATE = Problem(
             "-kp e.",
             mistakes.Rate(lambda kp, kd: kp - kd),
             "Collect the terms of de/dt and of e.",
-        ),
-        Wrong(
-            "the 1 of 1 + kd forgotten",
-            "The factor of de/dt is 1 + kd. With kd alone the rate would be infinite without D: "
-            "at kd = 0 yours divides by zero.",
-            mistakes.Rate(lambda kp, kd: kp / kd),
-            "Check the formula at kd = 0: the rate must be kp.",
-        ),
-        Wrong(
-            "the sum of the gains in the denominator",
-            "kp is in 1/s and kd has no unit, so they cannot be added. Collect the factor of "
-            "de/dt: 1 + kd.",
-            mistakes.Rate(lambda kp, kd: kp / (kp + kd)),
-            "Units: a rate is in 1/s.",
         ),
     ),
     variants=(variants.rate_from_the_root,),
@@ -409,13 +261,6 @@ DAMPED_INVERSE = Problem(
     ),
     wrong=(
         Wrong(
-            "the transpose instead of the inverse",
-            "Jᵀ turns forces at the tip into joint torques; it does not undo J. Use the damped "
-            "pseudo-inverse.",
-            mistakes.transposed,
-            "Jᵀ maps forces, J⁺ maps speeds.",
-        ),
-        Wrong(
             "no damping",
             "This is the plain pseudo-inverse, np.linalg.pinv(J): when the elbow is nearly "
             "straight, it commands speeds that no joint can reach. Add the damping times the "
@@ -451,18 +296,6 @@ DAMPED_INVERSE = Problem(
             "Is it λ or λ²? Look at what is minimised.",
         ),
         Wrong(
-            "the inverse forgotten",
-            "You multiplied by J Jᵀ + damping I; multiply by its inverse.",
-            mistakes.no_inverse,
-            "Test an inverse: multiply it by the matrix.",
-        ),
-        Wrong(
-            "s missing in the numerator",
-            "Each singular value s must become s/(s² + damping). Yours becomes 1/(s² + damping).",
-            mistakes.BySingularValues(lambda s, d: 1.0 / (s**2 + d)),
-            "Check a damping of 0: each factor must then be 1/s.",
-        ),
-        Wrong(
             "s where s² belongs",
             "Each singular value s must become s/(s² + damping). Yours becomes 1/(s + damping), "
             "which damps less where s is small.",
@@ -481,26 +314,6 @@ DAMPED_INVERSE = Problem(
             "Add the damping only once.",
             mistakes.BySingularValues(lambda s, d: s / (s**2 + 2.0 * d)),
             "In the gradient of a sum of squares, both factors 2 cancel.",
-        ),
-        Wrong(
-            "half of the damping",
-            "The factors 2 of the gradient cancel on both sides: add the whole damping.",
-            mistakes.BySingularValues(lambda s, d: s / (s**2 + 0.5 * d)),
-            "In the gradient of a sum of squares, both factors 2 cancel.",
-        ),
-        Wrong(
-            "a transpose, made smaller",
-            "This is the transpose times a number. In the damped inverse each singular value s "
-            "becomes s/(s² + damping).",
-            mistakes.BySingularValues(lambda s, d: s / (1.0 + d)),
-            "A transpose is not an inverse.",
-        ),
-        Wrong(
-            "the pseudo-inverse times the damping",
-            "You multiplied the pseudo-inverse by the damping, so without damping nothing "
-            "remains. Add the damping to J Jᵀ before you invert it.",
-            mistakes.BySingularValues(lambda s, d: d / s),
-            "Check a damping of 0: each factor must then be 1/s.",
         ),
     ),
     variants=(variants.inverse_the_other_way, variants.inverse_by_svd),
@@ -632,56 +445,12 @@ WORKSPACE_VELOCITY_PD = Problem(
             "Feedback waits for an error; feed-forward does not.",
         ),
         Wrong(
-            "the error of the twist as feed-forward",
-            "You subtracted the measured twist, J q̇, from the target's twist, so in steady "
-            "motion you command the tip to stand still. Command target.twist as it is; this law "
-            "has no D.",
-            mistakes.Measured(lambda J_inv, V, e, J, dq: J_inv @ (V - J @ dq + e)),
-            "A difference of speeds is feedback, and needs a gain.",
-        ),
-        Wrong(
-            "a D without a gain",
-            "You added the error of the twist, target.twist - J q̇, with the factor 1, which "
-            "halves the rate at which the error decays. This law has no D: leave this error out.",
-            mistakes.Measured(lambda J_inv, V, e, J, dq: J_inv @ (2.0 * V - J @ dq + e)),
-            "In a velocity loop, D brakes the very speed that reduces the error.",
-        ),
-        Wrong(
-            "the measured speed as feed-forward",
-            "You added the correction to the measured joint speeds, so it accumulates at every "
-            "tick. The tip should move with the target's twist, not with the speed that it "
-            "already has.",
-            mistakes.Measured(lambda J_inv, V, e, J, dq: dq + J_inv @ e),
-            "Adding to the measured speed puts one more integrator in the loop.",
-        ),
-        Wrong(
-            "the measured speed added",
-            "You added state.dq to the command, so the command accumulates at every tick. The "
-            "target's twist already says how fast the tip should move.",
-            mistakes.Measured(lambda J_inv, V, e, J, dq: dq + J_inv @ (V + e)),
-            "Adding to the measured speed puts one more integrator in the loop.",
-        ),
-        Wrong(
-            "the Jacobian of the ready pose",
-            "You used the Jacobian of the ready pose, but the Jacobian changes with the angles: "
-            "compute it at state.q in every call.",
-            mistakes.jacobian_of_ready,
-            "A Jacobian belongs to one pose.",
-        ),
-        Wrong(
             "the damping ignored",
             "This is the plain pseudo-inverse: when the elbow is straight, it commands speeds "
             "that no joint can reach. Use the damped inverse.",
             mistakes.damping_ignored,
             "Damping accepts a small error of the tip in exchange for speeds that the joints can "
             "reach.",
-        ),
-        Wrong(
-            "the error of position reversed",
-            "Your error of the position has the wrong sign, so the tip moves away from its "
-            "target. Use target minus actual.",
-            mistakes.WorkspaceLaw(place=-1.0),
-            "Every error has the same sign convention: target minus actual.",
         ),
         Wrong(
             "the turn reversed",
@@ -691,76 +460,12 @@ WORKSPACE_VELOCITY_PD = Problem(
             "Say from where to where a rotation turns.",
         ),
         Wrong(
-            "the turn reversed, in the tool's axes",
-            "R_wdᵀ R_wt turns from the target to the tip, and its components are along the "
-            "target's axes. You need the turn from the tip to the target, in world axes: R_wd "
-            "R_wtᵀ.",
-            mistakes.WorkspaceLaw(turn=mistakes.turned_back_in_tool_axes),
-            "R_wd R_tw is a turn in world axes: w is its first letter and its last.",
-        ),
-        Wrong(
-            "position and turn both reversed",
-            "Your feedback has the wrong sign in all six numbers. The error is target minus "
-            "actual, and kp times the error is added to the target's twist.",
-            mistakes.WorkspaceLaw(place=-1.0, turn=mistakes.turned_back),
-            "Every error has the same sign convention: target minus actual.",
-        ),
-        Wrong(
-            "logarithms subtracted",
-            "The difference of two rotation vectors is the rotation vector between them only if "
-            "both turn about the same axis. First multiply the rotations, then take the "
-            "logarithm of the product.",
-            mistakes.WorkspaceLaw(turn=mistakes.logarithms_subtracted),
-            "Orientations are compared by a product.",
-        ),
-        Wrong(
             "the sine of the turn",
             "Half the cross products of the axes, or half of R - Rᵀ, is the axis times the sine "
             "of the angle: nearly right for small turns, too weak at 90 degrees, zero at 180. "
             "Take the logarithm, which gives the angle.",
             mistakes.WorkspaceLaw(turn=mistakes.sine_of_the_turn),
             "sin x is x only for small x.",
-        ),
-        Wrong(
-            "the arcsine of the turn",
-            "The sine cannot tell 120 degrees from 60, so its arcsine is wrong beyond 90 degrees. "
-            "Use the logarithm, which gives the angle up to 180.",
-            mistakes.WorkspaceLaw(turn=mistakes.arcsine_of_the_turn),
-            "sin x is the same for x and 180° - x.",
-        ),
-        Wrong(
-            "the transpose in place of the inverse",
-            "Jᵀ turns forces into torques. To get joint speeds from a twist, use the damped "
-            "inverse.",
-            mistakes.by_the_transpose,
-            "Jᵀ maps forces, J⁺ maps speeds.",
-        ),
-        Wrong(
-            "the error in the tool's axes",
-            "Both parts of your error are in the tool's axes, while the twist and the tip "
-            "Jacobian are in world axes. Turn the error into world axes.",
-            mistakes.InToolAxes(body=False),
-            "The error and the Jacobian must be in the same axes.",
-        ),
-        Wrong(
-            "everything in the tool's axes but the target's twist",
-            "Your error and Jacobian are in the tool's axes, but the target's twist is in world "
-            "axes. Use world axes for all three.",
-            mistakes.InToolAxes(body=True),
-            "Add only vectors in the same axes.",
-        ),
-        Wrong(
-            "the damping squared",
-            "`damping` is already the factor of |dq|², as in damped_inverse. Do not square it.",
-            mistakes.WorkspaceLaw(power=2.0),
-            "Is it λ or λ²? Look at what is minimised.",
-        ),
-        Wrong(
-            "the error of position in the tool's axes",
-            "The error of the position is already in world axes. You turned it into the tool's "
-            "axes, which are not those of the Jacobian.",
-            mistakes.TwistLaw(tool=True),
-            "The error and the Jacobian must be in the same axes.",
         ),
         Wrong(
             "the turn before the position",
@@ -774,71 +479,6 @@ WORKSPACE_VELOCITY_PD = Problem(
             "Multiply only the error by the gain. The target's twist is commanded as it is.",
             mistakes.TwistLaw(on_all=True),
             "A gain with a unit changes the unit of what it multiplies.",
-        ),
-        Wrong(
-            "the feed-forward subtracted",
-            "The target's twist is the twist that the tip should have when there is no error: "
-            "add it.",
-            mistakes.TwistLaw(feed=(-1.0, -1.0)),
-            "With no error, the command is the target's twist.",
-        ),
-        Wrong(
-            "the feed-forward twice",
-            "Add the target's twist only once.",
-            mistakes.TwistLaw(feed=(2.0, 2.0)),
-            "With no error, the command is the target's twist.",
-        ),
-        Wrong(
-            "half of the feed-forward: the turn alone",
-            "The target's twist has six numbers. You used only its angular velocity.",
-            mistakes.TwistLaw(feed=(0.0, 1.0)),
-            "A twist is (v, w).",
-        ),
-        Wrong(
-            "the inverse forgotten",
-            "You multiplied by J Jᵀ + damping I; multiply by its inverse.",
-            mistakes.TwistLaw(inverse=mistakes.no_inverse),
-            "Test an inverse: multiply it by the matrix.",
-        ),
-        Wrong(
-            "the gain squared",
-            "The error is multiplied by kp only once.",
-            mistakes.TwistLaw(gain=2.0),
-            "Units: kp is in 1/s.",
-        ),
-        Wrong(
-            "no gain",
-            "You added the error without kp.",
-            mistakes.TwistLaw(gain=0.0),
-            "Units: an error is in m, a twist in m/s.",
-        ),
-        Wrong(
-            "twice the quaternion's vector",
-            "2 sin(θ/2) times the axis is close to the rotation vector only for small angles. "
-            "Use the angle itself.",
-            mistakes.TwistLaw(turn=mistakes.twice_the_quaternion),
-            "sin x and x agree only for small x.",
-        ),
-        Wrong(
-            "the matrices subtracted",
-            "R_wd - R_wt is not a rotation, and its skew part is not the turn between the two. "
-            "Multiply one matrix by the transpose of the other.",
-            mistakes.TwistLaw(turn=mistakes.matrices_subtracted),
-            "Orientations are compared by a product.",
-        ),
-        Wrong(
-            "Euler angles of the turn",
-            "Roll, pitch and yaw of the right rotation are not a rotation vector: use "
-            "lk.se3.rotation_log.",
-            mistakes.TwistLaw(turn=mistakes.euler_of_the_turn),
-            "A rotation vector is the angle times the axis.",
-        ),
-        Wrong(
-            "the twist in the tool's axes",
-            "You turned target.twist into the tool's axes. It is already in world axes, like the "
-            "Jacobian.",
-            mistakes.TwistLaw(twist_in_tool=True),
-            "The error and the Jacobian must be in the same axes.",
         ),
     ),
     variants=(variants.WorkspacePD(), variants.workspace_in_tool_axes),
@@ -905,40 +545,6 @@ POSTURE_VELOCITY = Problem(
             "Wish = part that moves the tip + free part.",
         ),
         Wrong(
-            "the whole wish",
-            "The whole wish moves the tip. Subtract the part that does so.",
-            mistakes.all_of_it,
-            "J times the answer must be zero.",
-        ),
-        Wrong(
-            "the number 1 for the identity matrix",
-            "1 - A subtracts every entry of A from the number 1. Write np.eye(7) for the "
-            "identity matrix.",
-            mistakes.one_for_the_identity,
-            "1 is not I.",
-        ),
-        Wrong(
-            "no motion at all",
-            "With zero speeds the tip does not move, but the joints then ignore the wish. Keep "
-            "as much of the wish as possible without moving the tip.",
-            mistakes.no_motion,
-            "Two conditions: the tip does not move, and the speeds are as close to the wish as "
-            "possible.",
-        ),
-        Wrong(
-            "the answer scaled to length one",
-            "The direction is right, but its length is part of the answer too: do not divide by "
-            "it.",
-            mistakes.length_one,
-            "A projection can shorten a vector; it does not normalise it.",
-        ),
-        Wrong(
-            "the free part with the other sign",
-            "Subtract the part that moves the tip from the wish, not the wish from that part.",
-            mistakes.minus_the_free_part,
-            "Wish = part that moves the tip + free part.",
-        ),
-        Wrong(
             "the tip may turn",
             "You kept only the tip's position still, with the three linear rows. The tip must "
             "not turn either: use all six rows.",
@@ -950,19 +556,6 @@ POSTURE_VELOCITY = Problem(
             "np.linalg.svd returns Vᵀ: the null vector is its last row, not its last column.",
             mistakes.a_column_of_v,
             "Test a null vector: J n = 0.",
-        ),
-        Wrong(
-            "the length of the wish in place of its component",
-            "The part of the wish along n is n (n · wish). Yours has the length of the whole wish.",
-            mistakes.length_for_component,
-            "A projection is never longer than what is projected.",
-        ),
-        Wrong(
-            "two freedoms",
-            "Seven joints and six numbers of the tip leave one freedom, so use only one singular "
-            "vector, the last.",
-            mistakes.two_freedoms,
-            "Count the freedoms: the number of joints minus the rank of J.",
         ),
     ),
     variants=(

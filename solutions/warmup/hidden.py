@@ -62,24 +62,6 @@ def points(random: Random) -> Iterator[Call]:
         yield call(pose(random), random.uniform(-0.5, 0.5, 3))
 
 
-def poses_aligned(random: Random) -> Iterator[Call]:
-    """Poses that only shift."""
-    for _ in range(2):
-        yield call(lk.se3.pose(np.eye(3), random.uniform(-0.8, 0.8, 3)))
-
-
-def poses_yawed(random: Random) -> Iterator[Call]:
-    """Poses that are shifted and turned about the vertical."""
-    for _ in range(2):
-        yield call(_yawed(random))
-
-
-def poses(random: Random) -> Iterator[Call]:
-    """Any poses."""
-    for _ in range(4):
-        yield call(pose(random))
-
-
 def turns_about_z(random: Random) -> Iterator[Call]:
     """A level tool turned about the vertical, and an orientation without error."""
     for angle in random.uniform(0.1, 0.6, 2):

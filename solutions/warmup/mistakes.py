@@ -23,11 +23,6 @@ def a_column(target: lk.Sample, state: lk.State) -> Array:
     return target.position.reshape(7, 1) - state.q
 
 
-def the_sum(target: lk.Sample, state: lk.State) -> Any:
-    """One number for seven joints."""
-    return (target.position - state.q).sum()
-
-
 def of_the_speeds(target: lk.Sample, state: lk.State) -> Array:
     """The error of the speeds."""
     return target.velocity - state.dq
@@ -56,32 +51,6 @@ def shifts_first(T_ab: Any, p_b: Any) -> Array:
 def turns_backwards(T_ab: Any, p_b: Any) -> Array:
     """The rotation transposed, so the axes of b are mistaken for those of a."""
     return np.asarray(T_ab[:3, :3].T @ p_b + T_ab[:3, 3])
-
-
-def minus_the_translation(T_ab: Any) -> Array:
-    """The rotation inverted, the translation only negated."""
-    T = np.eye(4)
-    T[:3, :3], T[:3, 3] = T_ab[:3, :3].T, -T_ab[:3, 3]
-    return T
-
-
-def transposed(T_ab: Any) -> Array:
-    """The whole matrix transposed, as if it were a rotation."""
-    return np.array(T_ab.T)
-
-
-def rotation_kept(T_ab: Any) -> Array:
-    """The translation right for a rotation that was never inverted."""
-    T = np.eye(4)
-    T[:3, :3], T[:3, 3] = T_ab[:3, :3], -T_ab[:3, :3].T @ T_ab[:3, 3]
-    return T
-
-
-def turned_forwards(T_ab: Any) -> Array:
-    """The translation turned by R, not by its inverse."""
-    T = np.eye(4)
-    T[:3, :3], T[:3, 3] = T_ab[:3, :3].T, -T_ab[:3, :3] @ T_ab[:3, 3]
-    return T
 
 
 def _euler(R: Any) -> Array:
@@ -115,31 +84,14 @@ def sine_of_the_angle(R_wd: Any, R_wt: Any) -> Array:
     return lk.se3.vee(R_wd @ R_wt.T)
 
 
-def matrices_subtracted(R_wd: Any, R_wt: Any) -> Array:
-    """Subtracts the matrices and reads the skew part of the difference."""
-    return lk.se3.vee(R_wd - R_wt)
-
-
 def only_shifts(T_ab: Any, p_b: Any) -> Array:
     """The rotation is lost."""
     return np.asarray(T_ab[:3, 3] + p_b)
 
 
-def minus_forgotten(T_ab: Any) -> Array:
-    """The translation turned, but not negated."""
-    T = np.eye(4)
-    T[:3, :3], T[:3, 3] = T_ab[:3, :3].T, T_ab[:3, :3].T @ T_ab[:3, 3]
-    return T
-
-
 def logarithms_subtracted(R_wd: Any, R_wt: Any) -> Array:
     """The rotation vectors of both orientations subtracted."""
     return lk.se3.rotation_log(R_wd) - lk.se3.rotation_log(R_wt)
-
-
-def backwards_in_tool_axes(R_wd: Any, R_wt: Any) -> Array:
-    """Transposes the wrong one: the turn backwards, and in the desired tool's axes."""
-    return lk.se3.rotation_log(R_wd.T @ R_wt)
 
 
 def zero_by_zero(R_wd: Any, R_wt: Any) -> Array:
@@ -153,11 +105,6 @@ def zero_by_zero(R_wd: Any, R_wt: Any) -> Array:
 def without_its_sign(target: lk.Sample, state: lk.State) -> Array:
     """The size of the error."""
     return np.abs(target.position - state.q)
-
-
-def no_error(target: lk.Sample, state: lk.State) -> Array:
-    """The target itself."""
-    return np.array(target.position)
 
 
 @dataclass(frozen=True)
@@ -175,26 +122,6 @@ class TurnOf:
         turn = lk.se3.rotation_log(R_wd @ R_wt.T)
         angle = float(np.linalg.norm(turn))
         return turn / angle * self.angle(angle) if angle else turn
-
-
-def euler_of_the_turn(R_wd: Any, R_wt: Any) -> Array:
-    """Roll, pitch and yaw of the right rotation."""
-    return _euler(R_wd @ R_wt.T)
-
-
-def one_axis_alone(R_wd: Any, R_wt: Any) -> Array:
-    """The cross product of the x axes only."""
-    return np.cross(R_wt[:, 0], R_wd[:, 0])
-
-
-def half_the_cross_products(R_wd: Any, R_wt: Any) -> Array:
-    """The sum of all three cross products without the factor of one half."""
-    return 2.0 * lk.se3.vee(R_wd @ R_wt.T)
-
-
-def minus_the_pose(T_ab: Any) -> Array:
-    """Every number with the other sign."""
-    return -np.asarray(T_ab)
 
 
 def translation_subtracted(T_ab: Any, p_b: Any) -> Array:

@@ -74,13 +74,6 @@ JOINT_ERROR = Problem(
             "Broadcasting makes shapes fit that do not belong together.",
         ),
         Wrong(
-            "one number for seven joints",
-            "In a sum, the error of one joint can hide that of another. Return one error for "
-            "each joint.",
-            mistakes.the_sum,
-            "Errors of opposite sign cancel in a sum.",
-        ),
-        Wrong(
             "the error of the speeds",
             "You subtracted the speeds. The angles are `target.position` and `state.q`.",
             mistakes.of_the_speeds,
@@ -99,13 +92,6 @@ JOINT_ERROR = Problem(
             "turn. Keep the sign.",
             mistakes.without_its_sign,
             "Feedback needs a sign.",
-        ),
-        Wrong(
-            "the target itself",
-            "You returned the angles at which the joints should be. The error is how far the "
-            "joints are from these angles: subtract state.q.",
-            mistakes.no_error,
-            "Error: target minus actual.",
         ),
     ),
     variants=(variants.error_list,),
@@ -194,77 +180,6 @@ TRANSFORM_POINT = Problem(
         ),
     ),
     variants=(variants.point_homogeneous, variants.point_by_einsum),
-)
-
-INVERSE_TRANSFORM = Problem(
-    name="inverse_transform",
-    points=2,
-    outcomes=("frames",),
-    asks="Return `T_ba`, the pose of a in b, computed from `T_ab`, the pose of b in a. Its shape "
-    "is (4, 4).",
-    answer=answers.inverse_transform,
-    judge=Close(rtol=1e-5, atol=1e-5),
-    trials=(
-        Trial(
-            "a pose that only shifts",
-            (call(SHIFT),),
-            hidden.poses_aligned,
-            weight=0.0,
-        ),
-        Trial("a shift and 90 degrees of yaw", (call(YAW),), hidden.poses_yawed, "any yaw"),
-        Trial("a turn about all axes", (call(TILTED),), hidden.poses, "any poses"),
-    ),
-    withheld=("labkit.se3.inverse",),
-    hints=(
-        "T_ba must undo T_ab: p_a = R_ab p_b + t. Solve this for p_b.",
-        "A rotation is undone by its transpose: p_b = R_abᵀ (p_a - t). What multiplies p_a, and what "
-        "is added?",
-        "Write p_a = R p_b + t and solve it for p_b. The factor of p_a is the new rotation, and "
-        "the rest is the new translation.",
-    ),
-    wrong=(
-        Wrong(
-            "the translation only negated",
-            "The vector -t is still in a's axes. Turn it into b's axes: -R_abᵀ t.",
-            mistakes.minus_the_translation,
-            "Every vector has axes.",
-        ),
-        Wrong(
-            "the whole matrix transposed",
-            "Transposing inverts only the rotation. Here the translation ends up in the last "
-            "row, where a pose has (0, 0, 0, 1): compute the translation separately.",
-            mistakes.transposed,
-            "A pose is not an orthogonal matrix.",
-        ),
-        Wrong(
-            "the rotation not inverted",
-            "The translation is right, but the rotation is still the one from b to a. Transpose "
-            "the rotation.",
-            mistakes.rotation_kept,
-            "Test an inverse by multiplying: T_ab T_ba = I.",
-        ),
-        Wrong(
-            "the translation turned by R, not by its transpose",
-            "R_ab turns components along b's axes into components along a's axes. But t is "
-            "already along a's axes, and the answer should be along b's: turn t by R_abᵀ.",
-            mistakes.turned_forwards,
-            "Let the subscripts cancel: R_ba t_a.",
-        ),
-        Wrong(
-            "the minus left out",
-            "R_abᵀ t is the vector from a to b in b's axes. The inverse needs the vector from b "
-            "to a: -R_abᵀ t.",
-            mistakes.minus_forgotten,
-            "Test an inverse by multiplying: T_ab T_ba = I.",
-        ),
-        Wrong(
-            "minus the pose",
-            "A minus sign inverts a sum, not a product. The transpose inverts the rotation.",
-            mistakes.minus_the_pose,
-            "Test an inverse by multiplying: T_ab T_ba = I.",
-        ),
-    ),
-    variants=(variants.inverse_by_solving, variants.inverse_by_blocks),
 )
 
 
@@ -360,26 +275,11 @@ ORIENTATION_ERROR = Problem(
             "sin x and x agree only for small x.",
         ),
         Wrong(
-            "the matrices subtracted",
-            "R_wd - R_wt is not a rotation, and its skew part is not the turn between the two. "
-            "Multiply one matrix by the transpose of the other.",
-            mistakes.matrices_subtracted,
-            "Orientations are compared by a product.",
-        ),
-        Wrong(
             "two rotation vectors subtracted",
             "The difference of two logarithms is not a rotation vector. Multiply the rotations "
             "first, then take one logarithm.",
             mistakes.logarithms_subtracted,
             "Orientations are compared by a product.",
-        ),
-        Wrong(
-            "the wrong rotation transposed",
-            "Your product turns from the desired to the actual orientation, in the tool's axes. "
-            "Solve E R_wt = R_wd for E, and note which rotation is transposed, and on which "
-            "side.",
-            mistakes.backwards_in_tool_axes,
-            "E R_wt = R_wd: multiply from the right by R_wtᵀ.",
         ),
         Wrong(
             "0/0 where there is no turn",
@@ -404,55 +304,12 @@ ORIENTATION_ERROR = Problem(
             mistakes.TurnOf(lambda angle: np.sin(angle / 2.0)),
             "A rotation vector is the angle times the axis.",
         ),
-        Wrong(
-            "half of the sine",
-            "You halved the skew part twice: vee already computes (E - Eᵀ)/2. Besides, its "
-            "length is the sine of the angle, not the angle.",
-            mistakes.TurnOf(lambda angle: 0.5 * np.sin(angle)),
-            "A rotation vector is the angle times the axis.",
-        ),
-        Wrong(
-            "twice the sine",
-            "E - Eᵀ contains 2 sin θ times the axis. The rotation vector is the angle times the "
-            "axis.",
-            mistakes.half_the_cross_products,
-            "A rotation vector is the angle times the axis.",
-        ),
-        Wrong(
-            "the axis without the angle",
-            "The vector has the right direction, but its length is 1. Its length should be the "
-            "angle.",
-            mistakes.TurnOf(lambda angle: 1.0),
-            "A rotation vector is the angle times the axis.",
-        ),
-        Wrong(
-            "the tangent for the angle",
-            "The axis is right, but the vector's length is a tangent, 2 tan(θ/2), not the angle.",
-            mistakes.TurnOf(lambda angle: 2.0 * np.tan(angle / 2.0)),
-            "A rotation vector is the angle times the axis.",
-        ),
-        Wrong(
-            "one minus the cosine",
-            "The axis is right, but the vector's length is 1 - cos θ. It should be the angle "
-            "itself.",
-            mistakes.TurnOf(lambda angle: 1.0 - np.cos(angle)),
-            "A rotation vector is the angle times the axis.",
-        ),
-        Wrong(
-            "Euler angles of the turn",
-            "The rotation is right, but roll, pitch and yaw are not a rotation vector: use "
-            "lk.se3.rotation_log.",
-            mistakes.euler_of_the_turn,
-            "A rotation vector is the angle times the axis.",
-        ),
-        Wrong(
-            "one axis alone",
-            "The cross product of the two x axes does not show a turn about x. Use all three axes.",
-            mistakes.one_axis_alone,
-            "An axis does not show a turn about itself.",
-        ),
     ),
     variants=(variants.OrientationError(), variants.by_quaternion),
 )
 
-PROBLEMS = (JOINT_ERROR, TRANSFORM_POINT, INVERSE_TRANSFORM, ORIENTATION_ERROR)
+PROBLEMS = (
+    JOINT_ERROR,
+    TRANSFORM_POINT,
+    ORIENTATION_ERROR,
+)

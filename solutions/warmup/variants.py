@@ -24,17 +24,6 @@ def point_by_einsum(T_ab: Any, p_b: Any) -> Any:
     return list(np.einsum("ij,j->i", T_ab, [*p_b, 1.0])[:3])
 
 
-def inverse_by_solving(T_ab: Any) -> Any:
-    """Solves T X = I, as for any matrix."""
-    return np.linalg.solve(T_ab, np.eye(4))
-
-
-def inverse_by_blocks(T_ab: Any) -> Any:
-    """The inverse assembled from blocks."""
-    R = np.transpose(T_ab[:3, :3])
-    return np.vstack([np.column_stack([R, -R @ T_ab[:3, 3]]), [0, 0, 0, 1]])
-
-
 class OrientationError:
     """A callable object that transforms the rotation vector from the tool's axes to the world's."""
 

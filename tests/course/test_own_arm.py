@@ -15,7 +15,6 @@ from labkit.course import (
     Identification,
     Measured,
     Outcome,
-    Telling,
     mark,
     my_arm,
     own_arm,
@@ -23,7 +22,7 @@ from labkit.course import (
 )
 from labkit.course.authoring.layout import Course
 from labkit.course.authoring.refusals import GUESSED, guessable
-from labkit.course.bugs import CAUSES, MOVES, Bug, tells_apart
+from labkit.course.bugs import CAUSES, MOVES, Bug
 from labkit.course.differences import sentence
 from labkit.course.identification import on_the_public_arm, personalised
 from labkit.course.messages import message
@@ -198,17 +197,6 @@ def test_a_bug_is_found_by_its_cause_and_its_time():
 def test_a_mistake_shows_after_its_onset():
     """Until the mistake comes in the run is the right one."""
     assert 0.5 <= Bug("b", 0, 0.5, 1).first_visible() < 0.6
-
-
-def test_an_experiment_must_tell_two_suspects_apart():
-    """An arm at rest on its target cannot tell a lost feed-forward from a wrong damper."""
-    still = [0.0] * 7
-    assert tells_apart("f", "h", still, still) < 5.0
-    assert Telling(0)(("fh", still, still), None) is not None
-    assert Telling(0)(("bc", still, still), "b") is None
-    assert sentence(Telling(0)(("bc", still, still), "c")) == "It should be c, not b."
-    same = sentence(Telling(0)(("bb", still, still), "b"))
-    assert same == "Both suspects are 'b'; name two different ones."
 
 
 def test_a_number_of_ones_own_arm_is_not_called_right_where_the_arm_is_not_known():

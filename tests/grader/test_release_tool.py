@@ -83,7 +83,7 @@ def test_stubs_and_questions_must_match(tmp_path):
 @pytest.mark.parametrize(
     ("key", "name", "listed"),
     [
-        ("question", "same_components", r"PROBLEMS of problems\.py"),
+        ("question", "farthest_off", r"PROBLEMS of problems\.py"),
         ("predict", "joint_error", r"PREDICTIONS of predictions\.py"),
         ("find_out", "joint_error", r"PREDICTIONS of predictions\.py"),
     ],
@@ -233,7 +233,7 @@ def test_a_weighted_test_needs_a_hidden_case():
 
 def test_public_cases_by_heart_pay_nothing():
     """A table of the public calls with their answers earns what no hidden case takes away."""
-    bare = with_trials("inverse_transform", lambda k, t: replace(t, hidden=_none) if k < 2 else t)
+    bare = with_trials("transform_point", lambda k, t: replace(t, hidden=_none) if k < 2 else t)
     _, by_heart = refused(bare)
     assert "memorises its public cases earns 1 of 2 points; add hidden cases" in by_heart
 
@@ -246,9 +246,9 @@ def test_a_stand_in_pays_nothing(tmp_path):
     text.write_text(source.replace("return np.full(3, np.nan)", answer))
     (sentence,) = refused(PROBLEMS, text)
     assert "third argument of use(), earns 2 of 2 points; make the stand-in worse" in sentence
-    open_door = {"inverse_transform": replace(PROBLEMS["inverse_transform"], withheld=())}
+    open_door = {"orientation_error": replace(PROBLEMS["orientation_error"], withheld=())}
     (sentence,) = refused(PROBLEMS | open_door)
-    assert "inverse_transform: the stand-in" in sentence and "earns 2 of 2 points" in sentence
+    assert "orientation_error: the stand-in" in sentence and "earns 4 of 4 points" in sentence
 
 
 def test_a_stand_in_is_run_alone():
@@ -305,11 +305,11 @@ def test_a_release_with_a_reason_against_it_writes_nothing(tmp_path, monkeypatch
     course = copied(tmp_path)
     release(course, NAME, 1)
     before = {p: p.read_bytes() for p in course.root.rglob("*") if p.is_file()}
-    bare = with_trials("inverse_transform", lambda k, t: replace(t, hidden=_none))
+    bare = with_trials("transform_point", lambda k, t: replace(t, hidden=_none))
     monkeypatch.setattr(Course, "problems", lambda self, name: tuple(bare.values()))
     with pytest.raises(LabkitError, match=rf"^solutions/{NAME[3:]}:\n") as caught:
         release(course, NAME, 1)
-    assert str(caught.value).count("inverse_transform: ") == 3
+    assert str(caught.value).count("transform_point: ") == 3
     assert before == {p: p.read_bytes() for p in course.root.rglob("*") if p.is_file()}
 
 

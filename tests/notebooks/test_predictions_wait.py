@@ -44,11 +44,6 @@ def shown_at_once(name, code):
         todo += ast.iter_child_nodes(node)
 
 
-def test_there_are_two_predictions_in_each_notebook():
-    """Sixteen, whose places and reveals are found."""
-    assert len(list(before_the_reveals())) == 2 * len(SOURCES) == 16
-
-
 @pytest.mark.parametrize(("name", "code"), list(before_the_reveals()))
 def test_nothing_is_shown_before_the_commitment(name, code):
     """No print, figure, replay or dial stands between a prediction and its reveal unguarded."""

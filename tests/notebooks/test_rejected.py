@@ -148,26 +148,6 @@ def from_the_notebooks_other_cell(model):
     return 50.0 * m, 14.0 * m
 
 
-def gains_by_dot(frequency, damping_ratio):
-    w = 2 * np.pi * frequency
-    return w**2, 2 * np.dot(w, damping_ratio)
-
-
-def gains_of_one_ratio(frequency, damping_ratio):
-    w = 2 * np.pi * frequency
-    return w**2, 2 * float(damping_ratio) * w
-
-
-def spring_from_zero(state, target, force, *, m, b, k):
-    return target[2] + (force + b * (target[1] - state[1]) - k * state[0]) / m
-
-
-def total_least_squares(force, displacement):
-    F, x = (np.asarray(a) - np.mean(a, axis=0) for a in (force, displacement))
-    V = np.linalg.svd(np.hstack([x, F]))[2].T
-    return (-V[:3, 3:] @ np.linalg.inv(V[3:, 3:])).T
-
-
 def vector_for_a_matrix(shape):
     def tag_pose(pixels, K, size):
         h, T_cm = size / 2, np.eye(4)
@@ -184,20 +164,6 @@ def vector_for_a_matrix(shape):
 def three_coordinates(t, reference, goal, duration):
     whole = PROBLEMS["06 blend"].answer(t, reference, goal, duration)
     return lk.Sample(*np.vstack(whole)[:, :3])
-
-
-def rms_of_the_left_arm(log, model):
-    return PROBLEMS["07 rms_error"].answer(log, lk.Model("left"))
-
-
-def rms_of_the_last_target(log, model):
-    e = [log.target.pose[-1][:3, 3] - model.pose(q)[:3, 3] for q in log.q]
-    return np.sqrt(np.mean(np.sum(np.square(e), axis=1)))
-
-
-def norm_of_the_mean(log, model):
-    e = [T[:3, 3] - model.pose(q)[:3, 3] for q, T in zip(log.q, log.target.pose, strict=True)]
-    return np.linalg.norm(np.mean(e, axis=0))
 
 
 def plain_function(kp, lag, delay):
@@ -255,47 +221,36 @@ REJECTED = [
     ("00 orientation_error", zero_by_zero, "0/0 where there is no turn"),
     ("00 orientation_error", turn_by_arcsine, "the arcsine of the turn"),
     ("01 bang_bang", halved_by_two_slashes, "a rounded middle: // in place of /"),
-    ("01 circle", circle_by_arccosine, "the arccosine of the start"),
+    ("01 circle", circle_by_arccosine, None),
     ("01 circle", circle_from(np.arctan2), "x and y exchanged in the arctangent"),
     (
         "01 circle",
         circle_from(lambda x, y: np.arctan2(y, x), lambda x, y: 0.0),
         "no start angle in the velocity",
     ),
-    ("01 trapezoid", metres_before_the_end, "metres in place of s until the end"),
+    ("01 trapezoid", metres_before_the_end, None),
     ("01 trapezoid", too_high_a_triangle, "a triangle that is too high"),
     ("02 coriolis", over_h, "twice the right matrix"),
-    ("02 power_balance", lambda *x: left_over(*x, joints=6), "the power of only some joints"),
-    ("02 power_balance", lambda *x: abs(left_over(*x)), "the absolute value"),
-    ("03 workspace_velocity_pd", by_arcsine, "the arcsine of the turn"),
+    ("02 power_balance", lambda *x: left_over(*x, joints=6), None),
+    ("02 power_balance", lambda *x: abs(left_over(*x)), None),
+    ("03 workspace_velocity_pd", by_arcsine, None),
     ("03 workspace_velocity_pd", turn_with_the_wrong_transpose, None),
-    ("04 choose_gains", springs(0.1), "too little damping"),
+    ("04 choose_gains", springs(0.1), None),
     ("04 choose_gains", springs(0.0), "no damping"),
     ("04 choose_gains", from_the_notebook, None),
-    ("04 choose_gains", from_the_notebooks_other_cell, "gains tuned on the slow line only"),
-    ("04 gains_for", gains_by_dot, "one kd for all joints: an inner product"),
-    ("04 gains_for", gains_of_one_ratio, None),
-    ("05 msd", spring_from_zero, "a spring tied to the origin"),
-    (
-        "05 apparent_stiffness",
-        total_least_squares,
-        "a fit with the noise in the displacement",
-    ),
-    ("06 tag_pose", vector_for_a_matrix(3), "a rotation vector in the rows of the matrix"),
-    ("06 tag_pose", vector_for_a_matrix((3, 1)), "a rotation vector in the columns of the matrix"),
-    ("06 blend", three_coordinates, "three coordinates, however many there are"),
-    ("07 rms_error", rms_of_the_left_arm, "the left arm's model for every arm"),
-    ("07 rms_error", rms_of_the_last_target, "all rows compared with the last target"),
-    ("07 rms_error", norm_of_the_mean, "the length of the mean error"),
+    ("04 choose_gains", from_the_notebooks_other_cell, None),
+    ("06 tag_pose", vector_for_a_matrix(3), None),
+    ("06 tag_pose", vector_for_a_matrix((3, 1)), None),
+    ("06 blend", three_coordinates, None),
     ("07 open_loop", plain_function, None),
     ("07 open_loop", loop(1), "a delay of first order"),
     ("07 open_loop", loop(4, unit=1e3), "almost no delay"),
     ("07 paired_difference", sorted_pairs, "the rows sorted first"),
-    ("07 verdicts", each(undecided_above_zero_only), "below zero without an interval"),
+    ("07 verdicts", each(undecided_above_zero_only), None),
     (
         "07 verdicts",
         each(lambda a, b: by_interval(a, b, 2.776)),
-        "Student's t of five pairs for any number",
+        None,
     ),
     (
         "07 verdicts",
@@ -315,15 +270,15 @@ REJECTED = [
     (
         "07 verdicts",
         each(lambda a, b: by_interval(sorted(a), sorted(b))),
-        "the rows sorted first",
+        None,
     ),
     *(
         ("07 choose_gains", lowest(seeds, GRID), "the lowest error of all seeds, and no step back")
         for seeds in ((0,), (0, 1), range(5))
     ),
     ("07 choose_gains", ONLY_ON_THE_LINE, None),
-    ("07 choose_gains", lowest(range(5), GRID, 0.9), "only a tenth below the lowest point"),
-    ("07 choose_gains", lambda runner: (20.0, 1.0), "gains chosen without a run"),
+    ("07 choose_gains", lowest(range(5), GRID, 0.9), None),
+    ("07 choose_gains", lambda runner: (20.0, 1.0), None),
     ("07 choose_gains", lambda runner: (40.0, 0.6), None),
     ("07 choose_gains", lambda runner: (8, 0), None),
 ]

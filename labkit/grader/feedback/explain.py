@@ -12,7 +12,7 @@ from itertools import chain
 
 from ...course.authoring.bundle import Bundle
 from ...course.authoring.layout import Course
-from ...course.bugs import Found, Telling
+from ...course.bugs import Found
 from ...course.forms import Measured
 from ...course.messages import summary, test_line, wrapped
 from ...course.own_arm import DEMO
@@ -164,7 +164,7 @@ def _heading(mark: Mark, line: MarkLine) -> str:
 def _judging_notes(bundle: Bundle, student: str, name: str) -> Iterator[str]:
     """The arm and the tolerance by which a question about one's own arm is judged, in words."""
     judge = next(q.judge for q in bundle.questions if q.name == name)
-    if isinstance(judge, Measured | Found | Telling):
+    if isinstance(judge, Measured | Found):
         given = bundle.arms.arm(student) is not None
         arm = f"the arm that the course gave {student}" if given else f'the public arm "{DEMO}"'
         near = f", within {judge.tolerance:g} {judge.unit}" if isinstance(judge, Measured) else ""
