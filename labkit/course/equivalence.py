@@ -74,16 +74,6 @@ class Response:
         """Whether two answers, right or wrong, have the same response."""
         return self(answer, other) is None
 
-    def distance(self, answer: Any, expected: Any) -> float:
-        """The largest error of the answer, in tolerances."""
-        try:
-            return max(
-                abs(complex(answer(1j * w)) / complex(expected(1j * w)) - 1.0) / self.rtol
-                for w in self.omega
-            )
-        except (TypeError, ValueError, ZeroDivisionError):
-            return float("inf")
-
 
 def _polar(z: complex) -> Value:
     """Magnitude and phase, in [degrees]."""
@@ -121,7 +111,7 @@ class AtTip:
 
     def __call__(self, answer: Any, expected: TipTorque) -> Difference | None:
         """None if the tip accelerates in the same way, else how the torques differ."""
-        if self.distance(answer, expected) <= 1.0:
+        if self._off(answer, expected) <= 1.0:
             return None
         found = Close(self.rtol, self.atol)(answer, JointTorque(expected.value))
         return replace(found, several=True) if found else Difference(Kind.OTHER)
@@ -136,10 +126,10 @@ class AtTip:
             loose = replace(self, rtol=max(self.rtol, 1e-4))
             along = other.elbow * np.sum(other.elbow * (answer.value - other.value))
             less = (answer.value, answer.value - along)
-            return any(loose.distance(JointTorque(tau), other) <= 1.0 for tau in less)
+            return any(loose._off(JointTorque(tau), other) <= 1.0 for tau in less)
         return Close(self.rtol, self.atol).same(answer, other)
 
-    def distance(self, answer: Any, expected: TipTorque) -> float:
+    def _off(self, answer: Any, expected: TipTorque) -> float:
         """The error of the tip's acceleration, in tolerances; infinite for another command type."""
         if type(answer) is not JointTorque:
             return float("inf")

@@ -50,10 +50,6 @@ class RightOrWrong:
         """Whether two answers, right or wrong, are the same."""
         return np.array_equal(answer, other)
 
-    def distance(self, answer: Any, expected: Any) -> float:
-        """Zero if the answer is right, else infinite."""
-        return 0.0 if self(answer, expected) is None else float("inf")
-
 
 class _Form(RightOrWrong):
     """The base of the three forms: a prediction of the right form is accepted, whatever it says."""

@@ -64,18 +64,6 @@ class Close:
         except (LabkitError, TypeError, ValueError):
             return False
 
-    def distance(self, answer: Any, expected: Any) -> float:
-        """The largest error of the answer, in tolerances; infinite if it has another form."""
-        try:
-            a, b = numbers(answer), numbers(expected)
-        except (LabkitError, TypeError, ValueError):
-            return float("inf")
-        if a.shape != b.shape or not np.isfinite(a).all():
-            return float("inf")
-        off = float(np.max(np.abs(a - b) / (self.atol + self.rtol * np.abs(b)), initial=0.0))
-        same_numbers = off <= 1.0
-        return float("inf") if same_numbers and self(answer, expected) is not None else off
-
     def _differ(self, answer: Any, expected: Any, part: str) -> Difference | None:
         if isinstance(expected, COMMANDS):
             kind = type(expected)
@@ -177,10 +165,6 @@ class AtMost:
             if not answer[name] <= limit:
                 return Difference(Kind.MEASURE, name, (), float(limit), value(answer[name]))
         return None
-
-    def distance(self, answer: dict[str, float], expected: dict[str, float]) -> float:
-        """The largest ratio of a measure to its limit."""
-        return max(answer[name] / limit for name, limit in expected.items())
 
 
 @dataclass(frozen=True)

@@ -233,19 +233,6 @@ class Mistake(Misconception):
 
 
 @dataclass(frozen=True, eq=False)
-class Probe:
-    """The public calls with one thing in them changed, and the right answers to them.
-
-    Attributes:
-        label: What is changed, such as "`kd` is 0".
-        answers: The right answer to each call, in order.
-    """
-
-    label: str
-    answers: tuple[Any, ...]
-
-
-@dataclass(frozen=True, eq=False)
 class Question:
     """One function or value that students write, and how it is marked.
 
@@ -261,7 +248,6 @@ class Question:
         core: Whether it belongs to the core path; else it is an extension.
         outcomes: Learning outcomes of which it is evidence, names of `outcomes.OUTCOMES`.
         arguments: Names of the function's arguments.
-        probes: The right answers to changed public calls.
     """
 
     name: str
@@ -275,7 +261,6 @@ class Question:
     core: bool = True
     outcomes: tuple[str, ...] = ()
     arguments: tuple[str, ...] = ()
-    probes: tuple[Probe, ...] = ()
 
     @property
     def calls(self) -> tuple[Call | Choice, ...]:

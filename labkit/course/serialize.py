@@ -25,7 +25,7 @@ from ..model import Model
 from ..recordings import Runner, Trials
 from ..shapes import locked
 from .equivalence import Judge, Ratio, TipTorque
-from .question import Case, Mistake, Probe, Question, Raised, Test
+from .question import Case, Mistake, Question, Raised, Test
 
 DATA = (
     control.State,
@@ -63,7 +63,7 @@ GIVEN = (
 )
 """What a student's function may also be given; each is sent as the arguments that make it."""
 
-QUESTION = (Question, Test, Mistake, Probe, Raised, TipTorque, *get_args(Case), *get_args(Judge))
+QUESTION = (Question, Test, Mistake, Raised, TipTorque, *get_args(Case), *get_args(Judge))
 """The other types in a question."""
 
 _MADE_OF: dict[type, Callable[[Any], dict[str, Any]]] = {

@@ -1,6 +1,6 @@
 """The number of wrong answers whose mistake the checks name, for answers unknown to the checks.
 
-`build/names_AUTHOR.tsv` lists each wrong answer with its author's sentence and the message to the
+`build/names.tsv` lists each wrong answer with its author's sentence and the message to the
 student, so that a person can judge whether the message fits.
 """
 
@@ -12,7 +12,7 @@ from pathlib import Path
 from labkit.course import student
 from labkit.course.messages import message
 from labkit.course.verdict import Kind, Outcome
-from tests.answers import AUTHORS, TOPICS, read
+from tests.answers import TOPICS, read
 
 ROOT = Path(__file__).parents[2]
 OUT = ROOT / "build/names.tsv"
@@ -67,49 +67,23 @@ def name_of(verdict):
     return "numbers", ""
 
 
-def measure_answers(answers, out=OUT):
-    """Check answers, write the table, and return the counts {question: Counter}."""
-    found, counts, lines = desks(), {}, []
-    for answer in answers:
-        count = counts.setdefault(f"{answer.topic}/{answer.question}", Counter())
+def measure():
+    """Numbers of wrong answers, of those that are named, and of those that pass."""
+    found, counts, lines = desks(), Counter(), []
+    for answer in (one for topic in TOPICS for one in read(topic)):
         verdict, text = told(found[answer.topic], answer)
         right = verdict is not None and verdict.outcome is Outcome.RIGHT
-        if answer.right:
-            count["right"] += 1
-            count["right_refused"] += not right
-            how, name = ("refused" if not right else "accepted"), ""
-        else:
-            how, name = name_of(verdict) if verdict else ("raised", text)
-            count["wrong"] += 1
-            how = "accepted" if right else how
-            count["named"] += how in NAMED
-            count[f"by_{how}"] += 1
-            count["accepted_wrong"] += right
-        row = (f"{answer.topic}/{answer.question}", str(answer.right), answer.says, how, name, text)
+        how, name = name_of(verdict) if verdict else ("raised", text)
+        how = "accepted" if right else how
+        counts[how] += 1
+        row = (f"{answer.topic}/{answer.question}", answer.says, how, name, text)
         lines.append("\t".join(" ".join(x.split()) for x in row))
-    out.parent.mkdir(exist_ok=True)
-    head = "question\tright\tauthor says\thow\tname\ttext"
-    out.write_text("\n".join([head, *lines]) + "\n", encoding="utf-8")
-    return counts
-
-
-def measure():
-    """Numbers of wrong answers that are named, wrong ones that pass, right ones that fail."""
-    answers = [answer for topic in TOPICS for answer in read(topic)]
-    by_author = {
-        author or "first": measure_answers(
-            [one for one in answers if one.author == author and (one.held or one.right)],
-            OUT.with_stem(f"names_{author or 'first'}"),
-        )
-        for author in AUTHORS
+    OUT.parent.mkdir(exist_ok=True)
+    OUT.write_text("\n".join(["question\tauthor says\thow\tname\ttext", *lines]) + "\n", "utf-8")
+    named = sum(counts[how] for how in NAMED)
+    return {
+        "named_share": named / counts.total(),
+        "known_share": counts["known"] / counts.total(),
+        "wrong_answers": counts.total(),
+        "accepted_wrong": counts["accepted"],
     }
-    totals = {author: sum(counts.values(), Counter()) for author, counts in by_author.items()}
-    total = sum(totals.values(), Counter())
-    figures = {
-        "named_share": total["named"] / total["wrong"],
-        "wrong_answers": total["wrong"],
-        "accepted_wrong": total["accepted_wrong"],
-        "right_answers": total["right"],
-        "right_refused": total["right_refused"],
-    }
-    return figures | {f"named_{who}": one["named"] / one["wrong"] for who, one in totals.items()}

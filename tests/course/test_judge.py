@@ -4,8 +4,6 @@ import json
 
 import numpy as np
 import pytest
-from hypothesis import given
-from hypothesis import strategies as st
 from questions import says
 
 import labkit as lk
@@ -34,7 +32,6 @@ V = np.array([1.0, 2.0, 3.0])
 def test_lists_and_rounding_are_the_same(answer):
     """Whatever numpy reads as the same numbers passes."""
     assert CLOSE(answer, V) is None
-    assert CLOSE.distance(answer, V) <= 1.0
 
 
 @pytest.mark.parametrize(
@@ -55,7 +52,6 @@ def test_lists_and_rounding_are_the_same(answer):
 def test_differences_are_sentences(answer, words):
     """A wrong shape, a NaN, a missing return: each says what came."""
     assert words in says(CLOSE(answer, V))
-    assert CLOSE.distance(answer, V) > 1.0
 
 
 def test_a_command_is_asked_for_by_name():
@@ -108,24 +104,13 @@ def test_samples_tables_and_texts():
     assert CLOSE(1, True) is not None
 
 
-@given(st.lists(st.floats(-1e6, 1e6), min_size=1, max_size=5), st.floats(-1e-3, 1e-3))
-def test_distance_and_verdict_agree(numbers, off):
-    """An answer passes if and only if its distance is at most one tolerance."""
-    expected = np.array(numbers)
-    answer = expected + off
-    passed = CLOSE(answer, expected) is None
-    distance = CLOSE.distance(answer, expected)
-    assert passed == (distance <= 1.0) or abs(distance - 1.0) < 1e-6
-
-
 def test_within_intervals():
-    """Several numbers may be right; the distance grows from the middle."""
+    """Several numbers may be right."""
     judge, intervals = Within(), [[0.9, 1.1], [2.0, 3.0]]
     assert judge(1.0, intervals) is None and judge(2.5, intervals) is None
     assert "gives 1.5" in says(judge(1.5, intervals))
     assert judge(None, intervals) is not None
     assert judge(float("nan"), intervals) is not None
-    assert judge.distance(1.0, intervals) < 1.0 < judge.distance(1.5, intervals)
 
 
 def test_at_most():
@@ -174,10 +159,9 @@ def test_torques_are_judged_by_what_the_tip_does():
     assert np.linalg.norm(unfelt) > 0.05, "a torque of which the joints feel a good deal"
     for share in (0.0, 1.0, -30.0):
         answer = lk.JointTorque(expected.value + share * unfelt)
-        assert judge(answer, expected) is None and judge.distance(answer, expected) < 1.0
+        assert judge(answer, expected) is None
     for joint in np.eye(7):
         answer = lk.JointTorque(expected.value + 0.01 * joint)
-        assert judge.distance(answer, expected) > 1.0
         words = says(judge(answer, expected))
         assert (
             words.startswith("expected [")
@@ -190,7 +174,6 @@ def test_a_torque_is_asked_for_by_name(answer):
     """Anything but a torque has no acceleration to be judged by; the sentence asks for a torque."""
     judge, (expected, _) = AtTip(), at_tip()
     assert "it should be a JointTorque" in says(judge(answer, expected))
-    assert judge.distance(answer, expected) == np.inf
 
 
 def test_a_question_of_torques_travels():

@@ -15,7 +15,6 @@ import numpy as np
 from ..equivalence import Judge
 from ..judges import Close
 from ..marking import fingerprint
-from ..probes import make_probes
 from ..question import Call, Case, Mistake, Question, Test
 
 CLOSE = Close()
@@ -120,9 +119,8 @@ class Problem:
             outcomes=self.outcomes,
         )
         mistakes = (Mistake(w.name, w.says, fingerprint(plain, w.function)) for w in self.wrong)
-        probes = make_probes(plain, self.answer, self.expected or self.answer)
         names = tuple(signature(self.answer).parameters) if callable(self.answer) else ()
-        return replace(plain, mistakes=tuple(mistakes), arguments=names, probes=probes)
+        return replace(plain, mistakes=tuple(mistakes), arguments=names)
 
     def _test(self, trial: Trial, random: np.random.Generator) -> Test:
         public = (self._with_expected(case, hidden=False) for case in trial.public)

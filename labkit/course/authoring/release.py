@@ -17,6 +17,7 @@ from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
 from pkgutil import resolve_name
+from typing import Any
 
 import nbformat
 
@@ -89,8 +90,8 @@ def prepare(course: Course, name: str, seed: int) -> Prepared:
 def write(made: Prepared) -> None:
     """Write the source for nbgrader, the solved notebook and the graders' bundle.
 
-    If the public cases differ from those of the last release only by rounding, the old ones stay,
-    so that a release on another machine leaves the files under git unchanged.
+    A question whose public cases differ from those of the last release only by rounding stays as it
+    was, so that a release on another machine leaves the files under git unchanged.
 
     Args:
         made: What `prepare` made.
@@ -117,15 +118,35 @@ def _at_home(source: Notebook) -> Notebook:
 
 
 def _checks(made: Prepared) -> str:
-    questions = [question_data(q.public()) for q in made.questions.values()]
+    """The text of `FILE`: a test or a known mistake is one line."""
+    before: dict[str, object] = {}
+    with suppress(OSError, ValueError, KeyError):  # without a release, or with a damaged one
+        old = json.loads((made.course.release / made.name / FILE).read_text(encoding="utf-8"))
+        before = {question["name"]: question for question in old["questions"]}
+    questions = []
+    for name, question in made.questions.items():
+        data = json.loads(json.dumps(question_data(question.public())))
+        kept = before.get(name)
+        questions.append(_lines(kept if same_but_for_rounding(kept, data) else data))
     texts = {m["grade_id"]: m["id"] for m in manifest(made.source) if "points" in m}
-    data = {**stamp(), "assignment": made.name, "texts": texts, "questions": questions}
-    text = json.dumps(data, ensure_ascii=False, separators=(",", ":")) + "\n"
-    with suppress(OSError, ValueError):  # without a release, or with a damaged one
-        before = (made.course.release / made.name / FILE).read_text(encoding="utf-8")
-        if same_but_for_rounding(json.loads(before), json.loads(text)):
-            return before
-    return text
+    head = _lines({**stamp(), "assignment": made.name, "texts": texts})
+    return f'{head[:-1]},\n"questions":[\n' + ",\n".join(questions) + "\n]}\n"
+
+
+def _lines(data: Any) -> str:
+    """JSON data of a mapping, one field a line, and one item a line of its tests and mistakes."""
+
+    def text(x: object) -> str:
+        return json.dumps(x, ensure_ascii=False, separators=(",", ":"))
+
+    fields = []
+    for key, value in data.items():
+        says = text(value)
+        if key in ("tests", "mistakes") and value["items"]:
+            items = ",\n".join(map(text, value["items"]))
+            says = f"{text({**value, 'items': []})[:-2]}\n{items}\n]}}"
+        fields.append(f"{text(key)}:{says}")
+    return "{" + ",\n".join(fields) + "}"
 
 
 def same_but_for_rounding(a: object, b: object, rtol: float = 1e-9, atol: float = 1e-10) -> bool:
