@@ -113,11 +113,7 @@ def tag_pose(pixels, K, size):
 
 
 # %%
-def given_tag_pose(pixels, K, size):
-    return detection.tag_pose(pixels, camera, size)
-
-
-my_tag_pose = use("tag_pose", tag_pose, given_tag_pose)
+my_tag_pose = use("tag_pose", tag_pose, lambda pixels, K, size: detection.tag_pose(pixels, camera, size))
 T_cm = my_tag_pose(seen[0].corners, camera.intrinsics.matrix, 0.1)
 T_wm = camera.T_wc @ T_cm
 print(f"the tag is at {T_wm[:3, 3].round(4)} m; in truth at {board.T_wm[:3, 3].round(4)} m")
