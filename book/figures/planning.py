@@ -141,10 +141,11 @@ def plan() -> HTML:
         extra = {"02"} if set(ON_THE_MODEL) <= taken else set()
         holds(taken == {*TRACKS[track], *extra}, f"the plan of {track} has its notebooks")
     rows: list[tuple[str, ...]] = []
-    drawn = CLASS * DRAWN / len(NOTEBOOKS)
+    asked = [name for name in NOTEBOOKS if _points(name)[1]]
+    drawn = CLASS * DRAWN / len(asked)
     for name, (core, whole) in HOURS.items():
         read = READING.get(name[:2], 0.0)
-        by_hand = f"{drawn:.0f} whys, {drawn * WHY / 60.0:.1f} h"
+        by_hand = f"{drawn:.0f} whys, {drawn * WHY / 60.0:.1f} h" if name in asked else ""
         if name == REPORT:
             by_hand = f"{CLASS / TEAM:.0f} reports, {CLASS * REPORT_MINUTES / TEAM / 60.0:.0f} h"
         what = name.replace("_", " ")
