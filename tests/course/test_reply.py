@@ -1,6 +1,8 @@
 """How a student's function is asked: what it is given stays whole, what it gives is data."""
 
+import _thread
 import json
+import signal
 from collections import OrderedDict
 from dataclasses import replace
 
@@ -12,6 +14,7 @@ from scipy.spatial.transform import Rotation
 
 import labkit as lk
 from labkit.course import Call, Close, Outcome, Question, Response, Test
+from labkit.course import reply as reply_module
 from labkit.course.calling import ArgumentChanged, call
 from labkit.course.equivalence import Ratio
 from labkit.course.marking import mark
@@ -259,9 +262,14 @@ def test_a_matrix_is_judged_as_an_array():
     assert "has shape (1, 2), expected (2, 2)" in why(verdict.tests[0])
 
 
-def test_a_loop_without_end_is_stopped():
-    """A call is stopped after its time, says so, and no further call is made."""
-    calls = []
+@pytest.mark.parametrize("interrupt", [reply_module._interrupt, _thread.interrupt_main])
+def test_a_loop_without_end_is_stopped(interrupt, monkeypatch):
+    """A call is stopped after its time, says so, and no further call is made; as on Windows, too.
+
+    Ctrl-C means afterwards what it meant before.
+    """
+    monkeypatch.setattr(reply_module, "_interrupt", interrupt)
+    calls, before = [], signal.getsignal(signal.SIGINT)
 
     def endless(x):
         calls.append(x)
@@ -271,6 +279,7 @@ def test_a_loop_without_end_is_stopped():
     verdict = mark(DOUBLE, LocalFunction(endless, seconds=0.2))
     assert verdict.outcome is Outcome.ERROR and len(calls) == 1
     assert "TimeoutError: it did not return within 0.2 s; does every" in why(verdict.tests[0])
+    assert signal.getsignal(signal.SIGINT) is before
 
 
 def test_an_interrupt_is_nobodys_answer():
