@@ -34,7 +34,7 @@ test: for-tests .venv/.dev browser .venv-313/.made lint ## the gate: style, type
 	$(SECOND)/python -m pytest -q -n 2 -m "not slow and not soak and not pybullet" tests/test_*.py tests/sim tests/tags \
 	&& $(SECOND)/python -m pytest -q -n 2 tests/notebooks/test_always_runs.py -k "all and (00 or 03 or 05)" \
 	&& echo "Python 3.13: $$(($$(date +%s) - begun)) s"
-	@PATH="$(CURDIR)/$(BIN):$$PATH" $(BIN)/python -m pytest -q -n 2 --dist loadgroup --no-loadscope-reorder
+	@PATH="$(CURDIR)/$(BIN):$$PATH" $(BIN)/python -m pytest -n 2 --dist loadgroup --no-loadscope-reorder
 
 dev: for-all .venv/.dev ## make the environment, .venv, and nothing else
 

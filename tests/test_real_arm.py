@@ -12,12 +12,11 @@ from contextlib import contextmanager
 
 import numpy as np
 import pytest
-from arms import arm as other_arm
 from numpy.testing import assert_allclose
 
 import labkit as lk
-from labkit.arm_adapters import SILENCE, RealArm, WallClock
-from labkit.errors import ArmLost, ControllerError, TypeMismatch, UnknownName
+from labkit.arm_adapters import SILENCE, WallClock
+from labkit.errors import ArmLost, ControllerError
 
 SERVER = """
 import json, socket, sys, time
@@ -198,98 +197,3 @@ def test_whatever_a_controller_does_the_arm_is_stopped():
             lk.run(arm, way(), broken, rate=50.0, duration=10.0)
         assert arm.sent[-1] == "stop"
     assert len(caught.value.log) == 11
-
-
-class Desk:
-    """An arm that only seems to be one; its time is what it is told to wait for."""
-
-    robot = other_arm("ur5")
-    count = stops = 0
-
-    def wait(self, t):
-        return t
-
-    def state(self):
-        self.count += 1
-        return lk.State(float(self.count), self.robot.ready, self.robot.zeros)
-
-    def apply(self, command):
-        pass
-
-    def stop(self):
-        self.stops += 1
-
-
-def nonsense(answer):
-    """A method of the arm that returns ``answer``."""
-    return lambda self, *given: answer
-
-
-def refuses(self, *given):
-    raise ConnectionError("no cable")
-
-
-Q = Desk.robot.ready
-NONSENSE = {
-    "no state": (
-        {"state": nonsense(None)},
-        r"t = 0\.000 s cannot be used: its state is None .*lk.St",
-    ),
-    "a tuple": ({"state": nonsense((0.0, Q, Q))}, r"its state is \(0.0, .*expected lk.State\(t, q"),
-    "six": ({"state": nonsense(lk.State(0.0, Q[1:], Q))}, "its q has shape .*give 6 numbers"),
-    "no time": ({"wait": nonsense(None)}, "the time from its wait is None .*it was told to stop"),
-    "NaN": ({"wait": nonsense(np.nan)}, "the time from its wait is nan; .*it was told to stop"),
-    "dead": ({"state": refuses, "stop": refuses}, "no cable.*could not be told to stop.* and look"),
-}
-
-
-@pytest.mark.parametrize("case", NONSENSE)
-def test_an_arm_that_answers_nonsense_at_once_is_told_to_stop_and_leaves_no_log(case):
-    """The arm is named, not the target or the controller, and no log is promised."""
-    methods, words = NONSENSE[case]
-    desk = type("Odd", (Desk,), methods)()
-    with pytest.raises(ArmLost, match=words) as caught:
-        lk.run(desk, lk.Hold(Q, 0.1), lambda s, x: lk.JointVelocity(desk.robot.zeros))
-    assert caught.value.log is None
-    assert "error.log" not in str(caught.value)
-    assert desk.stops == (case != "dead")
-
-
-def test_the_log_is_kept_when_the_controller_fails_and_the_arm_cannot_be_told_to_stop():
-    """ArmLost says that no stop was possible and has the five rows."""
-
-    def broken(state, target):
-        if state.t > 5.0:
-            raise ZeroDivisionError("oh")
-        return lk.JointVelocity(np.zeros(6))
-
-    desk = type("Deaf", (Desk,), {"stop": refuses})()
-    with pytest.raises(ArmLost, match=r"could not be told to stop.*is in error\.log") as caught:
-        lk.run(desk, lk.Hold(Q, 0.1), broken)
-    assert len(caught.value.log) == 5
-
-
-def test_a_late_loop_leaves_ticks_out():
-    """A controller that sleeps through three periods is asked less often, at the times it is."""
-
-    def slow(state, target):
-        time.sleep(0.035)
-        return lk.JointVelocity(np.zeros(6))
-
-    desk = type("Late", (WallClock, Desk), {})()
-    assert isinstance(desk, RealArm)
-    log = lk.run(desk, lk.Hold(desk.robot.ready, 0.5), slow, rate=100.0)
-    assert len(log) < 18
-    assert log.t[-1] >= 0.5 - 1e-9
-    assert (np.diff(log.t) >= 0.035).all()
-
-
-def test_what_has_not_the_methods_of_an_arm_is_refused():
-    """Methods that an object lacks are named; a word and an arm of an unknown side are refused."""
-    with pytest.raises(TypeMismatch, match=r"arm is 'left' \(str\), expected an Arm"):
-        lk.run("left", way(), follow)
-    desk = type("Half", (), {"robot": "left", "state": nonsense(None), "stop": nonsense(None)})()
-    with pytest.raises(TypeMismatch, match=r"Half.*; as a real arm it lacks apply, wait"):
-        lk.run(desk, way(), follow)
-    with pytest.raises(UnknownName, match="no arm 'up'; there is 'left', 'right'"):
-        lk.run(type("Odd", (Desk,), {"robot": "up"})(), way(), follow)

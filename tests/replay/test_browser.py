@@ -13,8 +13,6 @@ from figures.embed import (
 )
 from samples import swing
 
-from labkit.replay.player import in_its_place
-
 ROOT = Path(__file__).parents[2]
 POLICY = "default-src 'none'; script-src file:; img-src file: data:; style-src file:"
 PAGE = """<!doctype html><html lang="en" data-theme="light"><head><meta charset="utf-8">
@@ -146,30 +144,6 @@ def test_arrow_keys_turn_the_view(chromium, visit):
     assert page.evaluate(f"{rig}.view") == "Top"
 
 
-def test_lines_follow_the_theme_and_the_view_stays(chromium, visit):
-    """The dark theme changes a line's colour, and a new motion keeps the view that was turned."""
-    page = visit(chromium, "motion")
-    page.wait_for_selector("[data-ready]")
-    player = "document.querySelector('[data-ready]').labkit"
-    colour = f"{player}.marks[1].material.color.getHexString()"
-    page.evaluate(f"{player}.stage.rig.turn(0.3, 0)")
-    before, azimuth = page.evaluate(f"[{colour}, {player}.stage.rig.azimuth]")
-    page.evaluate("document.documentElement.dataset.theme = 'dark'")
-    page.wait_for_function(f"before => {colour} !== before", arg=before)
-    page.evaluate(f"{player}.show(JSON.stringify({json.dumps(swing(2.0).data())}))")
-    assert page.evaluate(f"{player}.stage.rig.azimuth") == azimuth
-
-
-def test_players_without_a_caption_are_told_apart_by_their_titles(chromium, visit):
-    """In a notebook each player begins with its title; a figure has a caption instead."""
-    page = visit(chromium, "motion")
-    page.wait_for_selector("[data-ready]")
-    title = page.locator(".lk-player > .lk-title")
-    assert not title.is_visible()
-    page.evaluate("document.querySelector('main').append(document.querySelector('.lk-player'))")
-    assert title.is_visible() and title.inner_text() == swing().title
-
-
 @pytest.mark.parametrize("reduced", ["no-preference", "reduce"])
 def test_play_waits_for_the_reader_and_honours_reduced_motion(chromium, visit, reduced):
     """Time is zero until Play; with reduced motion there are four pictures a second at most."""
@@ -191,21 +165,6 @@ def test_play_waits_for_the_reader_and_honours_reduced_motion(chromium, visit, r
         assert len(steps) <= 4 * (steps[-1] - steps[0]) / 1000 + 2
 
 
-def test_one_webgl_context_serves_many_viewers(chromium, visit):
-    """Four viewers have four canvases, all of them copies in two dimensions."""
-    page = visit(chromium, "several")
-    made = page.evaluate("""async () => {
-        for (const e of document.querySelectorAll('.lk-embed')) {
-            e.scrollIntoView();
-            while (!e.querySelector('[data-ready]')) await new Promise((r) => setTimeout(r, 30));
-        }
-        return document.querySelectorAll('canvas').length;
-    }""")
-    assert made == 4
-    kinds = page.eval_on_selector_all("canvas", "all => all.map(c => !!c.getContext('2d'))")
-    assert kinds == [True] * 4, "the page's canvases are copies of the one WebGL canvas"
-
-
 def test_without_webgl_words_plots_and_slider_remain(blind_chromium, visit):
     """The description and more than seven curves are there, and Page Up moves to 1 s."""
     seen = visit(blind_chromium, "motion")
@@ -218,26 +177,6 @@ def test_without_webgl_words_plots_and_slider_remain(blind_chromium, visit):
     seen.wait_for_function("document.querySelectorAll('.lk-line').length > 7")
 
 
-@pytest.mark.parametrize(
-    ("alive", "shown"),
-    [
-        ('<div class="lk-player"><div class="lk-stage"></div></div>', [False, True]),
-        ('<div class="lk-player"><div class="lk-stage"><p class="lk-note">', [True, True]),
-        ('<div class="jupyter-widgets">model not found</div>', [True, False]),
-    ],
-    ids=["alive", "without WebGL", "without a kernel"],
-)
-def test_a_notebook_shows_the_still_the_moving_picture_or_both(chromium, alive, shown):
-    """Beside a widget that draws no 3-D the picture stays."""
-    output = '<div class="jp-OutputArea-child">{}</div>'
-    page = chromium.new_page()
-    still = in_its_place("A circle", b"a picture")["text/html"]
-    page.set_content(output.format(still) + output.format(alive))
-    boxes = [box.bounding_box() for box in page.locator(".jp-OutputArea-child").all()]
-    page.close()
-    assert [box["width"] > 1 for box in boxes] == shown
-
-
 def test_a_phone_loads_on_tap_and_does_not_scroll_sideways(chromium, visit):
     """Before the tap there is neither canvas nor robot; after it the page fits the width."""
     page = visit(chromium, "motion", phone=True)
@@ -247,17 +186,6 @@ def test_a_phone_loads_on_tap_and_does_not_scroll_sideways(chromium, visit):
     page.get_by_role("button", name="Tap to load").click()
     page.wait_for_selector("[data-ready]")
     assert page.evaluate("document.documentElement.scrollWidth <= innerWidth")
-
-
-def test_a_phone_shows_the_whole_caption_of_the_jacobian(chromium, visit):
-    """The table scrolls sideways, and its caption stays in sight."""
-    page = visit(chromium, "demos", phone=True)
-    page.get_by_role("button", name="Tap to load").nth(1).click()
-    caption, table = page.locator(".lk-table caption"), page.locator(".lk-table").last
-    caption.filter(has_text="Jacobian").wait_for()
-    table.evaluate("x => { x.style.minWidth = '30rem' }")  # too wide with any font
-    seen, whole = (part.bounding_box() for part in (caption.last, table))
-    assert whole["x"] + whole["width"] > 390 > seen["x"] + seen["width"]
 
 
 def test_the_live_demos_answer_to_their_dials(chromium, visit):

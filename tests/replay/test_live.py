@@ -9,10 +9,9 @@ import numpy as np
 import pytest
 
 import labkit as lk
-from labkit.errors import Closed, NothingKept, OutOfRange, TypeMismatch, UnknownName
-from labkit.replay.hand import FRESH, SLOW_PAGE, STEADY, STRONGEST, Hand
-from labkit.replay.session import FRAME, TURN, Session
-from labkit.replay.surroundings import Surroundings
+from labkit.errors import Closed, OutOfRange, TypeMismatch, UnknownName
+from labkit.replay.hand import FRESH, Hand
+from labkit.replay.session import TURN, Session
 from labkit.replay.view import read_dials
 
 READY = np.array(lk.robot("left").ready)
@@ -101,30 +100,6 @@ def test_a_hand_pushes_any_link_as_statics_says():
             np.testing.assert_allclose(SPRINGS * (q - READY), J.T @ force, rtol=0, atol=0.05)
 
 
-def test_a_point_of_a_link_moves_as_its_jacobian_says(random):
-    """The Jacobian of `point_on` is the derivative of its place."""
-    model = lk.Model("right")
-    q, point = READY + random.uniform(-0.3, 0.3, 7), random.uniform(-0.1, 0.1, 3)
-    for body in range(8):
-        _, J = model.point_on(q, body, point)
-        for joint, turn in enumerate(1e-6 * np.eye(7)):
-            moved = (
-                model.point_on(q + turn, body, point)[0] - model.point_on(q - turn, body, point)[0]
-            )
-            np.testing.assert_allclose(moved / 2e-6, J[:, joint], rtol=0, atol=1e-7)
-    np.testing.assert_allclose(model.point_on(q, 7, np.zeros(3))[0], model.pose(q)[:3, 3])
-
-
-def test_a_hand_is_no_stronger_than_a_person():
-    """A pointer dragged across the room pulls with the strongest force, not like a spring."""
-    with lk.Arm("left", TEXTBOOK, q0=READY) as arm:
-        hand = Hand(arm)
-        arm.world.put(hand)
-        hand.take(7, [0, 0, 0], T_READY[:3, 3] + [0.0, 0.0, 2.0])
-        lk.run(arm, lk.Hold(READY, 0.05), springy)
-        assert np.linalg.norm(hand.force) == pytest.approx(STRONGEST)
-
-
 def test_the_arm_feels_the_hand_in_a_world_without_things(live):
     """While the hand pulls with 40 N, tau_ext of the law's state is J^T f."""
     felt = []
@@ -141,19 +116,6 @@ def test_the_arm_feels_the_hand_in_a_world_without_things(live):
     state = max(felt, key=lambda state: np.abs(state.tau_ext).max())
     expected = lk.Model("left").tip_jacobian(state.q).T @ [0, 0, -40, 0, 0, 0]
     np.testing.assert_allclose(state.tau_ext, expected, rtol=0, atol=0.05)
-
-
-def test_a_session_that_ended_leaves_no_hand_behind(live):
-    """Another view of the same arm brings its own hand."""
-    session, frames = live({"springs": springy}, things=[lk.Table()])
-    for _ in range(2):
-        session.tell({"kind": "go"})
-        until(frames, lambda f: f["state"] == "running")
-        session.close()
-        frames.clear()
-        assert [type(thing) for thing in session.arm.world.things] == [lk.Table]
-        session = Session(session.arm, {"springs": springy}, lk.Hold(T_READY, 1.0), {}, 200.0,
-                          frames.append)  # fmt: skip
 
 
 def test_a_motor_at_its_torque_limit_is_named(live):
@@ -178,54 +140,6 @@ def test_the_force_ends_when_nothing_is_heard(live):
     assert FRESH <= 0.2
 
 
-@pytest.mark.parametrize(
-    ("hand", "lasts"),
-    [
-        ({"to": [0.7, 0.5, 0.1]}, FRESH),
-        ({"to": [0.7, 0.5, 0.1], "every": 0.3}, 0.9),
-        ({"to": [0.7, 0.5, 0.1], "every": 9.0}, SLOW_PAGE),
-        ({"force": [0.0, 10.0, 0.0]}, STEADY),
-    ],
-)
-def test_a_hand_holds_on_for_as_long_as_its_page_may_be_silent(live, hand, lasts):
-    """0.2 s for a pointer, more where the page is slow, and seconds for a button's steady push."""
-    session, _ = live({"springs": springy})
-    session.tell({"kind": "hand", "link": 3, "local": [0, 0, 0], **hand})
-    assert session.hand.patience == pytest.approx(lasts)
-
-
-def test_a_push_outlasts_a_page_that_says_nothing_for_a_second(live):
-    """Its full force stays on the link that it names, whatever keeps the browser from speaking."""
-    session, frames = live({"springs": springy})
-    session.tell({"kind": "go"})
-    push(session, [0.0, 10.0, 0.0], link=3)
-    first = until(frames, lambda f: f["force"])
-    last = until(frames, lambda f: f["t"] > first["t"] + 1.2)
-    held = [f for f in frames if first["t"] <= f["t"] <= last["t"]]
-    assert {(tuple(f["force"]), f["link"]) for f in held} == {((0.0, 10.0, 0.0), 3)}
-
-
-@pytest.mark.parametrize("end", ["reset", "close"])
-@pytest.mark.parametrize("first", ["go", "pause"])
-def test_reset_and_stop_let_go_at_once(live, first, end):
-    """A push does not outlive Reset or Stop, while the arm runs or pauses; Reset puts it back."""
-    session, frames = live({"springs": springy})
-    session.tell({"kind": "go"})
-    push(session, [0.0, 0.0, -20.0])
-    until(frames, lambda f: f["force"] and f["error"] > 1e-3)
-    session.tell({"kind": first})
-    session.tell({"kind": end})
-    ended = until(frames, lambda f: f["force"] is None)
-    if end == "reset":
-        np.testing.assert_allclose(ended["q"], READY, rtol=0, atol=1e-5)
-    else:
-        until(frames, lambda f: f["state"] == "closed")
-        frames.clear()
-        session.tell({"kind": "go"})
-        until(frames, lambda f: f["state"] == "running")
-        assert all(f["force"] is None for f in frames)
-
-
 def test_reset_puts_the_arm_back_also_after_stop(live):
     """Where no thread runs any more, Reset is done at once, not at the next start."""
     session, frames = live({"springs": springy})
@@ -238,61 +152,6 @@ def test_reset_puts_the_arm_back_also_after_stop(live):
     session.tell({"kind": "reset"})
     assert frames[-1]["state"] == "ready"
     np.testing.assert_allclose(frames[-1]["q"], READY, rtol=0, atol=1e-5)
-
-
-def test_a_run_is_kept_once(live):
-    """Keep, pressed again while paused, says that there is no run, and later runs are not kept."""
-    session, frames = live({"springs": springy})
-    session.tell({"kind": "go"})
-    until(frames, lambda f: f["t"] > 0.1)
-    session.tell({"kind": "pause"})
-    session.tell({"kind": "keep"})
-    until(frames, lambda f: len(f["kept"]) == 1)
-    session.tell({"kind": "keep"})
-    assert "no run to keep" in until(frames, lambda f: f["note"])["note"]
-    frames.clear()
-    session.tell({"kind": "go"})
-    session.tell({"kind": "law", "name": "springs"})
-    session.tell({"kind": "reset"})
-    later = until(frames, lambda f: f["state"] == "running" and f["t"] > frames[0]["t"] + 0.1)
-    assert len(later["kept"]) == 1
-    assert later["note"] == ""
-
-
-def test_a_run_that_reached_the_limit_says_so(live, monkeypatch):
-    """After the longest run a new one begins, and the note says since when it can be kept."""
-    monkeypatch.setattr("labkit.replay.session.LONGEST", 0.1)
-    session, frames = live({"springs": springy})
-    session.tell({"kind": "go"})
-    note = until(frames, lambda f: f.get("note"))["note"]
-    assert note.startswith("a run ends after 0.1 s; at t = ")
-
-
-def test_a_view_without_a_kept_run_says_so():
-    """`view.log` of a view that kept nothing is an error of labkit's, and says what to press."""
-    with lk.Arm("left", q0=READY) as arm:
-        view = lk.live(arm, lk.Hold(T_READY, 1.0), springy)
-        assert view.logs == ()
-        with pytest.raises(NothingKept, match="press Start, then Keep this run"):
-            view.log  # noqa: B018
-        view.close()
-
-
-def test_a_move_of_the_hand_is_answered_after_the_next_tick(live):
-    """A picture with its force, which names the move, is sent at once, not when the next is due."""
-    session, frames = live({"springs": springy})
-    session.tell({"kind": "go"})
-    to, gaps = np.array(T_READY[:3, 3]), []
-    for move in range(1, 11):
-        to = to + [0.0, 0.005, 0.0]
-        hand = {"kind": "hand", "link": 7, "local": [0, 0, 0], "to": to.tolist(), "move": move}
-        session.tell(hand)
-        answer = until(frames, lambda f, move=move: f["move"] == move)
-        assert np.linalg.norm(answer["force"]) > 0.1
-        before = [f for f in frames if f["t"] < answer["t"]]
-        gaps.append(answer["t"] - before[-1]["t"] if before else 0.0)
-        time.sleep(0.007 * move)
-    assert min(gaps[1:]) < FRAME - 0.006
 
 
 def test_dials_take_effect_and_a_kept_run_says_which(live):
@@ -379,22 +238,6 @@ def test_two_laws_pause_step_and_reset(live):
     np.testing.assert_allclose(back["q"], READY, rtol=0, atol=1e-5)
 
 
-@pytest.mark.parametrize("first", [None, "pause"])
-def test_stop_is_told_and_start_begins_again(live, first):
-    """Stopped while it runs or while it pauses, it says that it ended, and can be started anew."""
-    session, frames = live({"springs": springy})
-    session.tell({"kind": "go"})
-    until(frames, lambda f: f["t"] > 0.02)
-    if first:
-        session.tell({"kind": first})
-    session.tell({"kind": "close"})
-    assert "Start begins again" in until(frames, lambda f: f["state"] == "closed")["note"]
-    session.close()
-    frames.clear()
-    session.tell({"kind": "go"})
-    assert until(frames, lambda f: f["state"] == "running")["note"] == ""
-
-
 def test_threads_change_often_while_an_arm_is_live_and_as_usual_afterwards(live):
     """Else a busy cell would delay the arm."""
     usual = sys.getswitchinterval()
@@ -439,17 +282,6 @@ def test_walls_bands_and_targets_are_moved(live):
     assert moved[1] > 0.005
     kinds = {name: thing["kind"] for name, thing in around.things().items()}
     assert kinds == {"target": "target", "thing 0": "face", "thing 1": "band"}
-
-
-@pytest.mark.parametrize(("goal", "fixed"), [(T_READY, False), (READY, True)])
-def test_the_page_is_told_which_target_cannot_be_dragged(live, goal, fixed):
-    """A target of poses can be moved; one of joint angles stays where it is."""
-    session, _ = live({"springs": springy}, target=lk.Hold(goal, 1.0))
-    session.around.target(0.0)
-    before = session.around.things()["target"]
-    assert before["fixed"] is fixed
-    session.around.move("target", T_READY[:3, 3] + [0.0, 0.1, 0.0])
-    assert (session.around.things()["target"] == before) is fixed
 
 
 def test_a_model_may_be_shared_by_threads():
@@ -501,85 +333,3 @@ def test_what_is_given_wrongly_is_a_sentence():
             lk.live(arm, hold, 3.0)
         with pytest.raises(TypeMismatch, match="expected a simulated"):
             lk.live("left", hold, springy)
-
-
-STIFF = np.array([300.0] * 3 + [20.0] * 3)
-DAMP = np.array([60.0] * 3 + [2.0] * 3)
-
-
-def impedance(state, target, sign=1.0, gravity=1.0, tool=False):
-    model = MODELS[threading.get_ident()]
-    T, J = model.pose(state.q), model.tip_jacobian(state.q)
-    e = lk.se3.pose_error(target.pose, T)
-    e = np.r_[T[:3, :3].T @ e[:3], T[:3, :3].T @ e[3:]] if tool else e
-    tau = J.T @ (sign * STIFF * e - DAMP * (J @ state.dq))
-    return lk.JointTorque(tau + gravity * model.gravity(state.q))
-
-
-@pytest.mark.parametrize(
-    ("mistake", "words"),
-    [
-        (
-            {"sign": -1.0},
-            "law pulls the arm away from its target; check the signs of its spring and its damper",
-        ),
-        ({"tool": True}, "law pulls along the error as the tool's axes have it"),
-        ({"gravity": 0.0}, "law pulls towards its target, but .* does it add gravity"),
-    ],
-)
-def test_a_law_that_pulls_elsewhere_is_told_so_when_the_hand_lets_go(live, mistake, words):
-    """Wrong sign, tool axes, no gravity: pulled aside and let go, the note names the mistake."""
-    session, frames = live({"law": lambda s, t: impedance(s, t, **mistake)})
-    session.tell({"kind": "go"})
-    pulled = until(frames, lambda f: f["error"] > 0.03, tell=lambda: push(session, [0, 25.0, 0]))
-    session.tell({"kind": "hand", "link": 7, "local": [0, 0, 0]})
-    told = until(frames, lambda f: f["t"] > pulled["t"] and f["note"])
-    assert re.search(words, told["note"]), told["note"]
-    assert told["state"] == "running"
-
-
-def test_a_right_law_is_not_suspected(live):
-    """A soft law that a band holds 6 cm from its target gets no note."""
-    band = lk.Spring(T_READY[:3, 3] + [0.0, 0.3, 0.0], 100.0)
-    session, frames = live({"law": impedance}, things=[band])
-    session.tell({"kind": "go"})
-    until(frames, lambda f: f["t"] > 2.0)
-    assert frames[-1]["error"] > 0.05
-    assert {f["note"] for f in frames} == {""}
-
-
-def test_only_a_target_that_moves_has_a_path():
-    """Of a circle there are points, in angles as in poses; of a place and an endless one none."""
-    model = lk.Model("left")
-    circle = lk.Circle(T_READY[:3, 3], T_READY[:3, 3] + [0.0, -0.1, 0.0])
-    poses = lk.Trajectory(lk.PosePath(circle, T_READY[:3, :3]), lk.Quintic(4.0))
-    with lk.Arm("left", q0=READY) as arm:
-        for target in (poses, model.joint_trajectory(poses, READY)):
-            wide = np.ptp(Surroundings(arm, target).path(), axis=0)
-            np.testing.assert_allclose(wide, [0.2, 0.2, 0.0], rtol=0, atol=1e-3)
-        for target in (lk.Hold(T_READY, 1.0), lambda t: poses(t % 4.0)):
-            assert Surroundings(arm, target).path() == []
-
-
-def test_an_endless_targets_time_goes_on_with_the_worlds(live):
-    """A law that fails, and Reset, do not set a tag's follower back in time."""
-    asked = []
-
-    def follow(t):
-        asked.append(t)
-        return lk.Sample(READY, np.zeros(7), np.zeros(7))
-
-    def fails_once(state, target):
-        if len(asked) == 60:
-            raise ValueError("once")
-        return springy(state, target)
-
-    session, frames = live({"law": fails_once}, follow)
-    session.tell({"kind": "go"})
-    until(frames, lambda f: "failed at" in f["note"])
-    session.tell({"kind": "go"})
-    until(frames, lambda f: f["t"] > 1.0)
-    session.tell({"kind": "reset"})
-    until(frames, lambda f: f["t"] > 1.5)
-    session.close()
-    assert asked[0] == 0.0 and min(np.diff(asked)) > -1e-9
