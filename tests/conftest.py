@@ -30,6 +30,11 @@ GATE = {"test_controllers.py", "test_a_mouse_pulls_the_hand_and_lets_it_go"}
 FIRST = "test_pages_of_the_contents_exist"
 
 
+def pytest_addoption(parser):
+    """An option that writes the golden file of messages again."""
+    parser.addoption("--golden", action="store_true", help="write what messages say again")
+
+
 def pytest_terminal_summary(terminalreporter):
     """Say how long each folder of tests took, over all workers."""
     took = Counter()
