@@ -18,9 +18,9 @@ STOREYS = {
     "grader": (r"labkit/grader/.*\.py", 6820),
     "solutions": (r"solutions/.*\.py", 11300),
     "book": (r"book/.*\.py", 6200),
-    "tests": (r"tests/.*\.py", 25600),
-    "JavaScript, styles": (r".*\.(js|mjs|css)", 5265),
-    "templates, texts": (r".*\.(j2|html|toml|yml|yaml)|solutions/.*\.(md|txt)", 1190),
+    "tests": (r"tests/.*\.py", 20800),
+    "JavaScript, styles": (r".*\.(js|mjs|css)", 5080),
+    "templates, texts": (r".*\.(j2|html|toml|yml|yaml)|solutions/.*\.(md|txt)", 1040),
     "commands": (r"Makefile|Dockerfile|nbgrader_config.py|.*\.sh|\.ci/(?!.*(toml|yml|md)$).*", 638),
 }
 """The files of each storey, and its ceiling. After a deletion, lower it; nobody raises it."""
