@@ -142,7 +142,7 @@ def test_each_gap_is_told(tmp_path):
 def test_what_is_unanswered_is_a_note(tmp_path, monkeypatch, capsys):
     """A stub, a prediction without a letter and an empty text are no gaps; a loop is stopped."""
     stub = "def {q}(x): raise NotImplementedError"
-    path = notebook(tmp_path, [[stub]], ["guess = predict('guess', None)"])
+    path = notebook(tmp_path, [[stub]], ["guess = predict('guess', '?')"])
     data = json.loads(path.read_text())
     data["cells"][-1]["source"] = PLACEHOLDER
     path.write_text(json.dumps(data))

@@ -33,7 +33,7 @@ def test_one_prediction_goes_all_the_way(tmp_path, monkeypatch, capsys):
 
     mine = shutil.copytree(course.release / NAME, tmp_path / "ada") / f"{NAME}.ipynb"
     assert link == f"{NAME}/{mine.name}"
-    notebook = put(json.loads(mine.read_text()), asked, f'{asked} = predict("{asked}", "d")')
+    notebook = put(json.loads(mine.read_text()), asked, f'{asked} = predict("{asked}", "b")')
     committed = verdict_metadata(Verdict(asked, Outcome.RIGHT, 1.0, 1.0))
     checked = {"output_type": "display_data", "data": {}, "metadata": committed}
     cell_of(notebook, asked)["outputs"] = [checked]
