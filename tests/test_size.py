@@ -14,9 +14,9 @@ from pathlib import Path
 ROOT = Path(__file__).parents[1]
 STOREYS = {
     "lab": (r"labkit/(?!course/|grader/|__main__).*\.py", 5300),
-    "course": (r"labkit/(course/|__main__).*\.py", 4700),
+    "course": (r"labkit/(course/|__main__).*\.py", 4100),
     "grader": (r"labkit/grader/.*\.py", 6820),
-    "solutions": (r"solutions/.*\.py", 11300),
+    "solutions": (r"solutions/.*\.py", 11100),
     "book": (r"book/.*\.py", 6200),
     "tests": (r"tests/.*\.py", 20800),
     "JavaScript, styles": (r".*\.(js|mjs|css)", 5080),
