@@ -82,7 +82,6 @@ def test_a_number_that_makes_no_sense_is_a_sentence(words, sentence, capsys):
             )
             for layout in ("questions", "nbgrader", "moodle-worksheet", "gradescope")
         ),
-        (["collect", "01_paths", ".", "--course", ROOT], "nothing in . was handed in for 01_paths"),
     ],
 )
 def test_a_wrong_file_or_folder_is_a_sentence(words, sentence, tmp_path, monkeypatch, capsys):

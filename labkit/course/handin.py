@@ -128,7 +128,7 @@ def submit_check(path: Path, seconds: float = 600.0) -> Tried:
     name, asked = data["assignment"], [x["name"] for x in data["questions"]]
     code = [cell["source"] for cell in cells if cell["cell_type"] == "code"]
     ran, stopped = _run(code, folder / FILE, seconds)
-    errors, own = _errors(ran[1:-1])
+    errors, own = _errors(ran)
     at_check = {question: last_verdict(ran[:-1], question) for question in asked}
     verdicts = {question: last_verdict(ran[-1:], question) for question in asked}
     problems, notes = [], []
@@ -280,11 +280,7 @@ def _end() -> None:
 
 def _foreign(names: Mapping[str, Any]) -> set[str]:
     """Modules that a notebook uses and that labkit does not bring."""
-    things = [x for key, x in names.items() if not key.startswith("_")]
-    roots = {
-        str(getattr(x, "__module__", None) or getattr(x, "__name__", "")).partition(".")[0]
-        for x in things
-    }
+    roots = {_home(x).partition(".")[0] for key, x in names.items() if not key.startswith("_")}
     waiting, ours = ["labkit"], set[str]()
     for one in waiting:  # the list grows
         with suppress(PackageNotFoundError):  # what only another system needs
@@ -296,3 +292,10 @@ def _foreign(names: Mapping[str, Any]) -> set[str]:
                     waiting += [found] if found not in waiting else []
     owners: Mapping[str, Sequence[str]] = packages_distributions()
     return {x for x in roots if x in owners and not ours.intersection(owners[x])}
+
+
+def _home(x: Any) -> str:
+    """The module of a thing, or its own name if it is one; an odd thing may raise when asked."""
+    with suppress(Exception):
+        return str(getattr(x, "__module__", None) or getattr(x, "__name__", ""))
+    return ""

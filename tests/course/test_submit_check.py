@@ -67,6 +67,7 @@ HARMLESS = {
     "an own figure": [RIGHT, CHECK, "import matplotlib.pyplot as plt\nplt.plot([{q}(1)])\nlk.plotting.show('One.')"],
     "a text of another language": ["def {q}(x):\n    'Größe → 2×'\n    return 2 * x", CHECK],
     "an empty cell and a comment": [RIGHT, "", "# done", CHECK],
+    "an odd object": ["class Odd:\n    def __getattribute__(self, name): raise RuntimeError\nodd{k} = Odd()", RIGHT, CHECK],
     "numpy's settings": [RIGHT, CHECK, "np.set_printoptions(precision=3)"],
 }  # fmt: skip
 """Cells that a student may well write, each below `SETUP` and with an answer that is right."""
