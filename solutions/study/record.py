@@ -2,7 +2,7 @@
 
 After a change to the physics, the recorded runs, maps, trials and campaign, the students' notebooks
 and the verdicts on all known answers no longer agree with the code.  This program makes them again
-in order, prints how far the numbers moved, and names each verdict that changed and why.
+in order, and names each verdict that changed and why.
 """
 
 from __future__ import annotations
@@ -15,14 +15,11 @@ from collections.abc import Callable, Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
-import numpy as np
-
 from labkit.course.authoring.layout import Course
 from labkit.course.authoring.problem import Problem
 from labkit.course.marking import mark
 from labkit.course.seed import PUBLIC_SEED
 from labkit.course.verdict import Verdict
-from labkit.recordings import DATA
 
 ROOT = Path(__file__).parents[2]
 VERDICTS = Path(__file__).with_name("verdicts.json")
@@ -87,43 +84,6 @@ def changes(before: Verdicts, after: Verdicts) -> Iterator[str]:
             yield f"{key}: {old['earned']:g} points before, {new['earned']:g} now; {moved}"
 
 
-def distances(before: Mapping[str, Any], after: Mapping[str, Any]) -> Iterator[str]:
-    """How far the numbers of each recorded file moved, relative to the largest of them."""
-    for name in sorted({*before, *after}):
-        old, new = before.get(name), after.get(name)
-        if old is None or new is None or old.shape != new.shape:
-            yield f"{name}: other rows than before"
-        else:
-            scale = np.nanmax(np.abs(old), initial=1e-300)
-            yield f"{name}: {np.nanmax(np.abs(new - old), initial=0.0) / scale:.2g} at most"
-
-
-def recorded() -> Mapping[str, Any]:
-    """The numbers in each file of recorded data."""
-    files = [*DATA.glob("*.json"), *DATA.glob("maps/*.json"), *DATA.glob("recorded/*.npz")]
-    found = {}
-    for path in files:
-        if path.suffix == ".npz":
-            with np.load(path) as data:
-                values = [data[key].ravel() for key in sorted(data) if data[key].dtype.kind == "f"]
-                found[path.name] = np.concatenate(values)
-        elif path.name.startswith(("campaign", "trials")) or path.parent.name == "maps":
-            found[path.name] = np.array([*_numbers(json.loads(path.read_text()))])
-    return found
-
-
-def _numbers(data: Any) -> Iterator[float]:
-    """Every number in JSON data, in order; a missing one is NaN."""
-    match data:
-        case list() | dict():
-            for part in data.values() if isinstance(data, dict) else data:
-                yield from _numbers(part)
-        case None:
-            yield float("nan")
-        case int() | float():
-            yield float(data)
-
-
 def main(arguments: Sequence[str] | None = None) -> int:
     """Record, release, mark, and print what changed."""
     parser = argparse.ArgumentParser(prog="python -m solutions.study.record", description=__doc__)
@@ -133,12 +93,9 @@ def main(arguments: Sequence[str] | None = None) -> int:
     options = parser.parse_args(arguments)
     course = Course(ROOT)
     if not (options.verdicts or options.check):
-        before = recorded()
         for maker in MAKERS:
             subprocess.run([sys.executable, "-m", *maker], cwd=ROOT, check=True)
         subprocess.run([sys.executable, "-m", "labkit", "release"], cwd=ROOT, check=True)
-        print("Recorded numbers, relative to the largest in their file:")
-        print(*distances(before, recorded()), sep="\n")
     names = tuple(options.names) or course.names()
     old = json.loads(VERDICTS.read_text()) if VERDICTS.exists() else {}
     asked = {key: row for key, row in old.items() if key.partition("/")[0] in names}

@@ -2,8 +2,6 @@
 
 import json
 
-import numpy as np
-
 from solutions.study import record
 
 
@@ -36,11 +34,3 @@ def test_an_answer_that_is_no_longer_asked_leaves_the_record(tmp_path, monkeypat
     record.VERDICTS.write_text(json.dumps({**rows, **stale}))
     assert record.main(["--verdicts", "00_warmup"]) == 0
     assert json.loads(record.VERDICTS.read_text()) == rows
-
-
-def test_numbers_that_moved_are_measured():
-    """Relative to the largest in their file; a file of another shape is said to be one."""
-    old = {"a": np.array([1.0, np.nan, 4.0]), "b": np.zeros(2)}
-    new = {"a": np.array([1.0, np.nan, 4.2]), "b": np.zeros(3)}
-    assert list(record.distances(old, new)) == ["a: 0.05 at most", "b: other rows than before"]
-    assert record.recorded().keys() >= {"campaign.json", "trials_line.json"}
