@@ -16,8 +16,8 @@ from typing import NamedTuple
 import pytest
 from handmade import ROOT
 
-from labkit.grader.gradescope import setup_zip as gradescope_zip
-from labkit.grader.gradescope.run import PLACE
+from labkit.grader import gradescope
+from labkit.grader.gradescope import PLACE
 from labkit.grader.sandbox.cgroup import Group
 
 GIVEN = {"memory": 768 * 2**20, "processor": 50_000}
@@ -45,8 +45,8 @@ class Ended(NamedTuple):
 def packed(course, assignment, to, monkeypatch):
     """The zip of an assignment, which does not contain labkit."""
     shutil.copy(ROOT / "constraints.txt", course.root)
-    monkeypatch.setattr(gradescope_zip, "wheel", lambda root, to: None)
-    gradescope_zip.autograder(course, assignment, to)
+    monkeypatch.setattr("labkit.grader.terms.student_bundle.wheel", lambda root, to: None)
+    gradescope.autograder(course, assignment, to)
     return to
 
 

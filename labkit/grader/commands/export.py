@@ -125,14 +125,14 @@ def export(
 
 def _autograder(course: Course, assignment: str | None, to: Path | None) -> int:
     """Write the zip for Gradescope; name the students whose own arm it cannot find."""
-    from ..gradescope.setup_zip import autograder
+    from ..gradescope import autograder
 
     if assignment is None or to is None:
         raise LabkitError("name ASSIGNMENT, and the zip to write: --to FILE")
     with Failures() as failures:
         unknown = autograder(course, assignment, to)
         why = "the roster has no e-mail address, by which Gradescope tells whose arm it is"
-        failures.add("not known to Gradescope", [Failure(x.id, why) for x in unknown])
+        failures.add("not known to Gradescope", [Failure(x, why) for x in unknown])
         print(f"written: {to}; it holds the hidden cases, so give it to Gradescope alone")
     return failures.code
 

@@ -7,7 +7,7 @@ as plain data, which is read with limits.
 from __future__ import annotations
 
 import time
-from collections.abc import Callable, Collection, Iterable, Mapping
+from collections.abc import Collection, Iterable, Mapping
 from contextlib import closing, suppress
 from dataclasses import replace
 from typing import Any, cast
@@ -46,7 +46,6 @@ def grade(
     sandbox: Sandbox,
     limits: Limits,
     note: str = "",
-    listener: Callable[[Verdict], object] = lambda _: None,
 ) -> Result:
     """Grade one notebook.
 
@@ -57,7 +56,6 @@ def grade(
         sandbox: Where its code runs.
         limits: What it may use.
         note: What was unusual about the file.
-        listener: Called with the verdict on each question that was tried, as soon as it is known.
 
     Returns:
         The result; nothing that a notebook does raises an exception here.
@@ -78,10 +76,10 @@ def grade(
         functions = [RemoteFunction(question, session) for question in questions]
         tried = {function.question.name: _try_public(function) for function in functions}
         failed = session.failed()  # what is shown of cells is fixed before the first hidden case
-        verdicts = {}
-        for function, (name, before) in zip(functions, tried.items(), strict=True):
-            verdicts[name] = _mark_safely(function, before)
-            listener(verdicts[name])
+        verdicts = {
+            name: _mark_safely(function, before)
+            for function, (name, before) in zip(functions, tried.items(), strict=True)
+        }
         spent, passed = session.spent, {*session.right}
     wrong = {k for k, v in verdicts.items() if v.outcome in (Outcome.WRONG, Outcome.ERROR)}
     result = replace(

@@ -1,0 +1,159 @@
+"""Gradescope: the zip that it takes as an autograder, and what runs in its container.
+
+The container cannot make namespaces, so submissions are isolated by user id; see
+`sandbox.isolation.ByUser`.  The manual at gradescope-autograders.readthedocs.io describes the files
+under "Autograder Specifications" and "Submission Metadata", and under "Troubleshooting" the limits:
+half a processor, 768 MB and 10 minutes, after which nothing counts.
+"""
+
+from __future__ import annotations
+
+import json
+import os
+import sys
+import tempfile
+from dataclasses import replace
+from multiprocessing import get_context
+from pathlib import Path
+from typing import Any
+from zipfile import ZIP_DEFLATED, ZipFile, ZipInfo
+
+from ..course.authoring.bundle import Bundle
+from ..course.authoring.layout import Course
+from ..course.messages import summary
+from ..course.own_arm import HANDLES, Arms
+from .atomic import write
+from .clean import clean_line
+from .grading.grade import grade, rejection
+from .grading.plan import imports
+from .grading.results import Result
+from .sandbox.launch import Sandbox
+from .sandbox.limits import Limits
+from .sandbox.mounts import Isolation
+from .submission import Submission
+
+PLACE = "LABKIT_AUTOGRADER"
+"""The variable with which a test replaces the folder ``/autograder``."""
+SECONDS = 540.0
+"""After so long the watchdog ends grading, a minute before Gradescope would."""
+LIMITS = replace(Limits().scaled(2.5), memory=384)
+"""What a submission may use on half a processor and in 768 MB."""
+BY_HAND = "A person marks this answer; its points are not among those of the autograder."
+
+
+def main() -> None:
+    """Grade in another process, and stop that process if it takes too long."""
+    place = Path(os.environ.get(PLACE, "/autograder"))
+    if "--try" in sys.argv:
+        with Sandbox(isolation=Isolation.USER) as sandbox, sandbox.spawn("student", LIMITS):
+            print(sandbox.level)
+        return
+    os.chmod(place, 0o700)
+    results = place / "results" / "results.json"
+    grader = get_context("fork").Process(target=_grade, args=(place, results))
+    grader.start()
+    grader.join(SECONDS)
+    if grader.exitcode != 0:
+        why = "it took too long" if grader.is_alive() else "perhaps memory ran out"
+        grader.kill()
+        write(results, json.dumps({"score": 0.0, "output": f"Grading did not finish: {why}."}))
+
+
+def _grade(place: Path, results: Path) -> None:
+    """Grade what was handed in."""
+    source = Course(place / "source")
+    (path,) = source.bundle.glob("*.json")
+    bundle = Bundle.of(source, path.stem)
+    student, says = _student(place / "submission_metadata.json", bundle)
+    data, note, why = Submission(student, path.stem, place / "submission").read()
+    with Sandbox(imports(bundle.data["cells"]), isolation=Isolation.USER) as sandbox:
+        if why:
+            result = rejection(why, student, bundle, sandbox.level)
+        else:
+            result = grade(data, student, bundle, sandbox, LIMITS, note)
+    write(results, json.dumps(gradescope_results(bundle, result, says)))
+    print(result, result.isolation, sep="\n")
+
+
+def _student(path: Path, bundle: Bundle) -> tuple[str, str]:
+    """The address of the student who handed in, and a remark if it is not known."""
+    users = json.loads(path.read_text()).get("users", []) if path.exists() else []
+    mails = [clean_line(str(user.get("email", ""))).casefold() for user in users] or [""]
+    known = [mail for mail in mails if mail in bundle.arms.handles]
+    unknown = (
+        f"The course's list has no address {mails[0]}, so answers about your own arm were "
+        'judged by the public arm "demo"; tell your instructor.'
+    )
+    return (known or mails)[0], unknown if bundle.arms.handles and not known else ""
+
+
+def gradescope_results(bundle: Bundle, result: Result, says: str = "") -> dict[str, Any]:
+    """What Gradescope reads: points and words for each question, then what a person marks.
+
+    Args:
+        bundle: What was asked.
+        result: The result of grading.
+        says: A remark on the whole submission.
+    """
+    tests: list[dict[str, Any]] = []
+    for answer in result.questions:
+        verdict = answer.verdict
+        lines = [*summary(verdict), *(f"Note: {note}." for note in answer.notes)]
+        about = {"name": verdict.name, "score": verdict.earned, "max_score": verdict.points}
+        tests.append(about | {"output": "\n".join(lines), "visibility": "visible"})
+    for cell in (m for m in bundle.data["cells"] if "points" in m):
+        said = "\n\n".join(filter(None, [BY_HAND, result.written.get(cell["grade_id"])]))
+        tests.append({"name": cell["grade_id"], "output": said, "visibility": "visible"})
+    look = f"Isolated by: {result.isolation}"
+    tests.append({"name": "for the instructor", "output": look, "visibility": "hidden"})
+    lines = [says, *(f"Note: {note}." for note in result.notes)]
+    lines += [f"It could not be graded: {result.rejected}."] if result.rejected else []
+    lines += [f"Cell {x['cell'] + 1} failed: {x['error']}" for x in result.cells]
+    return {"score": result.score, "output": "\n".join(filter(None, lines)), "tests": tests}
+
+
+def autograder(course: Course, assignment: str, to: Path) -> list[str]:
+    """Write the zip of an assignment: labkit, the release's bundle with hidden cases, two scripts.
+
+    Args:
+        course: The course.
+        assignment: The assignment.
+        to: The file to write.
+
+    Returns:
+        Students whose own arm Gradescope cannot find, as the roster has no address for them.
+
+    Raises:
+        LabkitError: The assignment was not released, the course is not the whole repository, or
+            the wheel could not be built.
+    """
+    from .pages import TEMPLATES  # the container has no package of instructors
+    from .students.roster import read_roster
+    from .terms.student_bundle import check_repository, wheel
+
+    check_repository(course.root)
+    bundle = Bundle.of(course, assignment)
+    files = {f"build/course/bundle/{assignment}.json": json.dumps(bundle.data)}
+    handles, roster = bundle.arms.handles, read_roster(course).students
+    own = bundle.of_student(next(iter(handles), "")) is not bundle  # one student stands for all
+    if own:
+        by_mail = {x.email.casefold(): handles[x.id] for x in roster if x.email and x.id in handles}
+        files[HANDLES] = Arms(bundle.arms.key, by_mail).text()
+    to.parent.mkdir(parents=True, exist_ok=True)
+    with tempfile.TemporaryDirectory() as folder, ZipFile(to, "w", ZIP_DEFLATED) as archive:
+        os.chmod(to, 0o600)
+        wheel(course.root, Path(folder))
+        for path in Path(folder).glob("*.whl"):
+            archive.write(path, path.name)
+        archive.write(course.root / "constraints.txt", "constraints.txt")
+        for name, text in files.items():
+            archive.writestr(name, text)
+        for name, template in (("setup.sh", "setup"), ("run_autograder", "run")):
+            script = ZipInfo(name, (2026, 1, 1, 0, 0, 0))
+            script.external_attr = 0o755 << 16
+            archive.writestr(script, (TEMPLATES / f"gradescope_{template}.sh").read_text())
+    return [str(x) for x in roster if own and x.id in handles and not x.email]
+
+
+if __name__ == "__main__":
+    main()

@@ -1,1 +1,0 @@
-"""Gradescope: the zip that it asks for, and what runs in its container."""
