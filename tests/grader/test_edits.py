@@ -9,7 +9,7 @@ import pytest
 from handmade import ROOT
 
 from labkit.course.authoring.layout import Course
-from labkit.grader.defence.edits import MOST, edits, shown
+from labkit.grader.defence.edits import MOST, edits
 
 LAW = '''import numpy as np
 
@@ -32,16 +32,14 @@ ANSWERS = [p.answer for name in COURSE.names()[:-1] for p in COURSE.problems(nam
 
 
 def test_the_mistakes_that_people_make_are_among_the_edits():
-    """A sign, an order, a term, a factor, an index, a condition, a transpose, another function."""
+    """A sign, a term, a factor, an index, a comparison, a transpose, another function."""
     found = {(edit.at, edit.now.strip()) for edit in edits(LAW)}
     assert found >= {
-        (3, "e, de = (q - target.position, target.velocity - state.dq)"),
-        (3, "e, de = (target.position - q, -state.dq)"),
+        (3, "e, de = (target.position + q, target.velocity - state.dq)"),
         (4, "tau = kp * e - kd * de"),
         (4, "tau = kp * e"),
         (4, "tau = e + kd * de"),
         (5, "tau -= model.gravity(q)"),
-        (6, "if not carried:"),
         (7, "return tau[-1] @ R.T"),
         (7, "return tau[0] @ R"),
         (8, "return min(tau, 0.5 * (q + de))"),
@@ -49,39 +47,27 @@ def test_the_mistakes_that_people_make_are_among_the_edits():
     }
 
 
-@pytest.mark.parametrize("text, now", [("a[:3]", "a[3:]"), ("a[:, 2:]", "a[:, :2]"),
-                                        ("a[0, i]", "a[-1, i]"), ("-a[i]", "a[i]"),
-                                        ("not a", "a"), ("a <= i", "a >= i")])  # fmt: skip
+@pytest.mark.parametrize(("text", "now"), [("a[:3]", "a[3:]"), ("-a[i]", "a[i]"),
+                                           ("not a", "a"), ("a <= i", "a >= i")])  # fmt: skip
 def test_a_mistake_with_an_index_a_sign_or_a_comparison(text, now):
-    """The other half of a vector, the last one, a sign that is left out, a condition reversed."""
+    """The other half of a vector, a sign or a not that is left out, a comparison reversed."""
     found = edits(f"def f(a, i):\n    return {text}")
     assert f"return {now}" in [edit.now.strip() for edit in found]
 
 
 @pytest.mark.parametrize("text", [LAW, *map(inspect.getsource, ANSWERS)])
-def test_an_edit_changes_one_shown_line_and_leaves_python(text):
-    """What stands outside of functions stays; so does each other line."""
-    before = shown(text)
+def test_an_edit_changes_one_line_and_leaves_python(text):
+    """What stands outside of functions stays; so does each other line, without docstrings."""
     for edit in edits(text):
-        differ = [k for k, pair in enumerate(zip(before, edit.lines, strict=True), 1)
-                  if pair[0] != pair[1]]  # fmt: skip
-        assert differ == [edit.at] and edit.was == before[edit.at - 1]
-        assert shown(edit.cell) == list(edit.lines)
+        assert edit.now != edit.was and ast.parse(edit.cell)
+        assert '"""' not in "".join(edit.lines)
         assert "print(1 - 2)" in edit.cell or text != LAW
-
-
-def test_the_functions_are_shown_without_their_docstrings():
-    """And as Python writes them, so that spacing and comments do not give the mistake away."""
-    function = ast.parse(LAW).body[1]
-    del function.body[0]
-    assert shown(LAW) == ast.unparse(function).split("\n")
-    assert shown('def f():\n    """Nothing else."""') == ["def f():", "    pass"]
 
 
 @pytest.mark.parametrize("text", ["", "def law(:", "x = 1 + 2", "(" * 300, "%%bash\nls", "\0"])
 def test_a_text_without_functions_has_no_edits(text):
     """Nor does one that is not Python."""
-    assert edits(text) == [] and shown(text) == []
+    assert edits(text) == []
 
 
 def test_what_is_nested_too_deep_to_be_written_out_has_no_edits():

@@ -15,7 +15,6 @@ from labkit.course.notebook import grade_id
 from labkit.grader.grading.results import Results
 from labkit.grader.nbgrader.autograded_notebook import release_source
 from labkit.grader.nbgrader.gradebook import apply_rules, open_gradebook, record
-from labkit.grader.nbgrader.unreleased import enter_tasks
 from labkit.grader.whys import DRAWN, drawn
 
 WHYS = [f"why_{k}" for k in range(8)]
@@ -64,7 +63,13 @@ def test_a_why_that_is_marked_is_one_of_the_two(course):
     Results(course, NAME).keep(result)
     with open_gradebook(course) as book:
         for name, why in [("00_warmup", "why_base_joint"), ("02_model", "why_farthest_off")]:
-            (grade,) = enter_tasks(course, book, name, "don", {why: ""}, 2.0)
+            book.update_or_create_assignment(name)
+            book.update_or_create_notebook(name, name)
+            about = {"cell_type": "markdown", "max_score": 2.0}
+            book.update_or_create_task_cell(why, name, name, **about)
+            book.update_or_create_student("don")
+            book.update_or_create_submission(name, "don")
+            grade = book.find_grade(why, name, name, "don")
             grade.manual_score, grade.needs_manual_grade = 1.5, False
         book.db.commit()
     record(course, NAME, [result])

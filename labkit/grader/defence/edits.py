@@ -30,7 +30,7 @@ EXCHANGED = {
 """Names that students confuse, such as the two Jacobians, or sine and cosine."""
 MOST = 300
 """The most mistakes that are tried in one cell; real functions have fewer."""
-_TURNED = {
+_TURNED: dict[type[ast.AST], type[ast.AST]] = {
     ast.Add: ast.Sub,
     ast.Sub: ast.Add,
     ast.Lt: ast.Gt,
@@ -66,14 +66,14 @@ class Edit:
 
 
 def edits(source: str) -> list[Edit]:
-    """All mistakes that fit the functions of a cell, sorted by line.
-
-    Args:
-        source: The cell's text; one that Python cannot read has no functions.
-    """
+    """All mistakes that fit the functions of a cell, by line; none without Python."""
     found: dict[tuple[int, str], Edit] = {}
     try:
-        cell, functions = _parsed(source)
+        cell = deepcopy(parsed(source)[1])
+        functions = [x for x in cell.body if isinstance(x, ast.FunctionDef)]
+        for function in functions:
+            if ast.get_docstring(function, clean=False) is not None:
+                function.body = function.body[1:] or [ast.Pass()]
         before = _written(functions)
         mistakes = ((*x, *wrong) for x in _places(functions) for wrong in _mistakes(x[0]))
         for node, put, wrong, says in islice(mistakes, MOST):
@@ -88,24 +88,6 @@ def edits(source: str) -> list[Edit]:
     except _UNREADABLE:
         return []
     return [found[place] for place in sorted(found)]
-
-
-def shown(source: str) -> list[str]:
-    """The lines of a cell's functions, as a defence shows them."""
-    try:
-        return _written(_parsed(source)[1])
-    except _UNREADABLE:
-        return []
-
-
-def _parsed(source: str) -> tuple[ast.Module, list[ast.FunctionDef]]:
-    """A cell and its functions, without their docstrings."""
-    cell = deepcopy(parsed(source)[1])
-    functions = [x for x in cell.body if isinstance(x, ast.FunctionDef)]
-    for function in functions:
-        if ast.get_docstring(function, clean=False) is not None:
-            function.body = function.body[1:] or [ast.Pass()]
-    return cell, functions
 
 
 def _written(functions: list[ast.FunctionDef]) -> list[str]:
@@ -130,33 +112,28 @@ def _places(functions: list[ast.FunctionDef]) -> Iterator[tuple[ast.AST, Callabl
 def _mistakes(node: ast.AST) -> Iterator[tuple[ast.AST, str]]:
     """The mistakes that fit one node, each as the node that replaces it."""
     match node:
-        case ast.If(test=ast.Name()) | ast.IfExp(test=ast.Name()):
-            yield _with(node, test=ast.UnaryOp(ast.Not(), node.test)), "a condition is reversed"
-        case ast.UnaryOp(op=ast.Not()):
-            yield node.operand, "a condition is reversed"
-        case ast.UnaryOp(op=ast.USub()):
-            yield node.operand, "a sign is left out"
-        case ast.AugAssign(op=ast.Add() | ast.Sub()):
+        case ast.UnaryOp(op=ast.USub() | ast.Not()):
+            yield node.operand, "a sign, or a not, is left out"
+        case ast.BinOp(op=ast.Add() | ast.Sub()) | ast.AugAssign(op=ast.Add() | ast.Sub()):
             yield _with(node, op=_TURNED[type(node.op)]()), "the sign of a term is reversed"
+            if isinstance(node, ast.BinOp):
+                yield node.left, "a term is left out"
+        case ast.BinOp(op=ast.Mult() | ast.MatMult()):
+            yield node.right, "a factor is left out"
+        case ast.BinOp():
+            yield node.left, "a divisor or an exponent is left out"
         case ast.Compare(ops=[op]) if type(op) in _TURNED:
             yield _with(node, ops=[_TURNED[type(op)]()]), "a comparison is reversed"
-        case ast.BinOp():
-            yield from _operator_mistakes(node)
         case ast.Attribute(attr="T"):
             yield node.value, "a transpose is left out"
         case ast.Attribute(attr=name) if name in EXCHANGED:
             yield _with(node, attr=EXCHANGED[name]), f"{EXCHANGED[name]} stands for {name}"
-        case ast.Call(func=ast.Name(id=name)) if name in EXCHANGED:
-            func = ast.Name(EXCHANGED[name])
-            yield _with(node, func=func), f"{EXCHANGED[name]} stands for {name}"
-        case ast.Subscript(slice=ast.Tuple(elts=parts) as indices):
-            for k, part in enumerate(parts):
-                for wrong, says in _index_mistakes(part):
-                    elts = [*parts[:k], wrong, *parts[k + 1 :]]
-                    yield _with(node, slice=_with(indices, elts=elts)), says
-        case ast.Subscript():
-            for wrong, says in _index_mistakes(node.slice):
-                yield _with(node, slice=wrong), says
+        case ast.Name(id=name) if name in EXCHANGED:
+            yield _with(node, id=EXCHANGED[name]), f"{EXCHANGED[name]} stands for {name}"
+        case ast.Subscript(slice=ast.Constant(value=int())):
+            yield _with(node, slice=ast.Constant(-1)), "the last one is taken (index -1)"
+        case ast.Slice(lower=None, upper=ast.Constant(), step=None):
+            yield ast.Slice(node.upper), "the other part of a vector is taken"
 
 
 def _with(node: ast.AST, **fields: Any) -> Any:
@@ -165,37 +142,3 @@ def _with(node: ast.AST, **fields: Any) -> Any:
     for name, value in fields.items():
         setattr(new, name, value)
     return new
-
-
-def _operator_mistakes(node: ast.BinOp) -> Iterator[tuple[ast.AST, str]]:
-    """Mistakes with an operator: a sign, an order, an operand that is left out."""
-    left, right = node.left, node.right
-    of_terms = isinstance(left, ast.BinOp) and isinstance(left.op, ast.Add | ast.Sub)
-    match node.op:
-        case ast.Add() | ast.Sub() if of_terms or isinstance(node.op, ast.Add):
-            yield _with(node, op=_TURNED[type(node.op)]()), "the sign of a term is reversed"
-            yield left, "a term is left out"
-            if not of_terms:
-                yield right, "a term is left out"
-        case ast.Sub():
-            yield _with(node, left=right, right=left), "a difference is reversed"
-            yield ast.UnaryOp(ast.USub(), right), "a term is left out"
-        case ast.Mult():
-            yield right, "a factor is left out"
-        case ast.MatMult():
-            yield right, "a matrix is left out"
-        case ast.Div():
-            yield left, "a divisor is left out"
-        case ast.Pow():
-            yield left, "an exponent is left out"
-
-
-def _index_mistakes(part: ast.expr) -> Iterator[tuple[ast.expr, str]]:
-    """Mistakes with an index: the last element, or the other part of a vector."""
-    match part:
-        case ast.Constant(value=int()) if not isinstance(part.value, bool):
-            yield ast.Constant(-1), "the last one is taken (index -1)"
-        case ast.Slice(lower=None, upper=ast.Constant(), step=None):
-            yield ast.Slice(part.upper), "the other part of a vector is taken"
-        case ast.Slice(lower=ast.Constant(), upper=None, step=None):
-            yield ast.Slice(None, part.lower), "the other part of a vector is taken"

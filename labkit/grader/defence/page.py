@@ -6,12 +6,14 @@ import shlex
 from collections.abc import Iterator, Sequence
 from pathlib import Path
 
-from ...course.authoring.layout import Course
+from ...course.authoring.layout import DEFENCE, Course
+from ...errors import LabkitError
 from ..atomic import write
 from ..feedback.page import error_over_time, measures, number_by_number
+from ..nbgrader.gradebook import open_gradebook
 from ..pages import file, render_page
 from ..rules import read_rules
-from .draw import ASKED, FULL, Asked
+from .draw import ASKED, FULL, Asked, known
 
 RUBRIC = (
     "says which line was changed, and what it was before",
@@ -19,15 +21,15 @@ RUBRIC = (
     "explains the picture by the line: which term, which sign, which frame",
 )
 """The criteria for each question, at one point each."""
-WIDTH, ROOM = 95, 400.0
-"""The characters in a printed line of code; the height for all lines, in [pt]."""
+LINES = tuple(f"question_{k + 1}" for k in range(ASKED))
+"""The names of the questions in the gradebook."""
 
 
 def write_page(course: Course, student: str, asked: Sequence[Asked]) -> Path:
     """Write the page of a student, and return its file."""
     page = render_page(
         "defence.html.j2",
-        file("defence.css") + _print_size(asked),
+        file("defence.css"),
         replays=any(one.run and one.run["motion"] for one in asked),
         student=student,
         course=read_rules(course).name,
@@ -45,12 +47,6 @@ def write_page(course: Course, student: str, asked: Sequence[Asked]) -> Path:
     return path
 
 
-def _print_size(asked: Sequence[Asked]) -> str:
-    """The style with a print size of code at which all functions fit one side of A4."""
-    lines = sum(1 + len(line) // WIDTH for one in asked for line in one.edit.lines)
-    return f"@media print {{ .code {{ font-size: {min(8.0, ROOM / max(1, lines)):.2f}pt }} }}"
-
-
 def rows(one: Asked) -> Iterator[tuple[str, str, str, str]]:
     """Each measure with a limit: its words, the value now, the value as handed in, the limit."""
     now, own = (
@@ -60,3 +56,26 @@ def rows(one: Asked) -> Iterator[tuple[str, str, str, str]]:
         if row.limit:
             found, was = (t[words].value if words in t else "none" for t in (now, own))
             yield words, found, was, row.limit
+
+
+def give_mark(course: Course, student: str, points: Sequence[int]) -> None:
+    """Write the points of a defence that was held into the gradebook, a number for each question.
+
+    Raises:
+        LabkitError: There are too few or too many numbers, one is too high, or nobody is so called.
+    """
+    if len(points) != ASKED or not all(0 <= x <= FULL for x in points):
+        raise LabkitError(f"give {ASKED} whole numbers from 0 to {FULL}, such as --mark 2,3,1")
+    known(course, student)
+    with open_gradebook(course) as book:
+        book.update_or_create_assignment(DEFENCE)
+        book.update_or_create_notebook(DEFENCE, DEFENCE)
+        for name in LINES:
+            about = {"max_score": FULL, "cell_type": "markdown"}
+            book.update_or_create_grade_cell(name, DEFENCE, DEFENCE, **about)
+        book.update_or_create_student(student)
+        submission = book.update_or_create_submission(DEFENCE, student)
+        for grade in (x for notebook in submission.notebooks for x in notebook.grades):
+            grade.manual_score = float(points[LINES.index(grade.name)])
+            grade.needs_manual_grade = False
+        book.db.commit()
