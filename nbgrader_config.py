@@ -27,11 +27,6 @@ c.HTMLExporter.filters = {
     "clean_html": "labkit.grader.nbgrader.markup.clean",
 }
 
-# Nor does a name of theirs give commands to the terminal.
-c.Application.logging_config = {
-    "formatters": {"console": {"class": "labkit.grader.nbgrader.plain_log.PlainFormatter"}}
-}
-
 # When work is due and what late work loses stands in course.toml; name a class of your own instead,
 # in a file that lies here, if its rules are not enough.
 c.AssignLatePenalties.plugin_class = "labkit.grader.rules.CourseRules"
@@ -39,22 +34,5 @@ c.AssignLatePenalties.plugin_class = "labkit.grader.rules.CourseRules"
 # formgrader's button and nbgrader's command write the pages that `labkit feedback` writes.
 c.GenerateFeedback.exporter_class = "labkit.grader.feedback.exporter.StudentPage"
 
-# Students' code never runs in nbgrader's own process: a submission is brought into the release's
-# form and graded in a sandbox.  A folder with a bad name is named and left out first.
-c.Autograde.exporter_class = "labkit.grader.nbgrader.autograde.FitNames"
-c.Autograde.pre_convert_hook = "labkit.grader.nbgrader.autograde.unlink_foreign"
-c.Autograde.sanitize_preprocessors = [
-    "labkit.grader.nbgrader.autograde.Repair",
-    "nbgrader.preprocessors.ClearOutput",
-    "nbgrader.preprocessors.DeduplicateIds",
-    "nbgrader.preprocessors.OverwriteKernelspec",
-    "nbgrader.preprocessors.OverwriteCells",
-    "nbgrader.preprocessors.CheckCellMetadata",
-]
-c.Autograde.autograde_preprocessors = [
-    "labkit.grader.nbgrader.autograde.Isolated",
-    "nbgrader.preprocessors.LimitOutput",
-    "nbgrader.preprocessors.SaveAutoGrades",
-    "nbgrader.preprocessors.AssignLatePenalties",
-    "nbgrader.preprocessors.CheckCellMetadata",
-]
+# Students' code never runs in nbgrader's own process: `labkit grade` grades, in a sandbox.
+c.Autograde.sanitize_preprocessors = ["labkit.grader.nbgrader.gradebook.Refused"]

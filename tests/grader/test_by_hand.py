@@ -10,7 +10,7 @@ from dataclasses import replace
 
 import pytest
 from by_hand import BLANK, REPORT, WHY, author, written_in
-from handmade import ROOT, hand_in, nbgrader, raw
+from handmade import ROOT, hand_in, raw
 from made import NAME, notebook_of, result_of
 from sqlalchemy.exc import OperationalError
 from sqlalchemy.orm import Session
@@ -213,21 +213,6 @@ def test_another_answer_is_looked_at_though_the_gradebook_was_locked(written, mo
             graded(written, "ada", new, **{WHY: "No.", REPORT: ""})
     (said,) = graded(written, "ada", new, **{WHY: "No.", REPORT: ""})
     assert "the answer has changed since; look at it again" in said
-
-
-@pytest.mark.slow
-def test_nbgraders_autograde_agrees(authored, tmp_path):
-    """Its own command leaves the same automatic scores and the same notebook as `labkit grade`."""
-    course = Course(shutil.copytree(authored.root, tmp_path / "course", symlinks=True))
-    given = json.loads((course.release / NAME / f"{NAME}.ipynb").read_text())
-    hand_in(course, NAME, "ada", written_in(given, WHY, "It is $x$ long."))
-    path = course.root / "autograded/ada" / NAME / f"{NAME}.ipynb"
-    assert main(["grade", NAME, "--course", str(course.root)]) == 0
-    ours, mine = scores(course), [c["source"] for c in json.loads(path.read_text())["cells"]]
-    code, said = nbgrader(course.root, "autograde", NAME, "--force")
-    assert code == 0, said[-2000:]
-    assert scores(course) == ours
-    assert [c["source"] for c in json.loads(path.read_text())["cells"]] == mine
 
 
 def scores(course):

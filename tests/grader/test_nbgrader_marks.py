@@ -63,3 +63,14 @@ def test_what_a_release_leaves_validates_as_it_lies(course, kind):
     """The first check that nbgrader offers passes on the source and on the solved notebook."""
     _, said = nbgrader(getattr(course, kind) / NAME, "validate", f"{NAME}.ipynb")
     assert "Success" in said, said[-1500:]
+
+
+def test_nbgraders_own_autograde_refuses(tmp_path):
+    """By its command and its button: it would run students' code in its own process."""
+    course = copied(tmp_path)
+    release(course, NAME, 3)
+    folder = course.submitted / "ada" / NAME
+    shutil.copytree(course.solution / NAME, folder)
+    code, said = nbgrader(course.root, "autograde", NAME, "--create")
+    assert code and f"labkit grade {NAME}" in said
+    assert not (course.root / "autograded/ada" / NAME / f"{NAME}.ipynb").exists()

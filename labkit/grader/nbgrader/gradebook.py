@@ -10,10 +10,10 @@ import warnings
 from collections.abc import Iterable, Iterator, Mapping, Set
 from contextlib import contextmanager, suppress
 from datetime import datetime
-from functools import partial
 from pathlib import Path
 from typing import Any
 
+from nbgrader.preprocessors import NbGraderPreprocessor
 from sqlalchemy import text as sql
 from sqlalchemy.exc import DatabaseError, OperationalError, SAWarning
 
@@ -55,8 +55,8 @@ def record(course: Course, assignment: str, results: Iterable[Result]) -> list[s
                 f"labkit release {assignment}"
             )
         for result in results:
-            step = partial(_record, course, book, source, result)
-            done = for_student(result.student, step, of_all=(OperationalError,))
+            about = (course, book, source, result)
+            done = for_student(result.student, _record, *about, of_all=(OperationalError,))
             if isinstance(done, Failure):
                 book.db.rollback()
             said += [done] if isinstance(done, Failure) else done
@@ -81,16 +81,20 @@ def _update_times(course: Course, book: Any, assignment: str) -> None:
     A file that was put in its place since then has another time, and changes nothing.
     """
     results = Results(course, assignment)
-    for submission in book.assignment_submissions(assignment):
-        files = Submission.of(course, assignment, submission.student.id)
+
+    def update(submission: Any, files: Submission) -> None:
         text = read_stamp(files.folder)
         when = read_time(text)
         stated = when and when.replace(tzinfo=None)
         if (text and when is None) or stated == submission.timestamp:
-            continue
+            return
         result, (data, _, _) = results.get(files.student), files.read()
         if result is not None and result.hashes["submission"] == digest(data):
             submission.timestamp = stated
+
+    for one in book.assignment_submissions(assignment):
+        student = one.student.id  # whose failure is named where the work is graded
+        for_student(student, update, one, Submission.of(course, assignment, student))
 
 
 def _record(course: Course, book: Any, source: Any, result: Result) -> list[str]:
@@ -119,14 +123,6 @@ def _record(course: Course, book: Any, source: Any, result: Result) -> list[str]
         path.unlink() if before is None else write(path, before)
         raise
     return notes
-
-
-def recorded(course: Course, assignment: str, student: str) -> dict[str, float]:
-    """The automatic scores of a student's questions, as they were last recorded."""
-    with open_gradebook(course) as book:
-        mine = [x for x in book.assignment_submissions(assignment) if x.student_id == student]
-        grades = [grade for x in mine for notebook in x.notebooks for grade in notebook.grades]
-        return {question_of(g.name): float(g.auto_score) for g in grades if g.auto_score}
 
 
 def _changed(path: Path, notebook: Any) -> set[str]:
@@ -243,3 +239,11 @@ def _write_scores(
                 says = f"was marked {given:g} by hand, and {why}; look at it again"
                 yield f"{result.student}: {name} {says}"
             grade.auto_score = score
+
+
+class Refused(NbGraderPreprocessor):  # type: ignore[misc]
+    """Refuses nbgrader's own autograde, which would run students' code in its own process."""
+
+    def preprocess(self, nb: Any, resources: dict[str, Any]) -> tuple[Any, dict[str, Any]]:
+        """Raise a LabkitError."""
+        raise LabkitError(f"type: labkit grade {resources['nbgrader']['assignment']}")
