@@ -6,7 +6,7 @@ import errno
 import sys
 from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass
-from typing import TypeVar
+from typing import Any, TypeVar
 
 from ..errors import LabkitError
 from .clean import clean_line
@@ -33,13 +33,17 @@ class Failure:
 
 
 def for_student(
-    student: str, step: Callable[[], T], of_all: tuple[type[Exception], ...] = ()
+    student: str,
+    step: Callable[..., T],
+    *arguments: Any,
+    of_all: tuple[type[Exception], ...] = (),
 ) -> T | Failure:
-    """Do a step for one student.
+    """Do a step for one student; every loop over students calls it.
 
     Args:
         student: The student for whom the step is done.
         step: The step.
+        arguments: The arguments of the step.
         of_all: Exceptions that concern all students, and are therefore raised.
 
     Returns:
@@ -49,7 +53,7 @@ def for_student(
         OSError: The disk is full or cannot be written, so it would fail for everybody.
     """
     try:
-        return step()
+        return step(*arguments)
     except of_all:
         raise
     except LabkitError as error:
@@ -64,15 +68,10 @@ def for_student(
 
 
 class Failures:
-    """The failures of a command, which are printed on stderr when the command ends.
+    """The failures of a command, which are printed on stderr when the command ends."""
 
-    Args:
-        at_once: Print each failure as it happens, for a command that only the user ends.
-    """
-
-    def __init__(self, *, at_once: bool = False) -> None:
+    def __init__(self) -> None:
         self.sentences: list[str] = []
-        self._at_once = at_once
 
     @property
     def code(self) -> int:
@@ -81,10 +80,7 @@ class Failures:
 
     def add(self, what: str, failed: Iterable[object]) -> None:
         """Add failures; ``what`` says what they mean, such as "not graded"."""
-        sentences = [f"{what}: {one}" for one in failed]
-        self.sentences += sentences
-        if self._at_once:
-            _name(sentences)
+        self.sentences += [f"{what}: {one}" for one in failed]
 
     def sift(self, outcomes: Iterable[T | Failure], what: str) -> Iterator[T]:
         """Yield the results, and collect the failures.
@@ -103,10 +99,5 @@ class Failures:
         return self
 
     def __exit__(self, *_: object) -> None:
-        if not self._at_once:
-            _name(self.sentences)
-
-
-def _name(sentences: Iterable[str]) -> None:
-    for sentence in sentences:
-        print(sentence, file=sys.stderr, flush=True)
+        for sentence in self.sentences:
+            print(sentence, file=sys.stderr, flush=True)

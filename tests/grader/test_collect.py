@@ -145,13 +145,15 @@ def test_canvas_knows_its_users_by_number(bare, tmp_path):
     assert not (bare.submitted / "ada" / NAME / "timestamp.txt").exists()
 
 
-def test_where_two_readings_are_in_the_roster_the_name_decides(bare, tmp_path):
-    """The user 901 is called Mallory 77, or Eve, user 77, called her file so."""
-    other = Student("m", "", "mallory77", lms_user_id="901")
-    save_roster(bare, Roster((*CLASS, other)))
-    take(bare, zipped(tmp_path / "1.zip", [("mallory_77_901_902_x.ipynb", "m's")]))
-    take(bare, zipped(tmp_path / "2.zip", [("malloryeve_77_901_902_x.ipynb", "eve's")]))
-    assert counting(bare) == {"m": "m's", "eve": "eve's"}
+@pytest.mark.parametrize(
+    "name", ["mallory_77_901_902_x.ipynb", "lovelaceada_42_77_901_902_x.ipynb"]
+)
+def test_a_file_with_two_owners_in_the_roster_is_left(bare, tmp_path, name):
+    """The user 901 is called Mallory 77, or Eve, user 77, calls herself Lovelace, Ada 42."""
+    save_roster(bare, Roster((*CLASS, Student("m", "", "mallory77", lms_user_id="901"))))
+    take(bare, zipped(tmp_path / "1.zip", [("lovelaceada_42_900_x.ipynb", "ada's")]))
+    _, left = take(bare, zipped(tmp_path / "2.zip", [(name, "another's")], (2030, 1, 1, 0, 0, 0)))
+    assert left and counting(bare) == {"ada": "ada's"}
 
 
 @pytest.mark.parametrize("column", ["login", "email", "id_number", "github", "name", "id"])

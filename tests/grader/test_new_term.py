@@ -85,20 +85,6 @@ def test_the_next_term_archives_the_names_and_forgets_them(course):
     assert not folder.exists()
 
 
-def test_rules_of_the_last_term_are_named(course):
-    """Due dates that are over and extensions stay in force, so the command says so."""
-    assert term.old_rules(course) == ""
-    rules = course.root / "course.toml"
-    rules.write_text("[assignments.01_paths]\ndue = 2099-11-02T23:59:00\n")
-    assert term.old_rules(course) == ""
-    more = '[assignments.02_model]\ndue = 2020-11-02\n[[extensions]]\nstudent = "ada"\ndays = 3\n'
-    rules.write_text(rules.read_text() + more.replace("11-02", "11-02T23:59:00"))
-    said = term.old_rules(course)
-    assert "over: 02_model; extensions: 1" in said and "Edit it" in said
-    course.submitted.mkdir()
-    assert (term.archive(course) / rules.name).read_text() == rules.read_text()
-
-
 def test_a_new_term_has_nothing_of_the_last_one(course):
     """Its hidden cases go with it, and no advice names its secret."""
     term.new_term(course, ("00_warmup", "01_paths"))
@@ -109,11 +95,10 @@ def test_a_new_term_has_nothing_of_the_last_one(course):
 
 def test_one_student_is_forgotten_in_every_folder(course, capsys):
     """In all terms, what is named after the student goes; what else names them is listed."""
-    old = "old/{}/" + "-".join(["0123abcd"] * 3) + ".json"
     names = ("submitted/{}/01_paths/01_paths.ipynb", "attempts/{}/01_paths/x.ipynb",
              "autograded/{}/01_paths/x.ipynb", "feedback/{}/01_paths/01_paths.html",
-             "results/01_paths/{}.json", "results/01_paths/" + old,
-             "results/01_paths/aside/{}.json", "build/course/explain/{}/bang_bang.html",
+             "results/01_paths/{}.json",
+             "build/course/explain/{}/bang_bang.html",
              "build/course/defence/{}.html")  # fmt: skip
     for name, student in ((n, s) for n in names for s in ("ada", "bob")):
         path = course.root / name.format(student)
@@ -157,7 +142,7 @@ def test_a_term_with_students_does_not_end_by_mistake(course, capsys):
         file.write_text("{}")
     assert main(words) == 2
     said = capsys.readouterr().err
-    assert "has 2 students, 1 submission, 1 graded mark; to hand out" in said
+    assert "2 students, 1 submission, 1 graded mark; add --yes" in said
     assert hand_in.exists() and course.term.read_text() == record
     assert main([*words, "--yes"]) == 0
     said = capsys.readouterr().out

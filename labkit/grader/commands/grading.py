@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 import os
 import sys
 from collections.abc import Iterable, Iterator
@@ -20,7 +19,6 @@ from .course import of_assignment, of_course
 from .pages import one_student, tell
 
 if TYPE_CHECKING:
-    from ..grading.batch import GradedSubmission
     from ..grading.results import Result
 
 jobs = click.option(
@@ -36,10 +34,8 @@ jobs = click.option(
 @of_assignment
 @one_student
 @jobs
-@click.option("--json", "as_json", is_flag=True, help="Print one JSON object a line, for programs.")
 @click.option("--again", is_flag=True, help="Also grade what is already graded.")
 @click.option("--diff", is_flag=True, help="Change no mark; list the marks that would change.")
-@click.option("--watch", is_flag=True, help="Keep grading new hand-ins until you press Ctrl-C.")
 @click.option(
     "--lower", is_flag=True, help="After a test has changed, also record marks that become lower."
 )
@@ -53,7 +49,7 @@ jobs = click.option(
     default=True,
     help="Without a sandbox: students' code can then read and delete your files.",
 )
-def grade(course: Course, assignment: str, student: str | None, as_json: bool, **how: Any) -> int:
+def grade(course: Course, assignment: str, student: str | None, diff: bool, **how: Any) -> int:
     """Grade every submission that is not graded yet.
 
     Each submission is graded in a sandbox of its own. After you have changed a test and released
@@ -61,52 +57,32 @@ def grade(course: Course, assignment: str, student: str | None, as_json: bool, *
     a question has other points since, its share of them is compared.
     A notebook of another assignment that was handed in is named at the end, with exit code 1.
     """
-    from ..grading.batch import GradeOptions, cannot_be_graded, common_failures, grade_class, watch
-    from ..grading.changes import changes, summary
+    from ..grading.batch import GradeOptions, changes, common_failures, grade_class
     from ..grading.results import Results
-    from ..lock import exclusive_run
-    from ..nbgrader.gradebook import record, recorded
+    from ..nbgrader.gradebook import record
     from ..students.roster import idle_extensions
-    from ..submission import misnamed
 
-    diff, watching = how.pop("diff"), how.pop("watch")
-    said = sys.stderr if as_json else sys.stdout
-    options = GradeOptions(
-        **how,
-        tell=partial(print, file=sys.stderr, flush=True),
-        recorded=partial(recorded, course, assignment),
-    )
-    not_watched = {"--student": student, "--again": options.again, "--diff": diff}
-    if watching and any(not_watched.values()):
-        given = " and ".join(name for name, value in not_watched.items() if value)
-        raise LabkitError(f"--watch grades whatever comes in; for {given} leave out --watch")
-    with Failures(at_once=watching) as failures:
+    options = GradeOptions(**how, tell=partial(print, file=sys.stderr, flush=True))
+    with Failures() as failures:
         failures.add("ATTENTION", idle_extensions(course))  # an error in the rules stops here
-        if watching:
-            failures.add("not graded", misnamed(course, assignment))
-            for one in failures.sift(watch(course, assignment, options), "not graded"):
-                print(_line(one, as_json), flush=True)
-                tell((f"ATTENTION: {x}" for x in _other_notebooks([one.result])), said)
-                written = record(course, assignment, [one.result])
-                tell(failures.sift(written, "not in the gradebook"), said)
         who = _handed_in(course, assignment, student, failures)
+        done = failures.sift(
+            grade_class(course, assignment, who, options, change=not diff), "not graded"
+        )
         if diff:
-            with exclusive_run(Results(course, assignment).folder):
-                found = changes(course, assignment, who, options)
-                tell(summary(list(failures.sift(found, "not graded"))), sys.stdout)
-            tell(_on_top(course, assignment), sys.stdout)
+            tell(changes(list(done)), sys.stdout)
             return failures.code
         graded: list[Result] = []
-        done = failures.sift(grade_class(course, assignment, who, options), "not graded")
         for number, one in enumerate(done, start=1):
             graded.append(one.result)
-            print(_line(one, as_json, f"[{number}/{len(who)}] "), flush=True)
-        tell(failures.sift(record(course, assignment, graded), "not in the gradebook"), said)
+            says = f" ({one.says})" if one.says else ""
+            print(f"[{number}/{len(who)}] {one.result}{says}", flush=True)
+        written = record(course, assignment, graded)
+        tell(failures.sift(written, "not in the gradebook"), sys.stdout)
         everybody = graded if student else list(Results(course, assignment))
-        doubts = (*common_failures(everybody), *cannot_be_graded(graded))
-        tell((f"ATTENTION: {says}" for says in doubts), said)
+        tell((f"ATTENTION: {says}" for says in common_failures(everybody)), sys.stdout)
         failures.add("ATTENTION", _other_notebooks(graded))
-        if graded and not as_json:
+        if graded:
             tell(_on_top(course, assignment), sys.stdout)
             print(f"isolation: {graded[-1].isolation}\nresults: {course.results / assignment}")
     return failures.code
@@ -130,14 +106,6 @@ def _on_top(course: Course, assignment: str) -> Iterator[str]:
             waiting = sum(x.needs_manual_grade for x in found)
         left = f"{how_many(waiting, 'student')} still to be marked"
         yield f"not included: {how_many(by_hand, 'point')} by hand; {left}"
-
-
-def _line(one: GradedSubmission, as_json: bool, number: str = "") -> str:
-    """The line that is printed for a graded submission."""
-    from ...course.serialize import record_data
-
-    says = f" ({one.says})" if one.says else ""
-    return json.dumps(record_data(one.result)) if as_json else f"{number}{one.result}{says}"
 
 
 @verb("ada bang_bang")
@@ -188,8 +156,7 @@ def defence(course: Course, student: str, mark: list[int] | None) -> int:
     The second side has the answers. Which functions and mistakes follows from a key of the term.
     """
     from ..defence.draw import ASKED, draw
-    from ..defence.mark import await_mark, give_mark
-    from ..defence.page import write_page
+    from ..defence.page import give_mark, write_page
     from ..seeds import public_warning
 
     if mark is not None:
@@ -198,7 +165,6 @@ def defence(course: Course, student: str, mark: list[int] | None) -> int:
         return 0
     asked = draw(course, student)
     path = write_page(course, student, asked)
-    await_mark(course, student, asked)
     print(f"{', '.join(one.of.question.name for one in asked) or 'no function'}: {path}")
     if len(asked) < ASKED:
         print(

@@ -47,18 +47,22 @@ def term(
 
     The law may say how long marks must be kept.
     """  # noqa: D301
-    from ..terms.term import delete, ended, new_term, of_student, old_rules, refuse_running, running
+    from ..rules import FILE
+    from ..terms.term import delete, ended, new_term, of_student, running
 
     if action == "new":
-        if not yes:
-            refuse_running(course)
-        there = running(course)
+        if (there := running(course)) and not yes:
+            raise LabkitError(
+                f"the term under way has {there}; add --yes to archive all this, or use labkit "
+                "release NAME for another notebook in it"
+            )
         record = new_term(course, names)
         if record["archived"]:
             print(f"archived: {there or 'a release without students'}: {record['archived']}")
         print(f"a new term begins, released: {', '.join(record['bundles'])}")
         print("its secret is in course_private/term.json; keep a copy")
-        print(old_rules(course), end="")
+        if (course.root / FILE).exists():
+            print(f"{FILE} is as it was: change its dates, and delete its extensions")
         return 0
     if names or (student is None) == (older is None):
         raise LabkitError("say what to forget: --older YEARS, or --student NAME")

@@ -17,6 +17,7 @@ from ...course.messages import why_not_counted
 from ...course.question import Question
 from ...course.verdict import Outcome, Verdict
 from ..clean import clean_line
+from ..each import for_student
 from ..grading.batch import common_failures
 from ..grading.results import Result
 from ..marks.mark import Mark
@@ -139,12 +140,12 @@ def _prediction_rows(
     graded: Sequence[Result], asked: Sequence[Question], fewest: int, truths: Mapping[str, Any]
 ) -> Iterator[_Row]:
     """For each prediction, the truth and what the class committed to, most common first."""
-    sources = [{q.verdict.name: q.source for q in result.questions} for result in graded]
+    sources = [(x.student, {q.verdict.name: q.source for q in x.questions}) for x in graded]
     for question in asked:
         form = question.judge
         if isinstance(form, Form):
-            values = (_committed(source.get(question.name, "")) for source in sources)
-            counts = Counter(form.words(x) for x in values if not form.problem(x))
+            told = [for_student(who, _said, form, x.get(question.name, "")) for who, x in sources]
+            counts = Counter(x for x in told if isinstance(x, str))
             truth = form.words(truths[question.name]) if question.name in truths else ""
             common = [
                 f"{n} x {_escape(words)}{', which is true' * (words == truth)}"
@@ -157,6 +158,12 @@ def _prediction_rows(
             said = [*common, *[others] * bool(rest)]
             asks = " ".join(question.asks.split())
             yield {"name": question.name, "asks": asks, "truth": truth, "said": said}
+
+
+def _said(form: Form, source: str) -> str | None:
+    """What a student predicted, in words; None if it is no answer."""
+    value = _committed(source)
+    return None if form.problem(value) else form.words(value)
 
 
 def _committed(source: str) -> Any:

@@ -15,7 +15,6 @@ import re
 import zipfile
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import replace
-from functools import partial
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -122,7 +121,7 @@ def write_feedback(course: Course, assignment: str, marks: Iterable[Mark]) -> li
         write(path, page(result, mark, name))
         return path
 
-    return [for_student(mark.student, partial(make, mark)) for mark in marks]
+    return [for_student(mark.student, make, mark) for mark in marks]
 
 
 def error_over_time(run: Mapping[str, Any], motion: Mapping[str, Any]) -> Picture:

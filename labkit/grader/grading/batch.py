@@ -4,22 +4,18 @@ from __future__ import annotations
 
 import time
 from collections import Counter
-from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
-from concurrent.futures import FIRST_COMPLETED, Executor, wait
+from collections.abc import Callable, Iterator, Sequence
+from concurrent.futures import FIRST_COMPLETED, wait
 from dataclasses import dataclass, field
-from functools import partial
-from pathlib import Path
 
 from ...course.authoring.bundle import Bundle
 from ...course.authoring.layout import Course
 from ...course.verdict import Outcome
-from ...errors import LabkitError
 from ..each import Failure, for_student
 from ..lock import exclusive_run
 from ..sandbox.limits import Limits
 from ..sandbox.mounts import NoIsolation
-from ..submission import Submission, students
-from .current_results import how_to_grade
+from ..submission import Submission
 from .executor import executor
 from .grade import hashes
 from .results import Result, Results
@@ -47,8 +43,6 @@ class GradeOptions:
         lower: Whether the mark of an unchanged submission may fall.
         limits: What a submission may use on a fast machine.
         tell: Called every `PROGRESS_INTERVAL` seconds with a sentence that reports progress.
-        recorded: Returns the points that the gradebook has for each question of a student;
-            called if the student's result file is damaged.
     """
 
     jobs: int = 1
@@ -58,7 +52,6 @@ class GradeOptions:
     lower: bool = False
     limits: Limits = field(default_factory=Limits)
     tell: Callable[[str], object] = lambda _: None
-    recorded: Callable[[str], Mapping[str, float]] = lambda _: {}
 
 
 @dataclass(frozen=True)
@@ -66,17 +59,40 @@ class GradedSubmission:
     """A graded submission.
 
     Attributes:
-        result: The result that counts.
-        says: What became of the previous mark: "as before", "was 3", or "kept" and why; empty if
-            there was none, or the submission was graded again and has the same mark.
+        now: The result of grading.
+        before: The result that counted before; None if there was none.
+        kept: Whether that one still counts, as the mark would have become lower.
     """
 
-    result: Result
-    says: str = ""
+    now: Result
+    before: Result | None = None
+    kept: bool = False
+
+    @property
+    def result(self) -> Result:
+        """The result that counts."""
+        return self.before if self.before and self.kept else self.now
+
+    @property
+    def says(self) -> str:
+        """What became of the previous mark; "" if there was none or it is the same."""
+        now, before = self.now, self.before
+        if before is now:
+            return "as before"
+        if self.kept:
+            return f"kept; --lower lets the mark fall to {now.score:g} of {now.points:g}"
+        if before is None or (before.score, before.points) == (now.score, now.points):
+            return ""
+        return f"was {before.score:g} of {before.points:g}"
 
 
 def grade_class(
-    course: Course, assignment: str, who: Sequence[str], options: GradeOptions
+    course: Course,
+    assignment: str,
+    who: Sequence[str],
+    options: GradeOptions,
+    *,
+    change: bool = True,
 ) -> Iterator[GradedSubmission | Failure]:
     """Grade submissions, and write a result file for each.
 
@@ -85,6 +101,7 @@ def grade_class(
         assignment: The name of the assignment.
         who: The students whose submissions are graded.
         options: How to grade.
+        change: False to write nothing.
 
     Yields:
         For each student the result, or why grading failed.
@@ -94,156 +111,71 @@ def grade_class(
         NoIsolation: No sandbox can be made here.
     """
     bundle, results = Bundle.of(course, assignment), Results(course, assignment)
-    todo: list[Submission] = []
     with exclusive_run(results.folder):
-        for student in who:
-            submission = Submission.of(course, assignment, student)
-            before = reusable(results, submission, bundle, options)
-            ready = None if before else reusable(results.provisional, submission, bundle, options)
-            if before is not None:
-                yield GradedSubmission(before, "as before")
-            elif ready is not None:
-                yield for_student(student, partial(keep_unless_lower, results, ready, options))
+        todo: list[Submission] = []
+        for submission in (Submission.of(course, assignment, student) for student in who):
+            before = results.get(submission.student)
+            if before and not options.again and _is_up_to_date(before, submission, bundle, options):
+                yield GradedSubmission(before, before)
             else:
                 todo.append(submission)
-        yield from _keep_each(results, grade_without_saving(course, bundle, todo, options), options)
-
-
-def watch(
-    course: Course, assignment: str, options: GradeOptions, pause: float = 1.0
-) -> Iterator[GradedSubmission | Failure]:
-    """Grade submissions as they arrive, in workers that keep running, until somebody stops it.
-
-    The queue consists of the submissions that have no up-to-date result, so a run that is killed
-    loses nothing, and a new release puts every submission back into the queue.  A submission
-    whose grading failed is tried again when the student hands in something else, or when the
-    assignment is released again.
-
-    Args:
-        course: The course.
-        assignment: The name of the assignment.
-        options: How to grade.
-        pause: Seconds between two looks at ``submitted/``.
-
-    Yields:
-        For each student the result, or why grading failed.
-
-    Raises:
-        LabkitError: The assignment was not released, or another run is under way.
-        NoIsolation: No sandbox can be made here.
-    """
-    results, looked = Results(course, assignment), dict[str, tuple[object, ...]]()
-    with exclusive_run(results.folder), executor(options.jobs, options.dask) as pool:
-        while True:
-            bundle = Bundle.of(course, assignment)
-            todo: list[Submission] = []
-            for student in students(course, assignment):
-                submission = Submission.of(course, assignment, student)
-                now = (*_fingerprint(submission.folder), bundle.data["hash"], bundle.arms)
-                if looked.get(student) != now:
-                    looked[student] = now
-                    if reusable(results, submission, bundle, options) is None:
-                        todo.append(submission)
-            yield from _keep_each(results, _graded(pool, course, bundle, todo, options), options)
-            if not todo:
-                time.sleep(pause)
-
-
-def _fingerprint(folder: Path) -> tuple[float, int]:
-    """A value that changes when a student hands in something else."""
-    found = [path.lstat() for path in folder.glob("*.ipynb")]
-    return max((x.st_mtime for x in found), default=0.0), sum(x.st_size for x in found)
-
-
-def grade_without_saving(
-    course: Course, bundle: Bundle, submissions: Iterable[Submission], options: GradeOptions
-) -> Iterator[Result | Failure]:
-    """Grade submissions without storing their results.
-
-    Yields:
-        Each result as soon as it is finished, or why grading failed.
-
-    Raises:
-        NoIsolation: No sandbox can be made on this machine.
-        LabkitError: There is no Dask scheduler at the address given.
-    """
-    with executor(options.jobs, options.dask) as pool:
-        yield from _graded(pool, course, bundle, submissions, options)
+        for result in _graded(course, bundle, todo, options):
+            if isinstance(result, Failure):
+                yield result
+                continue
+            before = results.get(result.student)
+            lower = before is not None and result.falls_from(before)
+            one = GradedSubmission(result, before, kept=lower and not options.lower)
+            if change and not one.kept:
+                results.keep(result)
+            yield one
 
 
 def _graded(
-    pool: Executor,
-    course: Course,
-    bundle: Bundle,
-    submissions: Iterable[Submission],
-    options: GradeOptions,
+    course: Course, bundle: Bundle, submissions: Sequence[Submission], options: GradeOptions
 ) -> Iterator[Result | Failure]:
+    """Each result as soon as it is finished, or why grading failed."""
     key = bundle.data["hash"]
-    tasks = [Task(course, x, key, options.isolated, options.limits) for x in submissions]
-    whose = {pool.submit(grade_submission, x): x.submission.student for x in tasks}
-    began = said = time.monotonic()
-    left = set(whose)
-    while left:
-        done, left = wait(left, PROGRESS_INTERVAL, FIRST_COMPLETED)
-        for future in done:
-            yield for_student(whose[future], future.result, of_all=(NoIsolation,))
-        now, count = time.monotonic(), len(tasks) - len(left)
-        if left and now >= said + PROGRESS_INTERVAL:
-            said, minutes = now, (now - began) * len(left) / max(1, count) / 60
-            rest = f", about {max(1, round(minutes))} min left" if count else ""
-            options.tell(f"{count} of {len(tasks)} graded{rest}")
+    with executor(options.jobs, options.dask) as pool:
+        tasks = [Task(course, x, key, options.isolated, options.limits) for x in submissions]
+        whose = {pool.submit(grade_submission, x): x.submission.student for x in tasks}
+        began = said = time.monotonic()
+        left = set(whose)
+        while left:
+            done, left = wait(left, PROGRESS_INTERVAL, FIRST_COMPLETED)
+            for future in done:
+                yield for_student(whose[future], future.result, of_all=(NoIsolation,))
+            now, count = time.monotonic(), len(tasks) - len(left)
+            if left and now >= said + PROGRESS_INTERVAL:
+                said, minutes = now, (now - began) * len(left) / max(1, count) / 60
+                rest = f", about {max(1, round(minutes))} min left" if count else ""
+                options.tell(f"{count} of {len(tasks)} graded{rest}")
 
 
-def _keep_each(
-    results: Results, graded: Iterable[Result | Failure], options: GradeOptions
-) -> Iterator[GradedSubmission | Failure]:
-    for result in graded:
-        if isinstance(result, Failure):
-            yield result
-        else:
-            yield for_student(result.student, partial(keep_unless_lower, results, result, options))
+def _is_up_to_date(
+    before: Result, submission: Submission, bundle: Bundle, options: GradeOptions
+) -> bool:
+    """Whether the same submission, release and engine led to a result, and a sandbox if asked."""
+    data, _, _ = submission.read()
+    isolated = not (options.isolated and before.isolation.startswith("none"))
+    return isolated and before.hashes == hashes(data, bundle.of_student(submission.student))
 
 
-def keep_unless_lower(results: Results, result: Result, options: GradeOptions) -> GradedSubmission:
-    """Store a result, unless it lowers the mark of an unchanged submission without ``--lower``.
-
-    Raises:
-        LabkitError: The previous result cannot be read, and the gradebook has a higher mark.
-    """
-    before = results.get(result.student)
-    if before is not None and not options.lower and result.falls_from(before):
-        now = f"{result.score:g} of {result.points:g}"
-        return GradedSubmission(before, f"kept; --lower lets the mark fall to {now}")
-    if before is None and not options.lower and results.path(result.student).exists():
-        _refuse_to_lower(result, options.recorded(result.student))
-    results.keep(result)
-    if before is None or (before.score, before.points) == (result.score, result.points):
-        return GradedSubmission(result)
-    full = f" of {before.points:g}" if before.points != result.points else ""
-    return GradedSubmission(result, f"was {before.score:g}{full}")
-
-
-def _refuse_to_lower(result: Result, recorded: Mapping[str, float]) -> None:
-    """Refuse a lower mark than the gradebook's, which may be that of another submission."""
-    now = {q.verdict.name: q.verdict.earned for q in result.questions}
-    both = [name for name in recorded if name in now or result.rejected]
-    had, has = sum(recorded[x] for x in both), sum(now.get(x, 0.0) for x in both)
-    if had > has + 0.01:
-        raise LabkitError(
-            f"the previous result cannot be read, and the gradebook has {had:g} for what now earns "
-            f"{has:g}; if {has:g} is to count, "
-            f"{how_to_grade(result.assignment, result.student)} --lower"
-        )
-
-
-def cannot_be_graded(results: Iterable[Result]) -> Iterator[str]:
-    """A sentence that names who handed in a file that cannot be graded, if anybody did."""
-    if names := sorted(result.student for result in results if result.rejected):
-        yield (
-            f"these students handed in a file that cannot be graded: {', '.join(names)}; ask each "
-            "for a new one, unless attempts/ holds another of theirs that can count; give an "
-            "extension if it would be late"
-        )
+def changes(found: Sequence[GradedSubmission]) -> Iterator[str]:
+    """A sentence for each mark that a new release moves, and one that counts them."""
+    moved = [x for x in found if x.before and (x.kept or x.now.score != x.before.score)]
+    for one in moved:
+        each = one.before.earned if one.before else {}
+        parts = [
+            f"{v.name} {each.get(v.name, 0.0):g} -> {v.earned:g}"
+            for v in (q.verdict for q in one.now.questions)
+            if v.earned != each.get(v.name, 0.0)
+        ]
+        only = "; only with --lower" if one.kept else ""
+        was, now = one.before or one.now, one.now
+        yield f"{now.student}: {was.score:g} -> {now.score:g} ({', '.join(parts)}){only}"
+    had = sum(x.before is not None for x in found)
+    yield f"{len(moved)} of {had} marks would change; {len(found) - had} new"
 
 
 def common_failures(results: Sequence[Result], fewest: int = 1) -> Iterator[str]:
@@ -278,14 +210,3 @@ def common_failures(results: Sequence[Result], fewest: int = 1) -> Iterator[str]
             f"{students} of {tried[name]} who tried {name} fail the test {test!r}{more}: "
             "is the cause the test, the text or the lecture?"
         )
-
-
-def reusable(
-    results: Results, submission: Submission, bundle: Bundle, options: GradeOptions
-) -> Result | None:
-    """The stored result, if the same submission, release and engine led to it; not ``again``."""
-    before = None if options.again else results.get(submission.student)
-    if before is None or (options.isolated and before.isolation.startswith("none")):
-        return None
-    data, _, _ = submission.read()
-    return before if before.hashes == hashes(data, bundle.of_student(submission.student)) else None

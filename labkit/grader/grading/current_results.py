@@ -4,12 +4,10 @@ from __future__ import annotations
 
 import shlex
 from collections.abc import Iterator, Mapping
-from functools import partial
 
 from ...course.authoring.bundle import Bundle
 from ...course.authoring.layout import DEFENCE, Course
 from ...errors import LabkitError
-from ..clean import how_many
 from ..each import Failure, for_student
 from ..submission import Submission, digest, is_name, misnamed, plain_name, students
 from .results import Result, Results
@@ -41,8 +39,8 @@ def current_results(
         if not is_name(name):
             yield Failure(plain_name(name), f"a file in {results.folder} has this name; delete it")
         elif student in {None, name}:
-            step = partial(_current_result, course, results, name, name in handed_in, released)
-            yield for_student(name, step)
+            is_there = name in handed_in
+            yield for_student(name, _current_result, course, results, name, is_there, released)
 
 
 def full_marks(course: Course, assignment: str) -> float:
@@ -88,16 +86,7 @@ def _current_result(
             raise LabkitError(f"handed in again but not graded since; {remedy}")
         if released is not None and not result.rejected and result.asked != released:
             raise LabkitError(
-                f"{_changed(result.asked, released)}; type: labkit grade {assignment}, and add "
-                "--lower if that keeps the old mark"
+                f"graded before the last release; type: labkit grade {assignment}, and add --lower "
+                "if that keeps the old mark"
             )
     return result
-
-
-def _changed(graded: Mapping[str, float], released: Mapping[str, float]) -> str:
-    """A sentence that names the first difference between a result and the release."""
-    name = min(x for x in {*graded, *released} if graded.get(x) != released.get(x))
-    was, now = (
-        how_many(x[name], "point") if name in x else "not asked" for x in (graded, released)
-    )
-    return f"graded before the last release: {name} was {was} then and is {now} now"

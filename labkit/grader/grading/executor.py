@@ -29,7 +29,15 @@ TRIES = 2
 
 @contextmanager
 def executor(workers: int, dask: str | None = None) -> Iterator[Executor]:
-    """An executor for a ``with`` block; an exception in the block ends all running calls."""
+    """An executor for a ``with`` block; an exception in the block ends all running calls.
+
+    Args:
+        workers: How many processes of this machine there are.
+        dask: The address of a Dask scheduler to use instead; give it to loopback or TLS.
+
+    Raises:
+        LabkitError: The package ``distributed`` is missing, or no scheduler answers there.
+    """
     with ExitStack() as stack:
         if dask is None:
             pool: Executor = LocalExecutor(workers)
@@ -37,7 +45,14 @@ def executor(workers: int, dask: str | None = None) -> Iterator[Executor]:
                 os.environ["PYTHONSAFEPATH"] = "1"  # working folder, perhaps a submission's
                 stack.callback(os.environ.pop, "PYTHONSAFEPATH", None)
         else:
-            client = stack.enter_context(dask_client(dask))
+            try:
+                from distributed import Client
+
+                client = stack.enter_context(Client(dask, timeout="10s", set_as_default=False))
+            except ImportError:
+                raise LabkitError("Dask is missing; type: pip install 'labkit[cluster]'") from None
+            except (OSError, ValueError) as error:
+                raise LabkitError(f"no Dask scheduler at {dask}: {error}") from None
             client.run_on_scheduler(_allow_one_failure)
             pool = client.get_executor(pure=False)
         try:
@@ -46,6 +61,11 @@ def executor(workers: int, dask: str | None = None) -> Iterator[Executor]:
             pool.shutdown(wait=False)
             raise
         pool.shutdown()
+
+
+def _allow_one_failure(dask_scheduler: Any) -> None:
+    """Try a task twice if its worker dies, and not four times, which is the default."""
+    dask_scheduler.allowed_failures = TRIES - 1
 
 
 class LocalExecutor(Executor):
@@ -113,29 +133,3 @@ def _end_with_executor(end: Connection) -> None:
     with suppress(EOFError, OSError):
         end.recv()
     os._exit(1)
-
-
-def dask_client(address: str) -> Any:
-    """A client of a Dask scheduler, to be closed after use.
-
-    Args:
-        address: An address such as ``tcp://127.0.0.1:8786``; use loopback or TLS.
-
-    Raises:
-        LabkitError: The package ``distributed`` is missing, or no scheduler answers there.
-    """
-    try:
-        from distributed import Client
-        from distributed.comm.addressing import resolve_address
-    except ImportError:
-        raise LabkitError("Dask is missing; type: pip install 'labkit[cluster]'") from None
-    try:
-        resolve_address(address)  # given a malformed address, Client would try for 20 s
-        return Client(address, timeout="10s", set_as_default=False)
-    except (OSError, ValueError) as error:
-        raise LabkitError(f"no Dask scheduler at {address}: {error}") from None
-
-
-def _allow_one_failure(dask_scheduler: Any) -> None:
-    """Try a task twice if its worker dies, and not four times, which is the default."""
-    dask_scheduler.allowed_failures = TRIES - 1

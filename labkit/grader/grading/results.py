@@ -2,12 +2,10 @@
 
 from __future__ import annotations
 
-import copy
 import hashlib
 import json
-import shutil
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 from functools import cache
 from pathlib import Path
 from typing import TypedDict
@@ -24,7 +22,6 @@ from ..clean import clean_data, clean_line
 
 _LABKIT = Path(labkit.__file__).parent
 OTHER_NOTEBOOK = "this looks like the notebook of another assignment"
-_NOTHING = hashlib.sha256(b"").hexdigest()
 _OF_A_WORKER = ("grading", "sandbox", "atomic.py", "clean.py", "each.py", "submission.py")
 """The parts of the grader that a worker loads."""
 
@@ -161,22 +158,15 @@ class Result:
             result = read_record(cls, data)
         except LabkitError as error:
             raise _damaged(name, str(error)) from None
-        result._check_sums(name)
+        marks = [question.verdict for question in result.questions]
+        over = len({x.name for x in marks}) < len(marks) or any(x.earned > x.points for x in marks)
+        if (
+            (result.rejected and marks)
+            or over
+            or abs(sum(x.earned for x in marks) - result.score) > 0.01
+        ):
+            raise _damaged(name, f"the score is {result.score:g}, and its questions say otherwise")
         return result
-
-    def _check_sums(self, name: str) -> None:
-        """Raise a LabkitError unless the score is the sum of all questions, and none is missing.
-
-        The result of a report has no questions, because people mark the report.
-        """
-        verdicts = [question.verdict for question in self.questions]
-        earned = [v.earned for v in verdicts if v.earned <= v.points]
-        whole = len({v.name for v in verdicts}) == len(verdicts) == len(earned)
-        points = 0.0 if self.rejected else self.points
-        apart = (sum(earned) - self.score, sum(v.points for v in verdicts) - points)
-        if not whole or (self.rejected and verdicts) or max(map(abs, apart)) > 0.01:
-            whole_sum = f"{len(verdicts)} questions earned {sum(earned):g} of {self.points:g}"
-            raise _damaged(name, f"the score is {self.score:g}, and {whole_sum}")
 
     def __str__(self) -> str:
         no = f"rejected; {self.rejected}; ask for the file again" if self.rejected else ""
@@ -187,28 +177,24 @@ class Result:
         """The points of each question of the release that made the result."""
         return {question.verdict.name: question.verdict.points for question in self.questions}
 
+    @property
+    def earned(self) -> dict[str, float]:
+        """The points that each question earned."""
+        return {question.verdict.name: question.verdict.earned for question in self.questions}
+
     def falls_from(self, before: Result) -> bool:
         """Whether this submission had a higher mark in an earlier result.
 
-        Only questions that both releases ask are compared.  A release can change the points of a
-        question, so the earlier share of the points is applied to the points of today.  A question
-        that earned points and is no longer asked may have been renamed, so the shares of the whole
-        are then compared, too.  A file that cannot be read counts as the same submission.
+        A release can change the points of a question, so the earlier share of the points is applied
+        to the points of today.
         """
-        unread = bool(self.rejected) and self.hashes["submission"] == _NOTHING
-        if before.hashes["submission"] != self.hashes["submission"] and not unread:
+        if before.hashes["submission"] != self.hashes["submission"]:
             return False
-        if self.rejected:
-            return before.score > 0.0
-        mine, theirs = ({q.verdict.name: q.verdict for q in x.questions} for x in (self, before))
-        both = [name for name in mine if name in theirs and theirs[name].points]
-        was = sum(theirs[x].earned / theirs[x].points * mine[x].points for x in both)
-        rounded = 0.01 * sum(theirs[x].points != mine[x].points for x in both)
-        if sum(mine[x].earned for x in both) < was - rounded - 1e-6:
-            return True
-        gone = any(v.earned for name, v in theirs.items() if name not in mine)
-        share = before.score / before.points * self.points if gone else 0.0
-        return self.score < share - 0.01 * len(mine)
+        full, had, now = before.asked, before.earned, self.earned
+        shares = {name: had.get(name, 0.0) / points for name, points in full.items() if points}
+        was = sum(share * self.asked.get(name, 0.0) for name, share in shares.items())
+        has = sum(now.get(name, 0.0) for name in shares)
+        return before.score > 0.0 if self.rejected else has < was - 0.01 * len(now)
 
     @property
     def unanswered(self) -> str:
@@ -222,13 +208,6 @@ class Results:
 
     def __init__(self, course: Course, assignment: str) -> None:
         self.folder, self.assignment = course.results / assignment, assignment
-
-    @property
-    def provisional(self) -> Results:
-        """Results of ``--diff``, which make no mark until `grade_class` adopts them."""
-        other = copy.copy(self)
-        other.folder = self.folder / "aside"
-        return other
 
     def path(self, student: str) -> Path:
         """The path of a student's result file."""
@@ -266,33 +245,11 @@ class Results:
             return None
 
     def keep(self, result: Result) -> None:
-        """Write a result, and move one made from other contents to ``old/STUDENT/``."""
-        path, before = self.path(result.student), self.get(result.student)
-        if path.exists() and (before is None or before.hashes != result.hashes):
-            keys = [] if before is None else [str(x)[:8] for x in before.hashes.values()]
-            old = self.folder / "old" / result.student / f"{'-'.join(keys) or 'damaged'}.json"
-            old.parent.mkdir(parents=True, exist_ok=True)
-            if path.is_file():
-                shutil.copy2(path, old)  # with the time at which it was written
-            else:  # a folder that somebody made, which must make room
-                path.rename(old)
+        """Write a result in place of an earlier one."""
+        path = self.path(result.student)
+        if path.is_dir():  # that somebody made
+            path.rename(path.with_suffix(".folder"))
         write(path, result.text())
-
-    def rename(self, old: str, new: str) -> None:
-        """Give the results of a student, also the earlier ones, another student's name.
-
-        What `labkit grade --diff` made is deleted.  A result is left if it is damaged, or if the
-        other student has one.
-        """
-        result = self.get(old)
-        if result is not None and not self.path(new).exists():
-            self.keep(replace(result, student=new))
-            self.path(old).unlink()
-        self.provisional.path(old).unlink(missing_ok=True)
-        for folder in (self.folder / "old", self.provisional.folder / "old"):
-            if (folder / old).is_dir():
-                shutil.copytree(folder / old, folder / new, dirs_exist_ok=True)
-                shutil.rmtree(folder / old)
 
     def __iter__(self) -> Iterator[Result]:
         """All complete results; `current_results` also names those missing or damaged."""

@@ -16,7 +16,7 @@ from ...course.authoring.bundle import Bundle
 from ...course.authoring.layout import DEFENCE, Course
 from ...course.notebook import question_of
 from ..clean import clean_line, clean_text, span
-from ..each import Failure
+from ..each import Failure, for_student
 from ..grading.current_results import current_results, full_marks, how_to_grade
 from ..grading.results import Result
 from ..nbgrader.gradebook import apply_rules, open_gradebook
@@ -92,8 +92,11 @@ def _own_marks(
             nothing = "no defence yet" if assignment == DEFENCE else "nothing was handed in"
             yield replace(row, remark=nothing)
             continue
-        row = _marked(row, submission, result, assignment)
-        yield replace(row, remark=_remark(row, student in handed_in))
+        done = for_student(student, _marked, row, submission, result, assignment)
+        if isinstance(done, Failure):
+            yield replace(row, missing=done.why)
+        else:
+            yield replace(done, remark=_remark(done, student in handed_in))
 
 
 def _remark(row: Mark, handed_in: bool) -> str:

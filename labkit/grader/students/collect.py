@@ -29,6 +29,7 @@ from dataclasses import dataclass, replace
 from datetime import UTC, datetime
 from functools import partial
 from pathlib import Path
+from typing import NamedTuple
 
 import msgspec
 
@@ -68,15 +69,14 @@ LONGEST = 1000
 """The longest path of a file in a download."""
 
 
-class Participant(msgspec.Struct, frozen=True):
+class Participant(NamedTuple):
     """What Moodle calls a student: the number in one assignment, and the name."""
 
     number: str
     name: str
 
 
-@dataclass(frozen=True)
-class Claim:
+class Claim(NamedTuple):
     """Who a file says that it is from.
 
     Attributes:
@@ -85,7 +85,6 @@ class Claim:
         file: The name that the student gave the file.
         late: Whether the platform marks it as late.
         moodle: Moodle's participant; None elsewhere.
-        name: The name by which Canvas calls the user.
     """
 
     column: str
@@ -93,7 +92,6 @@ class Claim:
     file: str
     late: bool = False
     moodle: Participant | None = None
-    name: str = ""
 
 
 @dataclass(frozen=True)
@@ -119,8 +117,7 @@ class File:
     secret: Callable[[], bytes | None] = lambda: None
 
 
-@dataclass(frozen=True)
-class Taken:
+class Taken(NamedTuple):
     """A file, or several, and what was done with them; ``fine`` if nobody needs to look."""
 
     student: str
@@ -181,8 +178,8 @@ def collect(
             )
         mine, left = _by_owner(course, assignment, roster, files)
         for student, theirs in sorted(mine.items()):
-            dated = [(_dated(file, claim, at), claim) for file, claim in theirs]
-            done = for_student(student, partial(_keep, course, assignment, student, dated))
+            kept = _keep(course, assignment, student, theirs, at)
+            done: list[Taken] | Failure = for_student(student, list, kept)
             if isinstance(done, Failure):
                 done = [Taken(student, "", f"not taken; {done.why}", fine=False)]
             yield from done
@@ -212,9 +209,7 @@ def _by_owner(
         numbers = {*called, before.number} if called and before else {*called}
         of_others = {one.number for name, one in recorded.items() if name != student}
         if len(numbers) > 1 or numbers & of_others:
-            why = (
-                f"Moodle's numbers {', '.join(sorted(numbers))} are of two people, or {student} is"
-            )
+            why = f"Moodle's numbers {', '.join(sorted(numbers))} and {student} do not match"
             left.setdefault(why, []).extend(file.label for file, _ in mine.pop(student))
         elif called:
             recorded[student] = next(iter(called.values()))
@@ -226,22 +221,11 @@ def _by_owner(
 
 def _owner(roster: Roster, claims: Sequence[Claim]) -> tuple[Student, Claim] | str:
     """The student who handed in a file, and the right reading of its name; or why it is left."""
-    found = [(one, x) for x in claims if (one := roster.known_as(x.column, x.value))]
-    if len(found) > 1:  # two readings of Canvas's, of which one has the student's name too
-        found = [(one, x) for one, x in found if _letters(x.name) == _letters(_canvas_name(one))]
-    if len(found) == 1:
-        return found[0]
     if not claims:
         return "their names do not say who handed them in"
-    return f"no one student of the roster has this {claims[0].column}; import a list that has it"
-
-
-def _canvas_name(one: Student) -> str:
-    return f"{one.last_name}{one.first_name}"
-
-
-def _letters(name: str) -> str:
-    return "".join(c for c in name.casefold() if c.isalnum())
+    found = [(one, x) for x in claims if (one := roster.known_as(x.column, x.value))]
+    says = f"no one student of the roster has this {claims[0].column}; import a list that has it"
+    return found[0] if len(found) == 1 else says
 
 
 def participants(course: Course) -> dict[str, dict[str, Participant]]:
@@ -260,35 +244,40 @@ def participants(course: Course) -> dict[str, dict[str, Participant]]:
         raise LabkitError(says) from None
 
 
-def _dated(file: File, claim: Claim, at: datetime | None) -> File:
-    """The file with the time of its hand-in, if the platform or the instructor says it."""
-    if file.exact or not (at or claim.late):
-        return file
-    return replace(file, when=at or file.when, exact=True)
-
-
 def _keep(
-    course: Course, assignment: str, student: str, theirs: Sequence[tuple[File, Claim]]
-) -> list[Taken]:
+    course: Course,
+    assignment: str,
+    student: str,
+    theirs: Sequence[tuple[File, Claim]],
+    at: datetime | None,
+) -> Iterator[Taken]:
     """Keep one student's files, and let the newest count."""
-    kept, said = course.root / FOLDER / student / assignment, list[Taken]()
-    folder = course.submitted / student / assignment
+    kept, folder = (
+        course.root / base / student / assignment for base in (FOLDER, course.submitted.name)
+    )
     if any(x.is_symlink() for x in (folder.parent, folder, kept.parent, kept)):
         raise LabkitError(f"{folder} or {kept} is a link; put a folder there")
-    read: list[tuple[File, Claim, bytes]] = []
+    read: list[tuple[tuple[datetime, bool, int], File, Claim, bytes]] = []
     for file, claim in theirs:
+        if not claim.file.lower().endswith(".ipynb"):
+            yield Taken(student, claim.file, "not taken; it is no notebook", fine=False)
+            continue
+        if not file.exact and (at or claim.late):
+            file = replace(file, when=at or file.when, exact=True)
+        number = _REPEATED.search(claim.file)
+        plain = _REPEATED.sub(".ipynb", claim.file) == f"{assignment}.ipynb"
+        rank = file.when, plain, int(number[1]) if number else 0
         try:
-            read.append((file, claim, _notebook(file, claim)))
+            read.append((rank, file, claim, file.read()))
         except LabkitError as error:
-            said.append(Taken(student, claim.file, f"not taken; {error}", fine=False))
+            yield Taken(student, claim.file, f"not taken; {error}", fine=False)
     if not read:
-        return said
-
-    *earlier, (file, claim, data) = sorted(read, key=partial(_rank, assignment))
+        return
+    *earlier, (_, file, claim, data) = sorted(read, key=lambda one: one[0])
     known = {path.stem[-16:] for path in kept.glob("*.ipynb")}
-    for one, other, old in earlier:
+    for _, one, other, old in earlier:
         _store(kept, one.when, old)
-        said.append(Taken(student, other.file, f"kept, but {claim.file} counts"))
+        yield Taken(student, other.file, f"kept, but {claim.file} counts")
     path = folder / f"{assignment}.ipynb"
     there = read_file(path) if path.exists() else b""
     before = (read_time(read_stamp(folder)) or _written(path)) if there else file.when
@@ -306,25 +295,11 @@ def _keep(
             _store(kept, before, there)
         _install(folder, path, file, data)
         says = "taken" + ", in place of an earlier one, which is kept" * bool(there)
-    return [*said, Taken(student, claim.file, says + ", late" * claim.late)]
-
-
-def _rank(assignment: str, one: tuple[File, Claim, bytes]) -> tuple[datetime, bool, int]:
-    """The sort key of one student's files; the highest counts."""
-    file, claim, _ = one
-    match = _REPEATED.search(claim.file)
-    plain = _REPEATED.sub(".ipynb", claim.file) == f"{assignment}.ipynb"
-    return file.when, plain, int(match[1]) if match else 0
-
-
-def _notebook(file: File, claim: Claim) -> bytes:
-    if not claim.file.lower().endswith(".ipynb"):
-        raise LabkitError("it is not a notebook; ask for the notebook itself")
-    return file.read()
+    yield Taken(student, claim.file, says + ", late" * claim.late)
 
 
 def _written(path: Path) -> datetime:
-    return datetime.fromtimestamp(int(path.stat().st_mtime), UTC)
+    return datetime.fromtimestamp(int(path.lstat().st_mtime), UTC)
 
 
 def _store(kept: Path, when: datetime, data: bytes) -> None:
@@ -355,13 +330,12 @@ def readings(entry: str) -> tuple[Claim, ...]:
     match = _CANVAS.fullmatch(entry)
     if match is None or "assignsubmission" in match["name"]:
         return ()
-    name, file, late = match["name"], clean_line(match["file"]), bool(match["late"])
-    first = Claim("lms_user_id", match["user"], file, late, name=name)
+    file, late = clean_line(match["file"]), bool(match["late"])
+    first = Claim("lms_user_id", match["user"], file, late)
     again = None if late else _NUMBER_FIRST.fullmatch(match["file"])
     if again is None:
         return (first,)
-    name = f"{name}_{match['user']}"
-    return first, replace(first, value=match["attachment"], file=again[1], name=name)
+    return first, Claim("lms_user_id", match["attachment"], clean_line(again[1]))
 
 
 def reader(pattern: str) -> Callable[[str], tuple[Claim, ...]]:
@@ -460,5 +434,4 @@ def in_folder(folder: Path, named: str) -> Iterator[File]:
             label = str(path.relative_to(folder))
             who = read(label)
             if who or name.lower().endswith(".ipynb"):
-                when = datetime.fromtimestamp(int(path.lstat().st_mtime), UTC)
-                yield File(clean_line(label)[-120:], who, when, partial(read_file, path))
+                yield File(clean_line(label)[-120:], who, _written(path), partial(read_file, path))

@@ -37,22 +37,27 @@ def in_exchange(folder: Path, assignment: str, unverified: bool) -> Iterator[Fil
     """
     from .collect import Claim, File
 
-    for path in sorted(folder.iterdir()):
-        user, name, stated, *_ = (*path.name.rsplit("+", 3), "", "")
-        if name != assignment:
-            continue
+    def of(path: Path, user: str, stated: str) -> Iterator[File]:
         label, when = clean_line(path.name), read_time(stated)
         refused = _not_theirs(user, path, unverified)
         notebooks = [] if refused else sorted(path.glob("*.ipynb"))
         if when is None or not notebooks:
             why = refused or "they state no time, or hold no notebook"
             yield File(label, (), datetime.now(UTC), bytes, refused=why)
-            continue
+            return
         for notebook in notebooks:
-            file = clean_line(notebook.name)
-            who = (Claim("login", user, file), Claim("email", user, file))["@" in user]
+            who = Claim("email" if "@" in user else "login", user, clean_line(notebook.name))
             secret = partial(read_secret, path)
             yield File(label, (who,), when, partial(read_file, notebook), True, secret=secret)
+
+    for path in sorted(folder.iterdir()):
+        user, name, stated, *_ = (*path.name.rsplit("+", 3), "", "")
+        if name == assignment:
+            found: list[File] | Failure = for_student(user, list, of(path, user, stated))
+            if isinstance(found, Failure):
+                label, now = clean_line(path.name), datetime.now(UTC)
+                found = [File(label, (), now, bytes, refused=found.why)]
+            yield from found
 
 
 def _not_theirs(user: str, path: Path, unverified: bool) -> str:
@@ -100,6 +105,6 @@ def for_exchange(course: Course, assignment: str, pages: Iterable[Path]) -> list
 
     of = {page: page.parents[1].name for page in pages}
     return [
-        for_student(student, partial(lay, page, course.submitted / student / assignment))
+        for_student(student, lay, page, course.submitted / student / assignment)
         for page, student in of.items()
     ]

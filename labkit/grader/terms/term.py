@@ -19,7 +19,6 @@ from .. import pseudonyms
 from ..atomic import write
 from ..clean import how_many
 from ..rules import FILE as RULES
-from ..rules import read_rules
 from ..seeds import seed_of
 from ..students import collect, roster
 from ..submission import is_name
@@ -37,8 +36,7 @@ Git ignores all of them.
 _TERM = "course_private/term.json"
 _OF_A_STUDENT = (
     *("submitted/{}", "attempts/{}", "autograded/{}", "feedback/{}"),
-    *("results/*/{}.json", "results/*/old/{}", "results/*/aside/{}.json", "results/*/aside/old/{}"),
-    *("build/course/defence/{}.html", "build/course/explain/{}"),
+    *("results/*/{}.json", "build/course/defence/{}.html", "build/course/explain/{}"),
 )
 """One student's files and folders within a term."""
 _OF_THE_CLASS = (
@@ -60,20 +58,6 @@ def running(course: Course) -> str:
     graded = len(list(course.results.glob("*/*.json")))
     counts = ((enrolled, "student"), (submitted, "submission"), (graded, "graded mark"))
     return ", ".join(how_many(n, what) for n, what in counts if n)
-
-
-def refuse_running(course: Course) -> None:
-    """Refuse to end a term that has students or their work.
-
-    Raises:
-        LabkitError: The term has students, submissions or marks.
-    """
-    if there := running(course):
-        raise LabkitError(
-            f"the term under way has {there}; to hand out another notebook in it, type: labkit "
-            "release NAME; to archive all this and begin the next term, add --yes to labkit "
-            "term new"
-        )
 
 
 def new_term(course: Course, names: tuple[str, ...] = ()) -> dict[str, Any]:
@@ -136,15 +120,6 @@ def archive(course: Course) -> Path | None:
     if (course.root / RULES).exists():
         shutil.copy(course.root / RULES, folder)
     return folder
-
-
-def old_rules(course: Course) -> str:
-    """A sentence on rules of the last term that still apply; "" if there are none."""
-    rules = read_rules(course)
-    over = [x for x in rules.assignments if (due := rules.due(x)) and due < datetime.now(UTC)]
-    said = [f"due dates that are over: {', '.join(over)}"] * bool(over)
-    said += [f"extensions: {len(rules.extensions)}"] * bool(rules.extensions)
-    return f"{RULES} still has {'; '.join(said)}. Edit it before students hand in\n" if said else ""
 
 
 def ended(course: Course, years: float) -> list[Path]:
