@@ -111,7 +111,7 @@ def test_a_mark_that_is_missing_is_an_empty_cell(marked, capsys, fault):
     people = marked.root / "class.csv"
     numbers = marked.root / "course_private/lms.json"
     numbers.parent.mkdir(exist_ok=True)
-    numbers.write_text(json.dumps({NAME: {"ada": {"number": "4711", "name": "ada"}}}))
+    numbers.write_text(json.dumps({NAME: {"ada": ["4711", "ada"]}}))
     people.write_text("Username,Name,Email address\nada,ada,ada@example.org\n")
     assert main(["roster", str(people), "--course", str(marked.root)]) == 0
     capsys.readouterr()

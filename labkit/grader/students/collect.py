@@ -9,9 +9,8 @@ The newest file counts.  Every file that was collected is kept in ``attempts/STU
 
 Moodle writes ``NAME_PARTICIPANT_assignsubmission_file`` and then ``/FILE`` or ``_FILE``, with no
 underscore in NAME (github.com/moodle/moodle, ``mod/assign/classes/downloader.php``).  Canvas writes
-``NAME_[LATE_]USER_ATTACHMENT_FILE``, where NAME may end in an underscore and a number; then there
-are two readings (github.com/instructure/canvas-lms, ``lib/content_zipper.rb``).  A student chooses
-nothing but FILE, so a name is read from its beginning.
+``NAME_[LATE_]USER_ATTACHMENT_FILE`` (github.com/instructure/canvas-lms, ``lib/content_zipper.rb``);
+NAME or FILE may hold numbers too, and what could be read in two ways is left.
 """
 
 from __future__ import annotations
@@ -29,7 +28,7 @@ from dataclasses import dataclass, replace
 from datetime import UTC, datetime
 from functools import partial
 from pathlib import Path
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import msgspec
 
@@ -43,7 +42,7 @@ from ..rules import read_rules
 from ..submission import NOTEBOOK, check_size, digest, read_file
 from ..timestamp import TIMESTAMP, read_stamp, read_time
 from .exchange import SECRET, in_exchange
-from .roster import COLUMNS, Roster, Student, read_roster
+from .roster import COLUMNS, Roster, read_roster
 
 FOLDER = "attempts"
 PARTICIPANTS = "course_private/lms.json"
@@ -52,11 +51,8 @@ _MOODLE = re.compile(
     r"(?P<name>[^_/]*)_(?P<number>0|[1-9][0-9]{0,18})_assignsubmission_"
     r"(?P<kind>[a-z]+)(?:_?/(?:[^/]+/)*|_)(?P<file>[^/]+)"
 )
-_CANVAS = re.compile(
-    r"(?P<name>\w*?)_(?P<late>LATE_)?(?P<user>[0-9]+)_(?P<attachment>[0-9]+)_(?P<file>[^/]+)"
-)
-_NUMBER_FIRST = re.compile(r"[0-9]{3,}_([^/]+)")
-"""A file that begins with a number as large as an attachment's."""
+_CANVAS = re.compile(r"(?<!_LATE)(?=_(?P<late>LATE_)?(?P<user>[0-9]+)_[0-9]{3,}_(?P<file>[^/]+)$)")
+"""Each place where a user's and an attachment's number may be; attachments have large numbers."""
 _OF_A_MAC = re.compile(r"(^|/)(__MACOSX/|\.DS_Store$|\._[^/]*$)")
 _REPEATED = re.compile(r" ?[(-](\d{1,9})\)?\.ipynb$")
 """What a browser or a platform adds to the name of a file that is handed in again."""
@@ -67,6 +63,7 @@ _DAMAGED = (
 _PARTS = {"**": ".*", "*": "[^/]*"}
 LONGEST = 1000
 """The longest path of a file in a download."""
+_NOBODY = "their names do not say who handed them in"
 
 
 class Participant(NamedTuple):
@@ -76,43 +73,33 @@ class Participant(NamedTuple):
     name: str
 
 
-class Claim(NamedTuple):
-    """Who a file says that it is from.
-
-    Attributes:
-        column: The column of the roster, or "name".
-        value: What the student's row has there.
-        file: The name that the student gave the file.
-        late: Whether the platform marks it as late.
-        moodle: Moodle's participant; None elsewhere.
-    """
-
-    column: str
-    value: str
-    file: str
-    late: bool = False
-    moodle: Participant | None = None
-
-
 @dataclass(frozen=True)
 class File:
     """One file of a download.
 
     Attributes:
         label: Its name there, safe to show.
-        claims: The possible readings of its owner.
         when: When it was handed in, or when the download shows it.
         read: Reads its bytes when called.
+        column: The column of the roster that has its owner, or "name".
+        value: What the owner's row has there.
+        name: The name that the student gave the file.
         exact: Whether ``when`` is the time of the hand-in itself.
+        late: Whether the platform marks it as late.
+        moodle: Moodle's participant; None elsewhere.
         refused: Why it is not taken; "" if it can be.
         secret: Reads the secret by which the exchange knows the hand-in.
     """
 
     label: str
-    claims: tuple[Claim, ...]
     when: datetime
     read: Callable[[], bytes]
+    column: str = ""
+    value: str = ""
+    name: str = ""
     exact: bool = False
+    late: bool = False
+    moodle: Participant | None = None
     refused: str = ""
     secret: Callable[[], bytes | None] = lambda: None
 
@@ -191,41 +178,33 @@ def collect(
 
 def _by_owner(
     course: Course, assignment: str, roster: Roster, files: Sequence[File]
-) -> tuple[dict[str, list[tuple[File, Claim]]], dict[str, list[str]]]:
+) -> tuple[dict[str, list[File]], dict[str, list[str]]]:
     """The files by the id of their owner, and the names of those that are left, by the reason."""
     known = participants(course)
     recorded = dict(known.get(assignment, {}))
-    mine: dict[str, list[tuple[File, Claim]]] = {}
+    mine: dict[str, list[File]] = {}
     left: dict[str, list[str]] = {}
     for file in files:
-        found = file.refused or _owner(roster, file.claims)
-        if isinstance(found, str):
-            left.setdefault(found, []).append(file.label)
+        owner = roster.known_as(file.column, file.value) if file.column else None
+        if owner and not file.refused:
+            mine.setdefault(owner.id, []).append(file)
         else:
-            mine.setdefault(found[0].id, []).append((file, found[1]))
+            why = f"no one student of the roster has this {file.column}" if file.column else _NOBODY
+            left.setdefault(file.refused or why, []).append(file.label)
     for student, theirs in [*mine.items()]:
-        called = {x.moodle.number: x.moodle for _, x in theirs if x.moodle}
+        called = {x.moodle.number: x.moodle for x in theirs if x.moodle}
         before = recorded.get(student)
         numbers = {*called, before.number} if called and before else {*called}
         of_others = {one.number for name, one in recorded.items() if name != student}
         if len(numbers) > 1 or numbers & of_others:
             why = f"Moodle's numbers {', '.join(sorted(numbers))} and {student} do not match"
-            left.setdefault(why, []).extend(file.label for file, _ in mine.pop(student))
+            left.setdefault(why, []).extend(x.label for x in mine.pop(student))
         elif called:
             recorded[student] = next(iter(called.values()))
     if recorded:
         data = msgspec.json.encode(known | {assignment: recorded}, order="sorted")
         write(course.root / PARTICIPANTS, msgspec.json.format(data, indent=1) + b"\n")
     return mine, left
-
-
-def _owner(roster: Roster, claims: Sequence[Claim]) -> tuple[Student, Claim] | str:
-    """The student who handed in a file, and the right reading of its name; or why it is left."""
-    if not claims:
-        return "their names do not say who handed them in"
-    found = [(one, x) for x in claims if (one := roster.known_as(x.column, x.value))]
-    says = f"no one student of the roster has this {claims[0].column}; import a list that has it"
-    return found[0] if len(found) == 1 else says
 
 
 def participants(course: Course) -> dict[str, dict[str, Participant]]:
@@ -245,11 +224,7 @@ def participants(course: Course) -> dict[str, dict[str, Participant]]:
 
 
 def _keep(
-    course: Course,
-    assignment: str,
-    student: str,
-    theirs: Sequence[tuple[File, Claim]],
-    at: datetime | None,
+    course: Course, assignment: str, student: str, theirs: Sequence[File], at: datetime | None
 ) -> Iterator[Taken]:
     """Keep one student's files, and let the newest count."""
     kept, folder = (
@@ -257,27 +232,25 @@ def _keep(
     )
     if any(x.is_symlink() for x in (folder.parent, folder, kept.parent, kept)):
         raise LabkitError(f"{folder} or {kept} is a link; put a folder there")
-    read: list[tuple[tuple[datetime, bool, int], File, Claim, bytes]] = []
-    for file, claim in theirs:
-        if not claim.file.lower().endswith(".ipynb"):
-            yield Taken(student, claim.file, "not taken; it is no notebook", fine=False)
-            continue
-        if not file.exact and (at or claim.late):
+    read: list[tuple[tuple[datetime, bool, int], File, bytes]] = []
+    for file in theirs:
+        if not file.exact and (at or file.late):
             file = replace(file, when=at or file.when, exact=True)
-        number = _REPEATED.search(claim.file)
-        plain = _REPEATED.sub(".ipynb", claim.file) == f"{assignment}.ipynb"
-        rank = file.when, plain, int(number[1]) if number else 0
+        number = _REPEATED.search(file.name)
+        plain = _REPEATED.sub(".ipynb", file.name) == f"{assignment}.ipynb"
         try:
-            read.append((rank, file, claim, file.read()))
+            if not file.name.lower().endswith(".ipynb"):
+                raise LabkitError("it is no notebook")
+            read.append(((file.when, plain, int(number[1]) if number else 0), file, file.read()))
         except LabkitError as error:
-            yield Taken(student, claim.file, f"not taken; {error}", fine=False)
+            yield Taken(student, file.name, f"not taken; {error}", fine=False)
     if not read:
         return
-    *earlier, (_, file, claim, data) = sorted(read, key=lambda one: one[0])
+    *earlier, (_, file, data) = sorted(read, key=lambda one: one[0])
     known = {path.stem[-16:] for path in kept.glob("*.ipynb")}
-    for _, one, other, old in earlier:
+    for _, one, old in earlier:
         _store(kept, one.when, old)
-        yield Taken(student, other.file, f"kept, but {claim.file} counts")
+        yield Taken(student, one.name, f"kept, but {file.name} counts")
     path = folder / f"{assignment}.ipynb"
     there = read_file(path) if path.exists() else b""
     before = (read_time(read_stamp(folder)) or _written(path)) if there else file.when
@@ -295,7 +268,7 @@ def _keep(
             _store(kept, before, there)
         _install(folder, path, file, data)
         says = "taken" + ", in place of an earlier one, which is kept" * bool(there)
-    yield Taken(student, claim.file, says + ", late" * claim.late)
+    yield Taken(student, file.name, says + ", late" * file.late)
 
 
 def _written(path: Path) -> datetime:
@@ -321,24 +294,22 @@ def _install(folder: Path, path: Path, file: File, data: bytes) -> None:
             write(folder / name, content)
 
 
-def readings(entry: str) -> tuple[Claim, ...]:
-    """The possible owners of an entry of Moodle's or Canvas's zip; none if its name has none."""
-    if match := _MOODLE.fullmatch(entry):
-        file = clean_line(match["file"]) if match["kind"] == "file" else match["kind"]
-        who = Participant(match["number"], clean_line(match["name"], 200))
-        return (Claim("name", who.name, file, moodle=who),)
-    match = _CANVAS.fullmatch(entry)
-    if match is None or "assignsubmission" in match["name"]:
-        return ()
-    file, late = clean_line(match["file"]), bool(match["late"])
-    first = Claim("lms_user_id", match["user"], file, late)
-    again = None if late else _NUMBER_FIRST.fullmatch(match["file"])
-    if again is None:
-        return (first,)
-    return first, Claim("lms_user_id", match["attachment"], clean_line(again[1]))
+def reading(entry: str) -> dict[str, Any]:
+    """What an entry of Moodle's or Canvas's zip says of its owner; nothing if that is not clear."""
+    moodle, canvas = _MOODLE.fullmatch(entry), [*_CANVAS.finditer(entry)]
+    canvas = [] if "/" in entry else canvas
+    if bool(moodle) + len(canvas) != 1:  # a name or a file that could be read as somebody else's
+        return {}
+    if moodle:
+        file = clean_line(moodle["file"]) if moodle["kind"] == "file" else moodle["kind"]
+        who = Participant(moodle["number"], clean_line(moodle["name"], 200))
+        return {"column": "name", "value": who.name, "name": file, "moodle": who}
+    (match,) = canvas
+    about = {"column": "lms_user_id", "value": match["user"], "late": bool(match["late"])}
+    return about | {"name": clean_line(match["file"])}
 
 
-def reader(pattern: str) -> Callable[[str], tuple[Claim, ...]]:
+def reader(pattern: str) -> Callable[[str], dict[str, Any]]:
     """Reads the owner of a file from its path, by a pattern such as ``paths-{github}/*.ipynb``.
 
     Raises:
@@ -351,10 +322,10 @@ def reader(pattern: str) -> Callable[[str], tuple[Claim, ...]]:
     form = ("(?P<who>[^/]+?)" if x[:1] == "{" else _PARTS.get(x, re.escape(x)) for x in parts)
     whole = re.compile("".join(form), re.IGNORECASE)
 
-    def read(name: str) -> tuple[Claim, ...]:
-        match = whole.fullmatch(name)
-        file = clean_line(Path(name).name)
-        return (Claim(columns[0], clean_line(match["who"], 200), file),) if match else ()
+    def read(path: str) -> dict[str, Any]:
+        match, name = whole.fullmatch(path), clean_line(Path(path).name)
+        about = {"column": columns[0], "name": name}
+        return about | {"value": clean_line(match["who"], 200)} if match else {}
 
     return read
 
@@ -373,15 +344,14 @@ def open_zip(path: Path) -> zipfile.ZipFile:
 
 def in_zip(archive: zipfile.ZipFile, source: Path, named: str | None) -> Iterator[File]:
     """The files of a zip, with the times at which the download shows them."""
-    read = reader(named) if named else readings
+    read = reader(named) if named else reading
     for entry in archive.infolist():
         name = _name(entry)
         if not entry.is_dir() and not _OF_A_MAC.search(name[-LONGEST:]):
             refused = _refused(entry, name)
-            who = () if refused else read(name)
-            when = _when(entry, _written(source))
-            label = clean_line(name[-LONGEST:])[-120:]
-            yield File(label, who, when, partial(_read, archive, entry), refused=refused)
+            about = {"refused": refused} if refused else read(name)
+            label, when = clean_line(name[-LONGEST:])[-120:], _when(entry, _written(source))
+            yield File(label, when, partial(_read, archive, entry), **about)
 
 
 def _name(entry: zipfile.ZipInfo) -> str:
@@ -432,6 +402,7 @@ def in_folder(folder: Path, named: str) -> Iterator[File]:
         for name in sorted(x for x in names if not x.startswith(".")):
             path = Path(top, name)
             label = str(path.relative_to(folder))
-            who = read(label)
-            if who or name.lower().endswith(".ipynb"):
-                yield File(clean_line(label)[-120:], who, _written(path), partial(read_file, path))
+            about = read(label)
+            if about or name.lower().endswith(".ipynb"):
+                bytes_of = partial(read_file, path)
+                yield File(clean_line(label)[-120:], _written(path), bytes_of, **about)

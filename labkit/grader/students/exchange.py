@@ -13,7 +13,7 @@ from collections.abc import Iterable, Iterator
 from datetime import UTC, datetime
 from functools import partial
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from ...course.authoring.layout import Course
 from ..clean import clean_line
@@ -35,7 +35,7 @@ def in_exchange(folder: Path, assignment: str, unverified: bool) -> Iterator[Fil
         assignment: The assignment to collect.
         unverified: Whether to take folders of users whom this machine does not know.
     """
-    from .collect import Claim, File
+    from .collect import File
 
     def of(path: Path, user: str, stated: str) -> Iterator[File]:
         label, when = clean_line(path.name), read_time(stated)
@@ -43,12 +43,13 @@ def in_exchange(folder: Path, assignment: str, unverified: bool) -> Iterator[Fil
         notebooks = [] if refused else sorted(path.glob("*.ipynb"))
         if when is None or not notebooks:
             why = refused or "they state no time, or hold no notebook"
-            yield File(label, (), datetime.now(UTC), bytes, refused=why)
+            yield File(label, datetime.now(UTC), bytes, refused=why)
             return
         for notebook in notebooks:
-            who = Claim("email" if "@" in user else "login", user, clean_line(notebook.name))
-            secret = partial(read_secret, path)
-            yield File(label, (who,), when, partial(read_file, notebook), True, secret=secret)
+            column = "email" if "@" in user else "login"
+            about: dict[str, Any] = {"column": column, "value": user, "exact": True}
+            about |= {"name": clean_line(notebook.name), "secret": partial(read_secret, path)}
+            yield File(label, when, partial(read_file, notebook), **about)
 
     for path in sorted(folder.iterdir()):
         user, name, stated, *_ = (*path.name.rsplit("+", 3), "", "")
@@ -56,7 +57,7 @@ def in_exchange(folder: Path, assignment: str, unverified: bool) -> Iterator[Fil
             found: list[File] | Failure = for_student(user, list, of(path, user, stated))
             if isinstance(found, Failure):
                 label, now = clean_line(path.name), datetime.now(UTC)
-                found = [File(label, (), now, bytes, refused=found.why)]
+                found = [File(label, now, bytes, refused=found.why)]
             yield from found
 
 
