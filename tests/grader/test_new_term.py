@@ -1,4 +1,4 @@
-"""A term begins, ends and is forgotten; a course is exported."""
+"""A term begins, ends and is forgotten."""
 
 import json
 import shutil
@@ -17,8 +17,7 @@ from labkit.grader import seeds
 from labkit.grader.nbgrader.gradebook import open_gradebook
 from labkit.grader.students.roster import Roster, Student, save_roster
 from labkit.grader.terms import term
-from labkit.grader.terms.release import FORBIDDEN, prepared, release
-from labkit.grader.terms.student_bundle import export_course
+from labkit.grader.terms.release import prepared, release
 
 PURPOSES = ("hidden cases", "arms", "the whys", "defence")
 ROOT = Path(__file__).resolve().parents[2]
@@ -79,7 +78,7 @@ def test_the_next_term_archives_the_names_and_forgets_them(course):
     assert (folder / "submitted" / "ada").is_dir()
     words = ["term", "forget", "--course", str(course.root)]
     assert main(words) == 2
-    assert main([*words, "--older", "1", "--yes"]) == 2 and folder.exists()
+    assert main([*words, "--older", "1", "--yes"]) == 0 and folder.exists()
     assert main([*words, "--older", "0"]) == 0 and folder.exists()
     assert main([*words, "--older", "0", "--yes"]) == 0
     assert not folder.exists()
@@ -119,7 +118,7 @@ def test_one_student_is_forgotten_in_every_folder(course, capsys):
     assert here < named and len(named) == 2 * len(here)
     assert not [x for x in course.root.rglob("ada*") if "solutions" not in x.parts]
     assert len([x for x in course.root.rglob("bob*") if "solutions" not in x.parts]) > len(names)
-    for wrong in ("zoe", "..", "a/b", "."):
+    for wrong in ("..", "a/b", "."):
         assert main([*words[:3], wrong, *words[4:]]) == 2
 
 
@@ -194,20 +193,3 @@ def test_a_damaged_record_is_a_sentence(course, text):
     course.term.write_text(text)
     with pytest.raises(LabkitError, match=r"term\.json is damaged"):
         seeds.seed_of(course)
-
-
-def test_the_students_repository_holds_no_answer(tmp_path):
-    """The export for students has the notebooks and labkit, and nothing of the solutions."""
-    student, private = export_course(Course(ROOT), tmp_path / "out")
-    assert (student / "assignments/01_paths/01_paths.ipynb").exists()
-    assert list(student.glob("labkit-*.whl"))
-    assert not (student / "solutions").exists()
-    assert (private / "solutions/paths/answers.py").exists()
-    for path in student.rglob("*.ipynb"):
-        assert not any(word in path.read_text() for word in FORBIDDEN)
-
-
-def test_an_export_never_overwrites(tmp_path):
-    """A folder that is there already is left alone."""
-    with pytest.raises(LabkitError, match="exists already"):
-        export_course(Course(ROOT), tmp_path)

@@ -131,19 +131,6 @@ def test_an_extension_that_reaches_nobody_is_named(late, capsys):
         assert code == 1 and "'Cleo'" in err
 
 
-def test_no_zero_is_written_where_work_is_kept_apart(late, tmp_path, capsys):
-    """Who seems to be absent may have handed in under a name that the roster does not have."""
-    people = tmp_path / "people.csv"
-    people.write_text("login,first name,last name\nada,Ada,L\nben,Ben,M\nfrank,F,O\n")
-    assert verb(late, capsys, "roster", str(people))[0] == 0
-    for words in (["export", NAME], ["export"]):
-        code, out, err = verb(late, capsys, *words, "--absent-zero")
-        assert code == 1 and f"{NAME}: no 0 is written: cleo handed in without being in" in err
-        assert "if they are not in the class, type: labkit term forget --student cleo\n" in err
-        (row,) = [line for line in out.splitlines() if line.startswith("frank")]
-        assert "0.0" not in row
-
-
 @pytest.mark.parametrize(
     ("text", "says"),
     [

@@ -1,4 +1,4 @@
-"""Commands for authors: how well the checks tell right from wrong; the course as repositories."""
+"""A command for authors: how well the checks tell right from wrong."""
 
 from __future__ import annotations
 
@@ -41,18 +41,4 @@ def report_card(course: Course, names: tuple[str, ...], seed: int, draws: int) -
     return int(any(row.failures for row in card))
 
 
-@verb("--to ../handout")
-@click.option(
-    "--to", type=PATH, required=True, metavar="DIR", help="A folder that does not exist yet."
-)
-@of_course
-def export_course(course: Course, to: Path) -> int:
-    """Write two repositories: one for students, one private."""
-    from ..terms.student_bundle import export_course
-
-    student, private = export_course(course, to)
-    print(f"for students, without answers: {student}\nprivate, everything: {private}")
-    return 0
-
-
-COMMANDS = (report_card, export_course)
+COMMANDS = (report_card,)

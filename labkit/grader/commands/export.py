@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import shlex
 import sys
 from dataclasses import replace
 from pathlib import Path
@@ -13,7 +12,6 @@ import click
 from ...course.authoring.layout import DEFENCE, Course
 from ...course.cli import verb
 from ...errors import LabkitError
-from ..clean import few
 from ..each import Failure, Failures
 from .course import of_course
 from .pages import nobody, tell, to_file, write
@@ -82,19 +80,9 @@ def export(
         found = list(marks_of(course, name))
         return [] if all(mark.absent for mark in found) else found
 
-    def filled(name: str, marks: list[Mark]) -> list[Mark]:
-        """The marks with a 0 for each absent student, if that is asked for and certain."""
-        strangers = [m.student for m in marks if not (m.absent or m.listed)]
-        if not absent_zero or not any(m.absent for m in marks):
-            return marks
-        if strangers:
-            doubts.append(
-                f"{name}: no 0 is written: {few(strangers)} handed in without being in the roster, "
-                "and may be one of those listed; import a list that has them or, if they are not "
-                f"in the class, type: labkit term forget --student {shlex.quote(strangers[0])}"
-            )
-            return marks
-        return [replace(m, raw=0.0) if m.absent else m for m in marks]
+    def filled(marks: list[Mark]) -> list[Mark]:
+        """The marks, with a 0 for each absent student if that is asked for."""
+        return [replace(m, raw=0.0) if m.absent and absent_zero else m for m in marks]
 
     if assignment is None:
         if layout != "questions":
@@ -109,7 +97,7 @@ def export(
             raise LabkitError("nobody is graded in any assignment; type: labkit grade ASSIGNMENT")
         for name, marks in term.items():
             tell((f"{name}: {says}" for says in remarks("questions", marks, name)), sys.stderr)
-        whole = {name: filled(name, marks) for name, marks in term.items()}
+        whole = {name: filled(marks) for name, marks in term.items()}
         write(as_csv(of_term(whole, {name: rules.weight(name) for name in term})), to)
         tell(doubts, sys.stderr)
         return int(any(m.missing for marks in term.values() for m in marks) or bool(doubts))
@@ -117,7 +105,7 @@ def export(
     if not marks:
         raise nobody(assignment, None)
     tell(remarks(layout, marks, assignment), sys.stderr)
-    write(as_csv(LAYOUTS[layout](column or assignment, filled(assignment, marks))), to)
+    write(as_csv(LAYOUTS[layout](column or assignment, filled(marks))), to)
     tell(doubts, sys.stderr)
     lost, count = unmatched(layout, marks)
     return int(any(m.missing for m in marks) or 0 < count == len(lost) or bool(doubts))

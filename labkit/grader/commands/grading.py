@@ -122,7 +122,6 @@ def explain(course: Course, student: str, question: str, assignment: str | None)
 
     The answer runs once more in the sandbox. You see what the student may be shown, and then,
     for you alone, the hidden case that decided the mark. Numbers and runs are written to a page.
-    An answer that a person marks is not run: its mark and comment are those of the gradebook.
     """
     from ..feedback.explain import explain
 

@@ -68,7 +68,8 @@ def term(
         raise LabkitError("say what to forget: --older YEARS, or --student NAME")
     theirs, others = of_student(course, student) if student else (ended(course, older or 0), [])
     if not theirs and not others:
-        raise LabkitError(f"there is nothing of {student}" if student else "no term is as old")
+        print(f"there is nothing of {student}" if student else "no term is as old")
+        return 0
     if yes:
         delete(theirs)
     for path in theirs:

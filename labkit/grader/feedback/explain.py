@@ -21,7 +21,6 @@ from ...course.source import parsed
 from ...course.verdict import Outcome
 from ...errors import LabkitError, UnknownName
 from ..atomic import write
-from ..grading.current_results import how_to_grade
 from ..grading.grade import grade
 from ..grading.plan import imports
 from ..grading.results import Result
@@ -39,8 +38,8 @@ _PRIVATE = "this page shows hidden cases, so it is for instructors and not for s
 def explain(course: Course, student: str, question: str, assignment: str | None = None) -> str:
     """Explain to the instructor why an answer has its mark.
 
-    An answer that tests check is tried again with all hidden cases shown, and a page is written
-    with any numbers and runs of it.  An answer that a person marks is not run.
+    The answer is tried again with all hidden cases shown, and a page is written with any numbers
+    and runs of it.
 
     Args:
         course: The course.
@@ -54,38 +53,16 @@ def explain(course: Course, student: str, question: str, assignment: str | None 
         NoIsolation: No sandbox can be made on this machine.
     """
     bundle = _bundle(course, question, assignment)
-    name, by_hand = bundle.data["assignment"], question in _by_hand(bundle)
-    everybody = marks_of(course, name, None if by_hand else student)  # a team shares its mark
-    mark = next((one for one in everybody if one.student == student), None)
+    name = bundle.data["assignment"]
+    mark = next(iter(marks_of(course, name, student)), None)
+    if question in _by_hand(bundle):
+        raise LabkitError(f"a person marks {question}, in formgrader: Manual Grading, {name}")
     if mark is None or mark.result is None:
         why = (mark and mark.missing) or none_of(course, name, student)
         raise LabkitError(f"there is no mark to explain: {why}")
     if mark.result.rejected:
         raise LabkitError(f"{name} of {student} was rejected: {mark.result.rejected}")
-    if by_hand:
-        return "\n".join(_by_a_person(name, question, mark, mark.result))
     return "\n".join(_by_the_grader(course, bundle, question, mark, mark.result))
-
-
-def _by_a_person(assignment: str, question: str, mark: Mark, result: Result) -> Iterator[str]:
-    """Explain the mark of an answer that a person marks."""
-    line = next((line for line in mark.lines if line.name == question), None)
-    if line is None:
-        raise LabkitError(f"there is no mark to explain: {mark.missing}")
-    where = f"in formgrader: Manual Grading, {assignment}, Show All Names"
-    says = f"A person marks it, {where}."
-    if line.automatic == 0.0:
-        says = f"It was left empty or as it was handed out. If it earns more, give it {where}."
-    elif line.automatic is not None:
-        says = (
-            "This why is not one of those that are drawn for a person to mark, so it has full "
-            f"points for being written. A mark that you give counts instead, {where}."
-        )
-    yield _heading(mark, line)
-    yield wrapped(says)
-    if line.comment:
-        yield f"\nComment: {line.comment}"
-    yield f"\nThe answer:\n{result.written.get(question) or '(none)'}"
 
 
 def _by_the_grader(
@@ -108,28 +85,18 @@ def _by_the_grader(
     yield from (wrapped(f"Note: {note}.") for note in before.notes)
     yield from map(wrapped, summary(shown))
     hidden = {test.name for test in shown.tests if test.hidden}
-    now_hash = bundle.of_student(student).data["hash"]
-    changed = "the release" * (now_hash != result.hashes["bundle"])
-    changed = changed or "labkit" * (again.hashes["engine"] != result.hashes["engine"])
-    as_before = (shown.right, shown.earned) == (now.right, now.earned)
-    if hidden and shown.outcome is not Outcome.NOT_ATTEMPTED:
-        if not changed or (as_before and changed == "labkit"):
-            yield "\nThe hidden case that decided; do not show it before the term ends:"
-            yield from (
-                wrapped(f"  {test_line(test, now)}") for test in now.tests if test.name in hidden
-            )
+    made = bundle.of_student(student).data["hash"], again.hashes["engine"]
+    if made != (result.hashes["bundle"], result.hashes["engine"]):
+        earns = f"{now.earned:g} of {now.points:g}"
+        says = f"Since this mark was made, the release or labkit has changed: now it earns {earns}."
+        yield "\n" + wrapped(says)
+    elif hidden and shown.outcome is not Outcome.NOT_ATTEMPTED:
+        yield "\nThe hidden case that decided; do not show it before the term ends:"
+        yield from (wrapped(f"  {test_line(x, now)}") for x in now.tests if x.name in hidden)
     elif shown.outcome in (Outcome.WRONG, Outcome.ERROR):
         yield "\nThe tests that the student has seen decided this mark; no hidden case did."
-    if not as_before:
-        says = "ATTENTION: this time the outcome was a different one:"
-        if changed:
-            says = (
-                f"Since this mark was made, {changed} has changed: now the answer earns "
-                f"{now.earned:g} of {now.points:g}. If that is to count, "
-                f"{how_to_grade(result.assignment, student)}, and add --lower if that keeps the "
-                "old mark"
-            )
-        yield "\n" + wrapped(says)
+    if (shown.right, shown.earned) != (now.right, now.earned):
+        yield "\nThis time the outcome was a different one:"
         yield from map(wrapped, summary(now))
     if line.comment:
         yield f"\nComment: {line.comment}"

@@ -169,37 +169,3 @@ def wheel(root: Path, to: Path) -> None:
     if done.returncode:
         last = (done.stderr.strip().splitlines() or ["pip gave no reason"])[-1]
         raise LabkitError(f"labkit's wheel could not be built: {last}")
-
-
-def export_course(course: Course, to: Path) -> tuple[Path, Path]:
-    """Write the students' repository and the private one side by side.
-
-    Args:
-        course: The course, a git checkout.
-        to: A folder that does not exist yet.
-
-    Returns:
-        The students' folder and the private one.
-
-    Raises:
-        LabkitError: The folder exists already, this is not a git checkout, or an answer would have
-            leaked.
-    """
-    if to.exists():
-        raise LabkitError(f"{to} exists already; give a folder that does not")
-    files = _tracked(course.root)
-    student, private = to / "student", to / "private"
-    student_folder(course, (), student)
-    for name in files:
-        target = private / name
-        target.parent.mkdir(parents=True, exist_ok=True)
-        shutil.copy2(course.root / name, target)
-    return student, private
-
-
-def _tracked(root: Path) -> list[str]:
-    command = ["git", "-C", str(root), "ls-files", "-z"]
-    done = subprocess.run(command, capture_output=True, text=True)
-    if done.returncode:
-        raise LabkitError(f"{root} is not a git checkout: {done.stderr.strip()}")
-    return [name for name in done.stdout.split("\0") if name and (root / name).is_file()]
