@@ -244,4 +244,5 @@ def test_moodle_layouts():
 
 def row(student, *, first="", last="", email="", lms="", known=None):
     who, line = Student(student, first, last, email, lms, id_number=lms), MarkLine("q", 2.0, 1.0)
-    return Mark(who, lines=(line,), raw=1.0, points=2.0, moodle=known)
+    listed = known is not None
+    return Mark(who, listed, lines=(line,), raw=1.0, points=2.0, moodle=known)
