@@ -2,12 +2,10 @@
 
 from __future__ import annotations
 
-from pathlib import Path
-
 import click
 
 from ...course.authoring.layout import Course
-from ...course.cli import PATH, verb
+from ...course.cli import verb
 from ...course.seed import PUBLIC_SEED
 from .course import SEED, names, of_course
 
