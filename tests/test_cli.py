@@ -82,10 +82,6 @@ def test_a_number_that_makes_no_sense_is_a_sentence(words, sentence, capsys):
             )
             for layout in ("questions", "nbgrader", "moodle-worksheet", "gradescope")
         ),
-<<<<<<< HEAD
-=======
-        (["collect", "01_paths", ".", "--course", ROOT], "first type: labkit roster LIST.csv"),
->>>>>>> d893b579 (tests: collecting needs a roster first)
     ],
 )
 def test_a_wrong_file_or_folder_is_a_sentence(words, sentence, tmp_path, monkeypatch, capsys):

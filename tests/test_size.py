@@ -15,7 +15,7 @@ ROOT = Path(__file__).parents[1]
 STOREYS = {
     "lab": (r"labkit/(?!course/|grader/|__main__).*\.py", 5300),
     "course": (r"labkit/(course/|__main__).*\.py", 4100),
-    "grader": (r"labkit/grader/.*\.py", 6820),
+    "grader": (r"labkit/grader/.*\.py", 6170),
     "solutions": (r"solutions/.*\.py", 11100),
     "book": (r"book/.*\.py", 6200),
     "tests": (r"tests/.*\.py", 20800),
