@@ -10,7 +10,7 @@ import sys
 import zipfile
 
 import pytest
-from book_pages import BOOK, ROOT, in_order
+from book_pages import ROOT
 from handmade import put
 
 from labkit.course.authoring.layout import Course
@@ -112,13 +112,6 @@ def test_the_privacy_page_names_every_place():
     text = (ROOT / "privacy.md").read_text()
     for place in (*PERSONAL_FILES, FILE):
         assert f"`{place}" in text, place
-
-
-def test_the_built_book_has_the_privacy_page():
-    """Anyone who has the book alone can read it: a page, and a link from the instructor's guide."""
-    assert "privacy" in in_order()
-    assert "{include} ../privacy.md" in (BOOK / "privacy.md").read_text()
-    assert "](privacy.md)" in (BOOK / "instructor_guide.md").read_text()
 
 
 def test_every_command_of_the_students_guide_works(tmp_path):

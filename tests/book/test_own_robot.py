@@ -33,19 +33,3 @@ def test_a_ur5_draws_the_circle_and_its_log_is_kept(ran):
     for each in (log, names["log"]):
         assert lk.metrics.summary(each).max_mm < 10.0
     assert 2.0 < lk.metrics.summary(log).rms_mm < 10.0, "the page says: some millimetres"
-
-
-def test_bringing_an_arm_takes_a_dozen_lines():
-    """The page's first block has at most twelve lines that are not empty."""
-    lines = [line for line in BLOCKS[0].splitlines() if line.strip()]
-    assert len(lines) <= 12
-
-
-def test_the_page_names_all_that_run_asks_for():
-    """Its table has a row for each public method of a real arm."""
-    page = (ROOT / "book/own_robot.md").read_text()
-    asked = [name for name in vars(lk.arm_adapters.RealArm) if not name.startswith("_")]
-    assert {"state", "apply", "stop", "wait"} <= set(asked)
-    assert all(
-        f"| `{name}(" in page for name in asked if callable(getattr(lk.arm_adapters.RealArm, name))
-    )

@@ -5,7 +5,7 @@ from urllib.parse import unquote, urldefrag
 
 import pytest
 from accessibility import COLOURS, violations
-from book_pages import in_order
+from book_pages import ROOT, in_order
 from bs4 import BeautifulSoup
 from build_book import SAMPLE
 
@@ -142,3 +142,14 @@ def test_ids_are_unique(pages):
     for path, page in pages.items():
         ids = [e["id"] for e in page.select("[id]")]
         assert len(ids) == len(set(ids)), (path.name, [i for i in ids if ids.count(i) > 1][:5])
+
+
+def test_the_readme_has_the_books_numbers(pages, book):
+    """README's table of errors is the landing page's."""
+    tables = pages[book / "index.html"].select("table")
+    (table,) = (x for x in tables if x.caption and "RMS error" in x.caption.text)
+    readme = (ROOT / "README.md").read_text().splitlines()
+    for row in table.select("tbody tr"):
+        name, *numbers = (cell.text for cell in row.select("th, td"))
+        (line,) = (x for x in readme if x.startswith(f"| {name}"))
+        assert line.endswith(f"| {' | '.join(numbers)} |")
