@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from typing import Any, cast
 
 import cv2
@@ -28,17 +29,49 @@ _INSTANTS = 9  # that are drawn during an exposure
 _FINE = 4  # samples of a pixel along each side where something may hide a tag
 
 
+@dataclass(frozen=True)
+class Optics:
+    """What a camera does to a picture, in this order; by default, nothing.
+
+    Attributes:
+        samples: The number s of samples along each side of a pixel on an edge of a tag; with 1,
+            edges are jagged.
+        shade: Share by which light falls from the left to the right edge of a tag's paper.
+        exposure: Time for which the shutter is open, centred on the time of the picture, in [s].
+            Moving boards are smeared; the robot, and a camera in its hand, count as still.
+        blur: Standard deviation of the blur of a lens out of focus, in [px].
+        vignette: Share of the light that is lost in the picture's corners.
+        gamma: Exponent of the sensor's response.
+        noise: Standard deviation of each colour of each pixel, in grey levels.
+        jpeg: Quality to which the picture is compressed, from 1 to 100; 0 leaves it as it is.
+    """
+
+    samples: int = 8
+    shade: float = 0.0
+    exposure: float = 0.0
+    blur: float = 0.0
+    vignette: float = 0.0
+    gamma: float = 1.0
+    noise: float = 0.0
+    jpeg: int = 0
+
+    def __post_init__(self) -> None:
+        for name in ("shade", "exposure", "blur", "vignette", "noise"):
+            as_number(getattr(self, name), name, least=0.0)
+        as_number(self.gamma, "gamma", above=0.0)
+        for name, least, most in (("samples", 1, 16), ("jpeg", 0, 100)):
+            n = getattr(self, name)
+            if not isinstance(n, int) or not least <= n <= most:
+                raise OutOfRange(f"{name} is {n!r}; give a whole number from {least} to {most}")
+
+
 class Camera:
     """A camera that takes pictures of a world.
 
     Attributes:
         world: The world that it sees.
         intrinsics: Its lens and sensor.
-        noise: Standard deviation of each colour of each pixel, in grey levels.
-        samples: The number s of samples along each side of a pixel on an edge of a tag.
-        blur: Standard deviation of the blur of a lens out of focus, in [px].
-        exposure: Time for which the shutter is open, centred on the time of the picture, in [s].
-            Moving boards are smeared; the robot, and a camera in its hand, count as still.
+        optics: What it does to a picture.
     """
 
     def __init__(
@@ -47,11 +80,8 @@ class Camera:
         T_wc: Any,
         intrinsics: Intrinsics | None = None,
         *,
-        noise: float = 0.0,
-        samples: int = 8,
-        blur: float = 0.0,
-        exposure: float = 0.0,
         seed: int = 0,
+        **optics: Any,
     ) -> None:
         """Fix a camera in ``world``.
 
@@ -60,17 +90,13 @@ class Camera:
             T_wc: Pose of the camera in the world (z forward, x right, y down), shape (4, 4);
                 `looking_at` makes one.
             intrinsics: Lens and sensor; None means 640 x 480 pixels and a focal length of 515 px.
-            noise: Standard deviation of each colour of each pixel, in grey levels of 255.
-            samples: The number s of samples along each side of a pixel on an edge of a tag; with 1,
-                edges are jagged.
-            blur: Standard deviation of the blur of a lens out of focus, in [px].
-            exposure: Time for which the shutter is open, in [s].
             seed: Seed of the noise.
+            **optics: `Optics`, such as ``noise=2.0`` or ``blur=1.0``.
 
         Raises:
             TypeMismatch: The world is not a `World`, the lens not `Intrinsics`, or the seed not a
                 number.
-            OutOfRange: ``noise`` or ``samples`` is outside its permitted range.
+            OutOfRange: One of the optics is outside its permitted range.
         """
         if not isinstance(world, World):
             raise TypeMismatch(f"world is {shown(world)}, expected a World; an arm's is arm.world")
@@ -78,12 +104,7 @@ class Camera:
         self.intrinsics = Intrinsics() if intrinsics is None else intrinsics
         if not isinstance(self.intrinsics, Intrinsics):
             raise TypeMismatch(f"intrinsics is {shown(intrinsics)}, expected lk.Intrinsics(...)")
-        self.noise = as_number(noise, "noise", least=0.0)
-        if not isinstance(samples, int) or not 1 <= samples <= 16:
-            raise OutOfRange(f"samples is {samples!r}; give a whole number from 1 to 16")
-        self.samples = samples
-        self.blur = as_number(blur, "blur", least=0.0)
-        self.exposure = as_number(exposure, "exposure", least=0.0)
+        self.optics = Optics(**optics)
         self._wide, self._seen_at = without_distortion(self.intrinsics)
         self._random = as_random(seed)
         self._hand: Arm | None = None
@@ -163,12 +184,12 @@ class Camera:
 
     def _exposed(self, picture: Any, robot: RobotVisuals, T_wc: Array) -> tuple[Any, list[Window]]:
         """The picture with the tags printed on it, averaged over the exposure; their windows."""
-        if not self.exposure:
+        if not self.optics.exposure:
             return picture, self._print(picture, robot, T_wc, self.world.t)
         total, windows = np.zeros_like(picture), []
         for share in (np.arange(_INSTANTS) + 0.5) / _INSTANTS - 0.5:
             one = picture.copy()
-            windows += self._print(one, robot, T_wc, self.world.t + share * self.exposure)
+            windows += self._print(one, robot, T_wc, self.world.t + share * self.optics.exposure)
             total += one / _INSTANTS
         return total, windows
 
@@ -200,10 +221,11 @@ class Camera:
             if place is None:
                 continue
             window, depth = place
-            share, white = paper(board.tag, T_cm, self._wide, window, self.samples)
-            shade = 255.0 * float(brightness(board.T_wm[:3, 2]))
+            share, white = paper(board.tag, T_cm, self._wide, window, self.optics.samples)
+            light = 255.0 * float(brightness(board.T_wm[:3, 2]))
+            shade = light * np.linspace(1.0, 1.0 - self.optics.shade, window.width)
             part = picture[window.rows, window.columns]
-            part += share[..., None] * (shade * white[..., None] - part)
+            part += share[..., None] * ((shade * white)[..., None] - part)
             self._hide(part, board, robot, T_wc, window, depth)
             windows.append(window)
         return windows
@@ -249,22 +271,35 @@ class Camera:
         return Window(int(low[0]), int(low[1]), int(wide), int(tall)), float(corners[:, 2].max())
 
     def _developed(self, picture: Any, windows: list[Window]) -> Picture:
-        """Apply lens and blur, and noise where something was drawn; the result is read-only."""
+        """Apply lens and optics, with noise where something was drawn; the result is read-only."""
         drawn = np.zeros(picture.shape[:2], np.uint8)
         for window in windows:
             drawn[window.rows, window.columns] = 1
         if self._seen_at is not None:
             at, nothing = self._seen_at, cast(Any, None)  # the first map holds both coordinates
+            size = (self.intrinsics.width, self.intrinsics.height)
             # Linear: OpenCV's cubic kernel (a = -0.75) shifts an edge by up to 0.047 pixels.
             picture = cv2.remap(picture, at, nothing, cv2.INTER_LINEAR)
-            drawn = np.asarray(cv2.remap(drawn, at, nothing, cv2.INTER_NEAREST))
-        if self.blur:
-            picture = cv2.GaussianBlur(picture, (0, 0), self.blur)
-        if self.noise and drawn.any():
+            picture = cv2.resize(picture, size, interpolation=cv2.INTER_AREA)
+            drawn = np.asarray(cv2.remap(drawn, at, nothing, cv2.INTER_NEAREST))[::2, ::2]
+        dials = self.optics
+        if dials.blur:
+            picture = cv2.GaussianBlur(picture, (0, 0), dials.blur)
+        if dials.vignette:
+            lens = self.intrinsics
+            v, u = np.indices(drawn.shape)
+            far = (u / (lens.width - 1) - 0.5) ** 2 + (v / (lens.height - 1) - 0.5) ** 2
+            picture = picture * (1.0 - 2.0 * dials.vignette * np.asarray(far))[..., None]
+        if dials.gamma != 1.0:
+            picture = 255.0 * (picture / 255.0) ** dials.gamma
+        if dials.noise and drawn.any():
             place = drawn > 0
             grain = self._random.standard_normal((int(place.sum()), 3), dtype=np.float32)
-            picture[place] += np.float32(self.noise) * grain
+            picture[place] += np.float32(dials.noise) * grain
         levels: Picture = np.clip(np.rint(picture), 0, 255).astype(np.uint8)
+        if dials.jpeg:
+            packed = cv2.imencode(".jpg", levels, [cv2.IMWRITE_JPEG_QUALITY, dials.jpeg])[1]
+            levels = np.asarray(cv2.imdecode(packed, cv2.IMREAD_COLOR_BGR), np.uint8)
         levels.setflags(write=False)
         return levels
 

@@ -1,14 +1,15 @@
 r"""Detection: from a picture to the poses of the tags in it.
 
-OpenCV finds the tags and refines their corners as AprilTag does; `edges` makes the corners exact.
+OpenCV finds the tags, once more in the doubled picture if one is missing or any may be there;
+`fitting` makes the corners exact.
 A flat square seen from afar looks the same tilted in either of two directions, so there are two
 poses to choose from (Collins & Bartoli 2014, "Infinitesimal plane-based pose estimation", IPPE);
 the ratio of their errors says how reliable the choice is.
 
 The covariance is that of least squares, :math:`J^+ C J^{+T}`, with J the derivative of the corners'
-pixels with respect to a small motion of the tag, and C the corners' covariance from the edges of
-the same picture.  A tag whose edges are not seen well, or whose corners differ from those of a
-square by more than C explains, is not reported: the pose of a half-hidden tag would be wrong.
+pixels with respect to a small motion of the tag, and C the corners' covariance from
+the same picture.  Where the pattern cannot be fitted, OpenCV's corners stay, with their own, larger
+errors; where the corners are not those of a square, C is as much larger as they differ.
 """
 
 from __future__ import annotations
@@ -24,19 +25,16 @@ import numpy as np
 from .. import se3
 from ..errors import LabkitError, OutOfRange, TypeMismatch
 from ..shapes import Array, as_array, as_number, locked, shown
-from .edges import Outline, sharpened
+from .fitting import Outline, fitted
 from .intrinsics import Intrinsics
 from .tag import PATTERNS, Picture, as_picture, tag_corners
 
 if TYPE_CHECKING:
     from .camera import Camera
 
-_SQUARE = 6.0
-"""Largest error of the corners relative to those of a square, in standard deviations."""
-
 _NONE = Intrinsics().distortion
-
-_APRILTAG_OFFSET = 0.5  # OpenCV's AprilTag code counts pixels from their corners
+_INSIDE = 0.6  # [px] from the outermost dark pixels, which OpenCV gives, to the corner
+_ROUGH = 0.6  # [px]; how exact those are
 
 
 class TagNotFound(LabkitError, LookupError):
@@ -55,7 +53,7 @@ class Detection:
         id: Its number.
         corners: Its corners in the picture, clockwise from the tag's upper left, shape (4, 2) in
             [px].
-        noise: Standard deviation of a corner's coordinate, estimated from the edges, in [px].
+        noise: Standard deviation of a corner's coordinate, estimated from the picture, in [px].
         T_cm: Pose of the tag in the camera's frame, shape (4, 4).
         error: Root mean square distance between the corners and those of the pose, in [px].
         ratio: How many times worse the other pose fits, at least 1; near 1 the tilt is a guess.
@@ -100,8 +98,7 @@ def detect_tags(
         side = size if sizes is None else sizes.get(number)
         if side is not None:
             seen.append(_detection(number, outline, lens, float(side)))  # type: ignore[arg-type]
-    sure = [d for d in seen if d.error <= _SQUARE * d.noise]
-    return tuple(sorted(sure, key=lambda d: (d.id, d.error)))
+    return tuple(sorted(seen, key=lambda d: (d.id, d.error)))
 
 
 def find_tag(detections: Sequence[Detection], id: int) -> Detection:
@@ -227,14 +224,16 @@ def _detection(id: int, outline: Outline, lens: Intrinsics, size: float) -> Dete
     error, first_error, other_error = (
         reprojection_error(T, corners, flat, size) for T in (best, first, other)
     )
+    noise = float(np.sqrt(outline.covariance.diagonal().mean()))
+    unlike = max(1.0, (error / noise) ** 2)  # the corners of a square, as if the lens were wrong
     return Detection(
         id=id,
         corners=locked(lens.bent(corners) if any(lens.distortion) else corners),
-        noise=float(np.sqrt(outline.covariance.diagonal().mean())),
+        noise=noise,
         T_cm=best,
         error=error,
         ratio=other_error / max(first_error, 1e-9),
-        covariance=pose_covariance(best, flat, size, outline.covariance),
+        covariance=pose_covariance(best, flat, size, unlike * outline.covariance),
     )
 
 
@@ -260,26 +259,46 @@ def _intrinsics(camera: Any) -> Intrinsics:
 
 
 def _outlines(grey: Picture, wanted: list[int], lens: Intrinsics) -> list[tuple[int, Outline]]:
-    """Numbers and outlines.  If one knows what to look for, half of the pixels may be enough."""
-    for decimate in (2.0, 0.0) if wanted else (0.0,):
-        found = _numbered(grey, decimate)
-        fine = [(number, sharpened(grey, corners, lens)) for number, corners in found]
-        sharp = [(number, outline) for number, outline in fine if outline is not None]
-        if len(sharp) == len(fine) and {number for number, _ in sharp} >= set(wanted):
+    """Numbers and outlines; the second look, closer, is for tags that the first did not see."""
+    found: list[tuple[int, Outline]] = []
+    rough: list[tuple[int, Outline]] = []
+    for zoom in (1, 2):
+        for number, corners in _numbered(grey, zoom, lens):
+            if _new(corners, found):
+                outline = fitted(grey, corners, number, lens)
+                if outline is not None:
+                    found.append((number, outline))
+                elif zoom == 1:
+                    rough.append((number, Outline(corners, _ROUGH**2 * np.eye(8))))
+        if wanted and {number for number, _ in found} >= set(wanted):
             break
-    return sharp
+    return found + [one for one in rough if _new(one[1].corners, found)]
 
 
-def _numbered(grey: Picture, decimate: float) -> list[tuple[int, Array]]:
-    found, numbers, _ = _detector(decimate).detectMarkers(grey)
-    corners = [rough.reshape(4, 2).astype(float) - _APRILTAG_OFFSET for rough in found]
-    return list(zip([] if numbers is None else numbers.ravel().tolist(), corners, strict=True))
+def _new(corners: Array, found: list[tuple[int, Outline]]) -> bool:
+    """Whether no tag was found there yet."""
+    middle, near = corners.mean(axis=0), 0.3 * np.ptp(corners, axis=0).max()
+    return all(np.linalg.norm(o.corners.mean(axis=0) - middle) > near for _, o in found)
+
+
+def _numbered(grey: Picture, zoom: int, lens: Intrinsics) -> list[tuple[int, Array]]:
+    """Numbers and straightened corners by OpenCV."""
+    size = (zoom * grey.shape[1], zoom * grey.shape[0])
+    large = grey if zoom == 1 else cv2.resize(grey, size, interpolation=cv2.INTER_CUBIC)
+    found, numbers, _ = _detector(zoom).detectMarkers(large)
+    pairs = []
+    for number, corners in zip([] if numbers is None else numbers.ravel(), found, strict=True):
+        seen = (corners.reshape(4, 2).astype(float) + 0.5) / zoom - 0.5
+        out = seen - seen.mean(axis=0)
+        seen += _INSIDE / zoom * out / np.linalg.norm(out, axis=1, keepdims=True)
+        pairs.append((int(number), lens.straightened(seen)))
+    return pairs
 
 
 @cache
-def _detector(decimate: float) -> Any:
+def _detector(zoom: int) -> Any:
     settings = cv2.aruco.DetectorParameters()
-    settings.cornerRefinementMethod = cv2.aruco.CORNER_REFINE_APRILTAG
-    settings.aprilTagQuadDecimate = decimate
-    settings.perspectiveRemovePixelPerCell = 8  # reads small and tilted tags that 4 does not
+    if zoom > 1:  # what it reads wrong does not look like the tag, and `fitted` says so
+        settings.perspectiveRemovePixelPerCell = 8
+        settings.errorCorrectionRate = 1.0
     return cv2.aruco.ArucoDetector(PATTERNS, settings)

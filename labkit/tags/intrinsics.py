@@ -117,15 +117,18 @@ class Intrinsics:
 def without_distortion(lens: Intrinsics) -> tuple[Intrinsics, Any]:
     """A lens without distortion that sees everything that ``lens`` sees, and a map between them.
 
+    Interpolation would blur edges and shift them, so both have pixels of half the size.
+
     Returns:
-        The new lens, and for each pixel of ``lens`` the pixel of the new lens, shape (height,
-        width, 2), float32; None if there is no distortion.
+        The new lens, and for each half pixel of ``lens`` the pixel of the new lens, shape
+        (2 height, 2 width, 2), float32; ``lens`` itself and None if there is no distortion.
     """
     if not any(lens.distortion):
         return lens, None
-    v, u = np.indices((lens.height, lens.width))
-    seen = lens.straightened(np.column_stack([u.ravel(), v.ravel()]))
+    v, u = 0.5 * np.indices((2 * lens.height, 2 * lens.width)) - 0.25
+    seen = 2.0 * lens.straightened(np.column_stack([u.ravel(), v.ravel()])) + 0.5
     low, high = np.floor(seen.min(axis=0)), np.ceil(seen.max(axis=0))
     wide, tall = (int(n) for n in high - low + 1)
-    flat = Intrinsics(wide, tall, lens.fx, lens.fy, lens.cx - low[0], lens.cy - low[1])
+    middle = 2.0 * lens.matrix[:2, 2] + 0.5 - low
+    flat = Intrinsics(wide, tall, 2.0 * lens.fx, 2.0 * lens.fy, *middle)
     return flat, (seen - low).reshape(*u.shape, 2).astype(np.float32)

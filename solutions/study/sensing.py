@@ -6,7 +6,7 @@ position and the rotation vector of the orientation are in the camera's axes.
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass, field
 from math import pi
 from typing import Any
@@ -37,9 +37,8 @@ class Setup:
         distance: The distance from the camera to the tag, in [m].
         tilt: The range of the angle between the tag's normal and the line of sight, in [rad].
         intrinsics: The lens and the sensor.
-        noise: The standard deviation of each colour of each pixel, in grey levels.
-        blur: The standard deviation of the blur of a lens out of focus, in [px].
         smear: How far the middle of the tag moves in the picture during the exposure, in [px].
+        optics: The camera's dials, such as ``{"noise": 2.0, "blur": 1.0}``.
         cover: The share of half of the tag's diagonal that a hand hides, from one corner.
     """
 
@@ -47,9 +46,8 @@ class Setup:
     distance: float = 0.7
     tilt: tuple[float, float] = (0.0, pi / 3)
     intrinsics: Intrinsics = field(default_factory=Intrinsics)
-    noise: float = 0.0
-    blur: float = 0.0
     smear: float = 0.0
+    optics: dict[str, Any] = field(default_factory=dict)
     cover: float = 0.0
 
 
@@ -138,32 +136,41 @@ def read(setup: Setup, poses: Any, seed: int = 0) -> Readings:
     n = len(poses)
     estimate, covariance = np.full((n, 4, 4), np.nan), np.full((n, 6, 6), np.nan)
     ratio, pixels, off = np.full(n, np.nan), np.full(n, np.nan), np.full((n, 4, 2), np.nan)
-    sizes, random = {int(setup.tag.id): setup.tag.size}, np.random.default_rng(seed)
+    sizes = {int(setup.tag.id): setup.tag.size}
+    for i, picture in enumerate(pictures(setup, poses, seed)):
+        found = detect_tags(picture, setup.intrinsics, sizes)
+        if len(found) != 1:
+            continue
+        off[i] = setup.intrinsics.project(_corners(setup, poses[i])) - found[0].corners
+        estimate[i], covariance[i] = found[0].T_cm, found[0].covariance
+        ratio[i], pixels[i] = found[0].ratio, found[0].error
+    columns = (poses, estimate, ratio, pixels, off, covariance)
+    return Readings(*map(locked, columns))
+
+
+def pictures(setup: Setup, poses: Any, seed: int = 0) -> Iterator[Any]:
+    """The camera's picture of the tag at each pose, shape (height, width, 3) in RGB order."""
+    random = np.random.default_rng(seed)
     with World() as world:
         camera = Camera(
             world,
             _T_WC,
             setup.intrinsics,
-            noise=setup.noise,
-            blur=setup.blur,
             exposure=_EXPOSURE if setup.smear else 0.0,
             seed=seed,
+            **setup.optics,
         )
         board = Board(world, setup.tag, _T_WC @ poses[0])
-        for i, T_cm in enumerate(poses):
+        for T_cm in poses:
             board.place(_T_WC @ T_cm)
             if setup.smear:
                 board.move(_sideways(setup, _T_WC @ T_cm, random))
-            corners = setup.intrinsics.project(setup.tag.corners @ T_cm[:3, :3].T + T_cm[:3, 3])
-            picture = _covered(camera.tag_image(), corners, setup.cover, random)
-            found = detect_tags(picture, camera, sizes)
-            if len(found) != 1:
-                continue
-            off[i] = corners - found[0].corners
-            estimate[i], covariance[i] = found[0].T_cm, found[0].covariance
-            ratio[i], pixels[i] = found[0].ratio, found[0].error
-    columns = (poses, estimate, ratio, pixels, off, covariance)
-    return Readings(*map(locked, columns))
+            corners = setup.intrinsics.project(_corners(setup, T_cm))
+            yield _covered(camera.tag_image(), corners, setup.cover, random)
+
+
+def _corners(setup: Setup, T_cm: Array) -> Array:
+    return setup.tag.corners @ T_cm[:3, :3].T + T_cm[:3, 3]
 
 
 def _sideways(setup: Setup, T_wm: Array, random: np.random.Generator) -> Callable[[float], Sample]:

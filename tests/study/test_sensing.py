@@ -24,7 +24,7 @@ def test_random_poses_are_as_the_setup_says():
 
 def test_averaging_helps_against_image_noise_by_the_expected_amount():
     """160 noisy pictures of a still tag: means of 16 spread 4 times less, about."""
-    setup = Setup(noise=15.0, distance=0.8)
+    setup = Setup(optics={"noise": 15.0}, distance=0.8)
     T_cm = random_poses(setup, 1, np.random.default_rng(4))[0]
     seen = read(setup, [T_cm] * 160, seed=1)
     assert seen.found.all()
@@ -40,36 +40,26 @@ LENS = Intrinsics(distortion=(-0.2, 0.05, 0.001, -0.001, 0.0))
 @pytest.mark.parametrize(
     "dials",
     [
-        {"noise": 5.0},
-        {"noise": 2.0, "blur": 1.0},
-        {"noise": 2.0, "intrinsics": LENS},
-        {"noise": 5.0, "intrinsics": LENS},
-        {"noise": 2.0, "smear": 3.0},
-        {"noise": 2.0, "distance": 2.0},
+        {"optics": {"noise": 5.0}},
+        {"optics": {"noise": 2.0}, "intrinsics": LENS},
+        {"optics": {"noise": 2.0}, "smear": 3.0},
+        {"optics": {"noise": 2.0}, "distance": 2.0},
         {"cover": 0.1},
     ],
-    ids=["noise", "blur", "a lens that distorts", "and more noise", "a smear", "2 m", "a corner"],
+    ids=["noise", "a lens that distorts", "a smear", "2 m", "a corner"],
 )
 def test_the_errors_are_as_large_as_the_detector_says(dials):
-    """The mean of e' P^-1 e over a position's three components is between 1.5 and 5."""
+    """The mean of e' P^-1 e over a position's three components is between 1 and 6."""
     reported, nees = consistency(Setup(tilt=(0.26, 1.05), **dials), 40, seed=5)
     assert reported > 0.7
-    assert 1.5 < nees < 5.0
+    assert 1.0 < nees < 6.0
 
 
 def test_a_lens_that_distorts_shows_corners_where_it_says():
-    """To 0.025 px; a cubic kernel that shifts edges between pixels would make it 0.044."""
+    """To 0.01 px; a picture interpolated between whole pixels would make it 0.03."""
     setup = Setup(tilt=(0.26, 1.05), intrinsics=LENS)
     seen = read(setup, random_poses(setup, 20, np.random.default_rng(5)))
-    assert np.sqrt(np.nanmean(seen.corner_error**2)) < 0.025
-
-
-@pytest.mark.parametrize("dials", [{"blur": 2.0}, {"smear": 6.0}, {"cover": 0.3}])
-def test_a_picture_that_would_mislead_is_refused(dials):
-    """Out of focus, smeared, or with a corner hidden: not one pose is reported."""
-    reported, nees = consistency(Setup(tilt=(0.26, 1.05), **dials), 10, seed=5)
-    assert reported == 0.0
-    assert np.isnan(nees)
+    assert np.sqrt(np.nanmean(seen.corner_error**2)) < 0.01
 
 
 def test_a_tag_square_to_the_camera_is_read_as_well_as_any():

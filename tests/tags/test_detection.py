@@ -16,7 +16,8 @@ from labkit.tags.detection import (
     tag_pose,
     tag_poses,
 )
-from solutions.study.sensing import Setup, random_poses, read
+from solutions.study.sensing import Setup, pictures, random_poses, read
+from tests.bench.tags import row
 
 LENS = lk.Intrinsics()
 
@@ -49,6 +50,24 @@ def test_the_pose_in_rendered_pictures_is_the_true_one():
     assert np.linalg.norm(readings.error[:, :3], axis=1).max() < 2.5e-3
     steep = readings.tilt > np.pi / 12
     assert np.degrees(np.linalg.norm(readings.error[steep, 3:], axis=1)).max() < 0.8
+
+
+@pytest.mark.parametrize("name", ["light falls 60 %", "gamma 1.4", "blur 2 px", "smear 6 px"])
+def test_a_camera_in_bad_light_or_out_of_focus_is_not_blind(name):
+    """Every tag that OpenCV finds is found, at most as far off as by its AprilTag refinement."""
+    one = row(name, count=6)
+    assert one["missed"] == 0 and one["found"] == 6
+    assert one["median_mm"] <= one["opencv"]["median_mm"]
+    assert 1.0 < one["nees"] < 20.0
+
+
+def test_a_lens_that_is_not_calibrated_refuses_nothing():
+    """A tag seen through a lens that distorts is found, with a covariance that is wider."""
+    lens = lk.Intrinsics(distortion=(-0.2, 0.05, 0.0, 0.0, 0.0))
+    setup = Setup(intrinsics=lens, tilt=(0.3, 0.9))
+    for picture in pictures(setup, random_poses(setup, 4, np.random.default_rng(1))):
+        (known,), (unknown,) = (lk.detect_tags(picture, x, 0.1) for x in (lens, LENS))
+        assert np.trace(unknown.covariance) > np.trace(known.covariance)
 
 
 def test_corners_have_no_bias():
@@ -103,11 +122,11 @@ def test_seen_from_the_front_the_tilt_is_a_guess():
     tag, random = lk.Tag(), np.random.default_rng(0)
     ratios = {}
     for tilt in (0.02, 0.8):
-        clean = painted(tag, tilted(tilt, distance=1.5))
-        shots = [clean + random.normal(0.0, 5.0, clean.shape) for _ in range(9)]
+        clean = painted(tag, tilted(tilt, distance=2.5))
+        shots = [clean + random.normal(0.0, 10.0, clean.shape) for _ in range(9)]
         seen = [lk.detect_tags(np.clip(x, 0, 255).astype(np.uint8), LENS, 0.1)[0] for x in shots]
         ratios[tilt] = np.median([one.ratio for one in seen])
-    assert 1.0 <= ratios[0.02] < 3.0 < ratios[0.8]
+    assert 1.0 <= ratios[0.02] < 2.0 < ratios[0.8]
 
 
 def test_the_covariance_is_what_noise_on_the_corners_does():
