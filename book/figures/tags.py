@@ -286,7 +286,7 @@ def trust() -> HTML:
     """Test whether the errors are as large as the detector says, for each kind of picture."""
     found = {name: consistency(setup, PICTURES, seed=5) for name, setup in SETUPS.items()}
     trusted = [x for _, x in found.values()]
-    holds(min(share for share, _ in found.values()) > 0.9, "the detector is not blind")
+    holds(min(share for share, _ in found.values()) > 0.8, "the detector is not blind")
     holds(min(trusted) > 1.0 and max(trusted) < 6.0, "between 1 and 6 in all of them")
     numbers({"nees_low": min(trusted), "nees_high": max(trusted)}, ".2g")
     numbers({"afar_seen": 100.0 * found["2 m, noise 2"][0]}, ".0f")

@@ -42,7 +42,7 @@ _LOOSE = np.array([1.5] * 8 + [1.0, 1.0, 0.4, 0.3])  # how far they may be from 
 _LIMIT = np.array([1.0] * 8 + [0.3] * 4 + [np.inf] * 6)  # of one step
 _LOW, _HIGH = np.array([[0.1, 0.1, -0.9, -0.9], [8.0, 8.0, 0.9, 0.9]])
 _LEAST = 0.002  # [px]; corners without noise are off by this
-_SPARE = 1.1  # by which the variance is larger, as rendered pictures say
+_SPARE = 1.25  # by which the variance is larger, as rendered pictures say
 _FAINT = 10.0  # grey levels from black to white
 _EXPLAINED = 0.6  # least share of the variance of the grey levels
 
