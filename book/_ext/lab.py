@@ -234,6 +234,7 @@ def _tables(page: BeautifulSoup) -> None:
     for head in page.select("th"):
         if not head.get_text(strip=True):
             head.name = "td"
+            head.attrs.pop("scope", None)
 
 
 def _scrollers(page: BeautifulSoup) -> None:

@@ -34,7 +34,7 @@
         row.setAttribute("role", "row");
         Array.prototype.forEach.call(row.cells, function (cell, k) {
           var head = row.parentElement.tagName === "THEAD";
-          cell.setAttribute("role", head ? "columnheader" : cell.tagName === "TH" ? "rowheader" : "cell");
+          cell.setAttribute("role", head && cell.textContent ? "columnheader" : cell.tagName === "TH" ? "rowheader" : "cell");
           if (!head && k) cell.dataset.head = names[k];
         });
       });

@@ -12,6 +12,7 @@ from labkit.course import (
     AtTip,
     Call,
     Close,
+    Gains,
     Outcome,
     Question,
     Response,
@@ -22,6 +23,7 @@ from labkit.course import (
     read_question,
 )
 from labkit.course.equivalence import Ratio
+from labkit.course.judges import factor, value
 from labkit.course.marking import mark
 
 CLOSE = Close(rtol=1e-6, atol=1e-9)
@@ -194,3 +196,67 @@ def test_a_known_mistake_is_known_beside_a_damper_that_moves_the_tip():
     assert judge(braked, expected) is not None and judge.same(braked, expected)
     for joint in np.eye(7):
         assert not judge.same(lk.JointTorque(braked.value + 0.1 * joint), expected)
+
+
+NAN = float("nan")
+
+
+@pytest.mark.parametrize(
+    ("shown", "as_value"),
+    [
+        (3, 3.0),
+        (np.float32(0.5), 0.5),
+        (np.arange(3), (0.0, 1.0, 2.0)),
+        (np.eye(3), ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0))),
+        (np.arange(10), "array([0, 1, 2, 3, 4, 5, 6, 7, 8, 9])"),
+        (np.zeros((1, 1, 1)), "array([[[0.]]])"),
+        (NAN, "nan"),
+        (True, "True"),
+        ("x" * 58, repr("x" * 58)),
+        ("x" * 59, f"'{'x' * 56}..."),
+        ([1,  2], "[1, 2]"),
+    ],
+)  # fmt: skip
+def test_a_value_is_a_few_finite_numbers_or_a_short_text(shown, as_value):
+    """Nine numbers in at most two dimensions, or sixty characters."""
+    assert value(shown) == as_value
+
+
+@pytest.mark.parametrize(
+    ("a", "b", "times"),
+    [
+        ([2.0, 4.0], [1.0, 2.0], 2.0),
+        ([-1.0, 0.0], [1.0, 0.0], -1.0),
+        ([0.0, 0.0], [1.0, 2.0], 0.0),
+        ([2.0, 5.0], [1.0, 2.0], None),
+        ([1.0, 1e-3], [1.0, 0.0], None),
+        ([1.0, 2.0], [0.0, 0.0], None),
+    ],
+)
+def test_a_factor_is_that_of_all_numbers(a, b, times):
+    """None where there is none, or nothing to multiply."""
+    assert factor(np.array(a), np.array(b)) == times
+
+
+@pytest.mark.parametrize(
+    ("kp", "alike"), [(40.0, True), (59.0, True), (61.0, False), (27.0, True), (26.0, False)]
+)
+def test_gains_are_alike_within_half_as_much_again(kp, alike):
+    """Either way, and what is no pair of gains is like none."""
+    assert Gains().same((kp, 5.0), (40.0, 5.0)) == alike
+    assert not Gains().same((kp,), (40.0, 5.0))
+
+
+@pytest.mark.parametrize(
+    ("answer", "right"), [(1.0 + 0.9e-6, True), (1.0 + 2e-6, False), (NAN, False), (None, False)]
+)
+def test_the_tolerance_is_relative_and_absolute(answer, right):
+    """Of the expected value, of a command's numbers, and of each entry of a dict."""
+    judge = Close(rtol=1e-6, atol=0.0)
+    assert (judge(answer, 1.0) is None) == right
+    assert (judge({"a": answer}, {"a": 1.0}) is None) == right
+    assert judge({"b": 1.0}, {"a": 1.0}) is not None
+    if answer is not None and answer == answer:
+        command = lk.JointTorque(np.full(7, answer))
+        assert (judge(command, lk.JointTorque(np.ones(7))) is None) == right
+        assert judge(command, lk.JointVelocity(np.ones(7))) is not None

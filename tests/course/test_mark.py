@@ -10,6 +10,7 @@ from questions import CALLS, DOUBLE, HIDDEN, double, square
 import labkit as lk
 from labkit.course import (
     Call,
+    Close,
     Loop,
     NoAnswer,
     Outcome,
@@ -164,3 +165,34 @@ def test_calls_are_shown_as_typed():
     """A call reads as a student would write it, long arguments cut."""
     assert Call((1.0,), {"kp": 2}).shown("f") == "f(1.0, kp=2)"
     assert len(Call((np.zeros(100),)).shown("f")) < 60
+
+
+class Odd:
+    """An answer that cannot even be looked at."""
+
+    def __array__(self, *args, **kwargs):
+        raise RuntimeError
+
+
+def test_an_answer_that_cannot_be_compared_is_wrong_and_no_mistake():
+    """Neither the judge nor the search for mistakes fails by it."""
+    verdict = mark(DOUBLE, lambda x: Odd())
+    assert (verdict.outcome, verdict.earned, verdict.mistake) == (Outcome.WRONG, 0.0, None)
+
+
+def test_no_hidden_case_is_asked_where_a_public_one_failed():
+    """Where all public ones are right, each hidden case is asked once."""
+    question = replace(DOUBLE, tests=(Test("a", (*CALLS, HIDDEN)),), mistakes=())
+    for function, hidden in ((double, 1), (square, 0)):
+        seen = []
+        mark(question, lambda x, f=function, seen=seen: seen.append(x) or f(x))
+        assert seen.count(7.5) == hidden
+
+
+def test_a_test_may_look_at_a_part_of_the_answer():
+    """The other part earns in its own test."""
+    call = Call((1.0,), expected=(1.0, 2.0))
+    tests = tuple(Test(name, (call,), w, part=name) for name, w in (("kp", 1.0), ("kd", 3.0)))
+    question = replace(DOUBLE, judge=Close(parts=("kp", "kd")), tests=tests, mistakes=())
+    earned = [mark(question, lambda x, y=y: y).earned for y in ((1.0, 0.0), (0.0, 2.0), (1.0, 2.0))]
+    assert earned == [1.0, 3.0, 4.0]
