@@ -10,11 +10,9 @@ import sys
 from pathlib import Path
 
 from . import (
-    camera,
     closed_loop,
     costs,
     grading,
-    live,
     names,
     notebooks,
     start,
@@ -27,9 +25,7 @@ sys.path += [str(ROOT / "book"), str(ROOT / "book/_tools")]  # the viewer is mea
 MEASUREMENTS = (
     start,
     closed_loop,
-    camera,
     viewer,
-    live,
     notebooks,
     names,
     grading,

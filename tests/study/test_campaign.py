@@ -1,8 +1,5 @@
 """Many runs: the same rows whoever works them through, tables, verdicts."""
 
-import subprocess
-import sys
-
 import numpy as np
 import pytest
 from scipy import stats
@@ -33,26 +30,6 @@ def test_any_number_of_workers_gives_the_same_rows_bit_for_bit(rows):
     assert again == rows
     assert told == [(1, 4), (2, 4), (3, 4), (4, 4)]
     assert len({row["digest"] for row in rows}) == 4, "and no two runs are one"
-
-
-def test_a_dask_cluster_gives_the_same_rows_bit_for_bit(rows):
-    """A scheduler with one worker gives the rows of one process."""
-    from distributed import LocalCluster
-
-    quiet = {"n_workers": 1, "threads_per_worker": 1, "dashboard_address": None}
-    with LocalCluster(processes=False, **quiet) as cluster:
-        again = work_through(report.numbers, SMALL, dask=cluster.scheduler_address)
-    assert again == rows
-
-
-def test_a_dask_cluster_that_is_not_there_is_a_sentence():
-    """A wrong address is named; from the command line that is one line, and exit code 2."""
-    with pytest.raises(lk.LabkitError, match="no Dask scheduler at nonsense"):
-        work_through(report.numbers, SMALL, dask="nonsense")
-    command = [sys.executable, "-m", "solutions.study", "--dask", "nonsense"]
-    done = subprocess.run(command, capture_output=True, text=True, check=False)
-    assert done.returncode == 2 and done.stderr.count("\n") == 1
-    assert done.stderr.startswith("no Dask scheduler at nonsense: ")
 
 
 def test_every_way_starts_a_seed_at_the_same_place():
@@ -101,16 +78,6 @@ def test_a_table_shows_the_mean_and_the_spread_over_seeds():
     ]
     assert spread([1.0, 2.0, 6.0]) == (3.0, 1.0, 6.0)
     assert pick(rows, controller="b") == rows[3:]
-
-
-def test_bad_grids_and_columns_are_sentences():
-    """An empty axis, an unknown column and zero jobs are each named."""
-    with pytest.raises(lk.LabkitError, match="axis 'seed' is empty"):
-        cells(controller=("a",), seed=())
-    with pytest.raises(lk.LabkitError, match="no column 'rms'; there is"):
-        table([{"controller": "a", "failed": None}], "controller", "controller", "rms")
-    with pytest.raises(lk.LabkitError, match="jobs is 0"):
-        work_through(fails_on_two, cells(n=(1,)), jobs=0)
 
 
 def test_a_figure_of_the_report_is_numbered_drawn_and_put_into_words(tmp_path):
@@ -178,19 +145,6 @@ def test_the_seeds_of_a_task_are_no_tasks():
     assert found.overall.units == 3 and found.overall.outcome is Outcome.UNDECIDED
     pooled = interval("pairs", [d for ds in steady.values() for d in ds], 1)
     assert pooled.half_width < 0.5 * found.overall.half_width, "pooling would pretend to know"
-
-
-def test_several_claims_together_have_wider_intervals():
-    """Bonferroni: eight claims at 95 % are each judged at 1 - 0.05 / 8."""
-    one, eight = (interval("tasks", (1.0, 1.2, 1.4), claims) for claims in (1, 8))
-    t = [stats.t.ppf(1.0 - 0.025 / claims, 2) for claims in (1, 8)]
-    assert eight.half_width / one.half_width == pytest.approx(t[1] / t[0])
-
-
-def test_no_interval_is_narrower_than_the_clock_can_tell():
-    """Equal differences have the given least half-width of 0.005 s."""
-    found = judge("faster", "s", *rows_of({"": (0.575, 0.575, 0.575)}), least=0.005)
-    assert found.overall.half_width == 0.005
 
 
 def test_every_claim_of_the_report_gets_a_verdict_from_rows():
