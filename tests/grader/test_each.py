@@ -22,7 +22,7 @@ from labkit.grader.grading.results import Results
 from labkit.grader.nbgrader import gradebook
 from labkit.grader.nbgrader.gradebook import open_gradebook, record
 
-CLASS = ("ada", "bob", "carl")
+CLASS = ("ada", "bob", "gus")
 
 
 @pytest.fixture
@@ -86,7 +86,7 @@ def test_a_result_that_cannot_be_written_is_rolled_back_alone(course, part):
     if "source" in part:
         (failed,) = bad
         assert str(failed).startswith("bob: UnicodeEncodeError")
-        assert scores(course) == {"ada": 24.0, "carl": 24.0}
+        assert scores(course) == {"ada": 24.0, "gus": 24.0}
     assert record(course, NAME, list(Results(course, NAME))) == []  # read from the disk: clean
     assert scores(course) == dict.fromkeys(CLASS, 24.0)
 
@@ -103,7 +103,7 @@ def test_a_row_that_fails_leaves_the_others_and_is_mended(marked, capsys, monkey
     assert code == 1
     assert out.count("as before") == 3
     assert err.splitlines()[-1] == "not in the gradebook: bob: Permission denied"
-    assert {s: x for s, x in scores(marked).items() if s != "bob"} == {"ada": 24.0, "carl": 24.0}
+    assert {s: x for s, x in scores(marked).items() if s != "bob"} == {"ada": 24.0, "gus": 24.0}
     code, out, err = verb(marked, capsys, "export")
     assert (code, err.count("no mark: bob")) == (1, 1)
     assert "\nbob,,,,,,,,," in out
@@ -117,7 +117,7 @@ def test_a_page_that_fails_is_named_and_the_others_are_written(marked, capsys, m
     code, _, err = verb(marked, capsys, "feedback")
     assert (code, err) == (1, "no page: bob: OverflowError: cannot convert float infinity\n")
     pages = (marked.root / "feedback").glob(f"*/{NAME}/{NAME}.html")
-    assert {x.parents[1].name for x in pages} == {"ada", "carl"}
+    assert {x.parents[1].name for x in pages} == {"ada", "gus"}
 
 
 def test_numbers_of_any_size_have_a_page(marked, capsys):
@@ -140,7 +140,7 @@ def test_grading_again_keeps_the_others(marked, capsys, monkeypatch):
     code, out, err = verb(marked, capsys, "grade", "--lower", "--jobs", "2")
     assert (code, err) == (1, "not graded: bob: Permission denied\n")
     assert "ada: 0 of 22 (was 22)" in out
-    assert scores(marked) == {"ada": 0.0, "bob": 24.0, "carl": 0.0}
+    assert scores(marked) == {"ada": 0.0, "bob": 24.0, "gus": 0.0}
 
 
 def test_what_concerns_everybody_is_raised():

@@ -38,9 +38,9 @@ days = 3
 
 @pytest.fixture
 def late(course):
-    """Ada in time, Ben and Cleo 25 hours late; nobody is ever told why."""
+    """Ada in time, Bob and Cleo 25 hours late; nobody is ever told why."""
     (course.root / "course.toml").write_text(RULES)
-    for student, when in (("ada", "2026-11-02 23:05"), ("ben", "2026-11-03 23:59"),
+    for student, when in (("ada", "2026-11-02 23:05"), ("bob", "2026-11-03 23:59"),
                           ("cleo", "2026-11-03 23:59")):  # fmt: skip
         graded(course, result_of(course, student), recorded=False)
         folder = course.submitted / student / NAME
@@ -61,19 +61,19 @@ def scores(course, capsys):
 
 def test_late_work_loses_its_share_everywhere(late, capsys):
     """Table, page and formgrader have one number; an extension is kept, a day begun is a day."""
-    assert scores(late, capsys) == {"(full marks)": "24.0", "ada": "24.0", "ben": "19.2",
+    assert scores(late, capsys) == {"(full marks)": "24.0", "ada": "24.0", "bob": "19.2",
                                     "cleo": "24.0"}  # fmt: skip
     assert verb(late, capsys, "feedback", NAME)[0] == 0
-    page = (late.root / "feedback/ben" / NAME / f"{NAME}.html").read_text()
+    page = (late.root / "feedback/bob" / NAME / f"{NAME}.html").read_text()
     assert "19.2 of 24 points." in page
     assert "It came 1 day 1 hour after it was due: 4.8 points are taken from 24." in page
     with open_gradebook(late) as book:
-        assert book.find_submission(NAME, "ben").late_submission_penalty == 4.8
+        assert book.find_submission(NAME, "bob").late_submission_penalty == 4.8
         assert book.find_submission(NAME, "cleo").late_submission_penalty == 0.0
 
 
 def test_the_class_report_says_how_many_lost_points_for_lateness(late, capsys):
-    """Ben alone, as Cleo has an extension; without names a number below 5 is not told."""
+    """Bob alone, as Cleo has an extension; without names a number below 5 is not told."""
     named, nameless = ("class-report", NAME, "--names"), ("class-report", NAME)
     start = "3 handed in, 3 graded"
     assert f"{start}, 1 with points taken for lateness.\n" in verb(late, capsys, *named)[1]
@@ -84,21 +84,21 @@ def test_the_class_report_says_how_many_lost_points_for_lateness(late, capsys):
 
 def test_a_rule_that_changes_changes_marks_that_are_there(late, capsys):
     """An extension granted later counts at once, without grading again."""
-    text = RULES.replace("cleo", "ben").replace("percent_per_day = 10", "percent_per_day = 20")
+    text = RULES.replace("cleo", "bob").replace("percent_per_day = 10", "percent_per_day = 20")
     (late.root / "course.toml").write_text(text)
-    assert scores(late, capsys) | {"ada": ""} == {"(full marks)": "24.0", "ada": "", "ben": "24.0",
+    assert scores(late, capsys) | {"ada": ""} == {"(full marks)": "24.0", "ada": "", "bob": "24.0",
                                                   "cleo": "14.4"}  # fmt: skip
 
 
 def test_a_time_that_becomes_known_after_grading_counts_at_once(late, capsys):
     """For the file that was graded; one that was put in its place since changes no time."""
-    places = {who: late.submitted / who / NAME for who in ("ada", "ben", "cleo")}
+    places = {who: late.submitted / who / NAME for who in ("ada", "bob", "cleo")}
     (places["ada"] / "timestamp.txt").write_text("2026-11-03 23:59 UTC")
-    (places["ben"] / "timestamp.txt").unlink()
+    (places["bob"] / "timestamp.txt").unlink()
     (places["cleo"] / "timestamp.txt").write_text("2026-11-30 23:59 UTC")
     (places["cleo"] / f"{NAME}.ipynb").write_text("another")
     found = scores(late, capsys)
-    assert (found["ada"], found["ben"]) == ("19.2", "24.0")
+    assert (found["ada"], found["bob"]) == ("19.2", "24.0")
     with open_gradebook(late) as book:
         assert book.find_submission(NAME, "cleo").timestamp.day == 3
 
@@ -108,13 +108,13 @@ def test_the_term_in_one_table(late, capsys):
     code, out, _ = verb(late, capsys, "export")
     rows = {r["student"]: r for r in csv.DictReader(io.StringIO(out))}
     assert code == 0 and rows["(weight)"][NAME] == "2.0"
-    assert (rows["ada"]["percent"], rows["ben"]["percent"]) == ("100.0", "80.0")
+    assert (rows["ada"]["percent"], rows["bob"]["percent"]) == ("100.0", "80.0")
 
 
 def test_who_handed_in_nothing_is_listed(late, tmp_path, capsys):
     """With an empty cell, or with 0 if that is asked for; the command does not fail."""
     people = tmp_path / "people.csv"
-    people.write_text("login,first name,last name\nada,Ada,L\nben,Ben,M\ncleo,C,N\nfrank,F,O\n")
+    people.write_text("login,first name,last name\nada,Ada,L\nbob,Bob,M\ncleo,C,N\nfrank,F,O\n")
     assert verb(late, capsys, "roster", str(people))[0] == 0
     code, out, err = verb(late, capsys, "export", NAME)
     assert code == 0 and "1 handed in nothing: frank" in err
@@ -173,7 +173,7 @@ def test_nbgraders_own_plugin_works_from_the_courses_folder(late, capsys):
         "    def late_submission_penalty(self, student, score, seconds):\n"
         "        return score / 2\n"
     )
-    assert scores(late, capsys)["ben"] == "12.0"
+    assert scores(late, capsys)["bob"] == "12.0"
 
 
 @pytest.mark.parametrize(("minutes", "lost"), [(15, 0.0), (16, 2.0), (1440, 2.0), (1441, 4.0),
