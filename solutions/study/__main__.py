@@ -39,7 +39,6 @@ def main() -> None:
     parser = argparse.ArgumentParser(prog="python -m solutions.study", description=__doc__)
     parser.add_argument("--seeds", type=int, default=3, help="how many seeds (3)")
     parser.add_argument("--jobs", type=int, default=None, help="processes (one for each core)")
-    parser.add_argument("--dask", metavar="ADDRESS", default=None, help="a Dask scheduler instead")
     parser.add_argument("--out", type=Path, default=Path("build"), help="folder (build)")
     parser.add_argument("--no-pictures", action="store_true", help="numbers alone")
     parser.add_argument("--keep", action="store_true", help="keep the rows for notebook 07")
@@ -49,11 +48,10 @@ def main() -> None:
         "--controller", action="append", choices=controllers, metavar="NAME", help=only
     )
     options = parser.parse_args()
-    where = {"jobs": options.jobs, "dask": options.dask}
     began = time.monotonic()
 
     def done(job: Job, grid: list[Row], what: str) -> list[Row]:
-        return work_through(job, grid, progress=Meter(what), **where)
+        return work_through(job, grid, jobs=options.jobs, progress=Meter(what))
 
     if options.controller:
         print(tables(done(numbers, grid(options.seeds, options.controller), "runs")))
@@ -68,8 +66,7 @@ def main() -> None:
     text = tables(rows) + claims(judged)
     (folder / "tables.md").write_text(text)
     drawn = []
-    if not options.no_pictures:  # on this machine, because they write files
-        where["dask"] = None
+    if not options.no_pictures:
         drawn = done(pictures.draw, pictures.grid(folder), "figures")
     found = {
         "seeds": options.seeds,

@@ -20,7 +20,6 @@ from typing import Any
 import numpy as np
 
 from labkit.errors import LabkitError, OutOfRange, UnknownName
-from labkit.grader.grading.executor import dask_client
 from labkit.shapes import as_number
 
 Cell = Mapping[str, Any]
@@ -48,7 +47,6 @@ def work_through(
     grid: Iterable[Cell],
     *,
     jobs: int | None = None,
-    dask: str | None = None,
     progress: Progress | None = None,
 ) -> list[Row]:
     """Run ``job`` on every cell.
@@ -60,7 +58,6 @@ def work_through(
         job: The function to call for each cell.
         grid: The cells.
         jobs: The number of processes; None means one for each core, 1 means this process.
-        dask: The address of a Dask scheduler to use instead, such as ``"tcp://host:8786"``.
         progress: Called after every cell; None reports nothing.
 
     Returns:
@@ -68,13 +65,10 @@ def work_through(
 
     Raises:
         OutOfRange: ``jobs`` is less than 1.
-        LabkitError: There is no scheduler at the address, or Dask is missing.
     """
     todo = [dict(cell) for cell in grid]
     jobs = os.cpu_count() or 1 if jobs is None else int(as_number(jobs, "jobs", least=1))
     tell = progress or (lambda done, total: None)
-    if dask is not None:
-        return _on_dask(job, todo, dask, tell)
     if jobs == 1:
         rows = []
         for cell in todo:
@@ -96,16 +90,6 @@ def row_of(job: Job, cell: Cell) -> Row:
         return {**cell, **job(**cell), "failed": None}
     except LabkitError as error:
         return {**cell, "failed": str(error)}
-
-
-def _on_dask(job: Job, todo: list[Row], address: str, tell: Progress) -> list[Row]:
-    with dask_client(address) as client:
-        from distributed import as_completed
-
-        futures = client.map(row_of, [job] * len(todo), todo, pure=False)
-        for done, _ in enumerate(as_completed(futures, loop=client.loop), start=1):
-            tell(done, len(todo))
-        return list(client.gather(futures))
 
 
 @contextmanager
