@@ -13,7 +13,7 @@ from pathlib import Path
 
 ROOT = Path(__file__).parents[1]
 STOREYS = {
-    "lab": (r"labkit/(?!course/|grader/|__main__).*\.py", 5100),
+    "lab": (r"labkit/(?!course/|grader/|__main__).*\.py", 5150),
     "course": (r"labkit/(course/|__main__).*\.py", 4100),
     "grader": (r"labkit/grader/.*\.py", 6170),
     "solutions": (r"solutions/.*\.py", 11100),

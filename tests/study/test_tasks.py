@@ -44,12 +44,6 @@ def test_the_square_visits_current_goals_and_current_again():
         np.testing.assert_allclose(sample.twist, 0.0, rtol=0, atol=1e-12)
 
 
-def test_the_circle_returns_exactly():
-    """In x and y its last place is exactly its first."""
-    start, end = (TASKS[1].target(t).pose for t in (0.0, TASKS[1].duration))
-    np.testing.assert_array_equal(start[:2, 3], end[:2, 3])
-
-
 def test_a_seed_means_one_start_about_a_centimetre_off():
     """Twenty seeds give twenty starts, on average between 3 and 20 mm off the path's."""
     model, task = lk.Model(), TASKS[0]
