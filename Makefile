@@ -21,7 +21,7 @@ SECOND := .venv-313/bin
 # Modules that the installation left uncompiled are compiled at their first import.
 unexport PYTHONDONTWRITEBYTECODE
 
-.PHONY: help demo test dev soak lab book book-zip stills vendor campaign record count lint lock format clean
+.PHONY: help demo test dev soak lab book book-zip stills vendor campaign record tag-bench count lint lock format clean
 
 help: ## list the targets
 	@grep -hE '^[a-z0-9-]+:.*##' $(MAKEFILE_LIST) | awk -F':.*## ' '{printf "  make %-16s %s\n", $$1, $$2}'
@@ -62,6 +62,9 @@ campaign: .venv/.course ## run the compared controllers on every task: build/cam
 
 record: .venv/.course ## make all recorded data again, and say which verdicts changed
 	@$(BIN)/python -m solutions.study.record
+
+tag-bench: .venv/.course ## measure the tag sensor in 14 kinds of light, beside OpenCV
+	@$(BIN)/python -m tests.bench.tags
 
 count: ## count the lines of code, storey by storey, beside their ceilings
 	@python3 tests/test_size.py

@@ -103,16 +103,6 @@ class Diverged(ControllerError):
     """The closed loop ran away."""
 
 
-class ArmLost(LabkitError, RuntimeError):
-    """A real arm gave no answer or an unusable one; `log` keeps the run up to that point."""
-
-    log: object = None
-
-    def __str__(self) -> str:
-        kept = "" if self.log is None else "; the log up to here is in error.log"
-        return super().__str__() + kept
-
-
 class NothingKept(LabkitError, LookupError):
     """No run of a live arm has been kept."""
 

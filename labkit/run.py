@@ -8,10 +8,8 @@ from typing import Any
 import numpy as np
 
 from .arm import Arm
-from .arm_adapters import Real, RealArm, Simulated
 from .control import COMMANDS, Controller
 from .errors import (
-    ArmLost,
     Closed,
     ControllerError,
     Diverged,
@@ -24,6 +22,7 @@ from .log import Log, Recorder
 from .robot import Robot
 from .shapes import Array, as_array, as_number, shown
 from .trajectory import AnySample, PoseSample, Sample, Target
+from .world import whole_steps
 
 ORDER = "the order is arm, target, controller"
 RUNAWAY = 50.0
@@ -33,7 +32,7 @@ The fastest of Baxter's joints are limited to 4 rad/s."""
 
 
 def run(
-    arm: Arm | RealArm,
+    arm: Arm,
     target: Target,
     controller: Controller,
     rate: float = 200.0,
@@ -45,13 +44,13 @@ def run(
     away is brought to rest at once.
 
     Args:
-        arm: The arm: simulated, or a real one behind the methods of `RealArm`.
+        arm: The arm.
         target: A function of the time since the start, in [s], that returns a `Sample` or a
             `PoseSample`.
         controller: A function of a `State` and the target's sample that returns a command.  If it
             is an object with a method ``reset()``, that is called first; see `Remembering`.
         rate: How often the controller is called, in [Hz]; its period is a whole number of physics
-            steps.  With a real arm, the loop skips the ticks for which it is late.
+            steps.
         duration: Length of the run, in [s]; None means the target's own duration.
 
     Returns:
@@ -61,14 +60,42 @@ def run(
         ControllerError: The controller or the target raised, or returned something that is not a
             command or not a sample; the error says which and when, and keeps the `log` up to then.
         Diverged: The arm ran away; the error keeps the log too.
-        ArmLost: A real arm stopped answering, or answered with NaN; the error keeps the log too.
         OutOfRange: The rate does not fit the physics step, or no duration is known.
         TypeMismatch: The arm, the target or the controller has the wrong type, or target and
             controller are swapped.
         Closed: The arm's world is closed.
     """
     check_order(target, controller)
-    return run_driven(_driven(arm, rate), target, controller, duration)
+    if not isinstance(arm, Arm):
+        raise TypeMismatch(f"arm is {shown(arm)}, expected an Arm; {ORDER}")
+    return run_driven(Driven(arm, rate), target, controller, duration)
+
+
+class Driven:
+    """An arm, driven tick by tick; `live` has one with a clock of its own."""
+
+    def __init__(self, arm: Arm, rate: Any) -> None:
+        """Drive ``arm`` at ``rate`` [Hz]."""
+        arm.check_open()
+        self._arm, self.robot, self.plant = arm, arm.robot, arm.plant
+        self._steps = whole_steps(as_number(rate, "rate", above=0.0), arm.world.dt, "rate")
+        self.period = self._steps * arm.world.dt
+        self.apply, self.observe, self.recover = arm.follow, arm.observe, arm.recover
+        self.lost_ticks = arm.lost_ticks
+
+    def begin(self) -> float:
+        """Begin the run; the time since then."""
+        return 0.0
+
+    def advance(self, k: int) -> tuple[int, float, bool]:
+        """Go on to the next tick; its number and time, and whether a limit cut the last command."""
+        self._arm.world.step(self._steps)
+        return k + 1, (k + 1) * self.period, self._arm.saturated
+
+    def stop(self) -> None:
+        """Leave the arm at rest."""
+        if not self._arm.world.closed:
+            self._arm.stop()
 
 
 def check_order(target: object, *controllers: object) -> None:
@@ -92,9 +119,9 @@ def _takes_time(function: Any) -> bool:
 
 
 def run_driven(
-    driven: Simulated | Real, target: Target, controller: Controller, duration: float | None
+    driven: Driven, target: Target, controller: Controller, duration: float | None
 ) -> Log:
-    """Do the same as `run` for an adapted arm; `live` brings an adapter with its own clock."""
+    """Do the same as `run` for a driven arm."""
     last = _ticks(target, duration, driven.period) - 1
     samples = _Samples(target, f"the target {name_of(target)}")
     recorder = Recorder(driven.robot, driven.plant, name_of(controller), samples.first, last + 1)
@@ -102,14 +129,14 @@ def run_driven(
         _loop(driven, controller, last, samples, recorder)
         log = recorder.log()
         samples.check_all(log)
-    except (ControllerError, ArmLost) as error:
+    except ControllerError as error:
         error.log = recorder.log() if len(recorder) else None
         raise
     return log
 
 
 def _loop(
-    driven: Simulated | Real,
+    driven: Driven,
     controller: Controller,
     last: int,
     samples: _Samples,
@@ -139,7 +166,6 @@ def _loop(
             if not k % often and not dq.dot(dq) <= RUNAWAY**2:  # a NaN runs away too
                 raise Diverged(_runaway(robot, dq, name, t))
             if k >= last:
-                driven.stop()  # an arm lost in this call still leaves its log
                 break
             if not lost[k]:
                 driven.apply(command)
@@ -151,7 +177,7 @@ def _loop(
     except Diverged:
         driven.recover()
         raise
-    except (ControllerError, ArmLost, Closed):
+    except (ControllerError, Closed):
         raise
     except Exception as error:
         samples.read(samples.latest, t)  # was it the target that broke the controller?
@@ -159,17 +185,6 @@ def _loop(
         raise ControllerError(f"{running} failed at t = {t:.3f} s, tick {k}: {why}") from error
     finally:
         driven.stop()
-
-
-def _driven(arm: object, rate: Any) -> Simulated | Real:
-    """Wrap an arm in the adapter through which the loop drives it."""
-    if isinstance(arm, Arm):
-        return Simulated(arm, rate)
-    if isinstance(arm, RealArm):
-        return Real(arm, rate)
-    lacks = [part for part in ("robot", "state", "apply", "stop", "wait") if not hasattr(arm, part)]
-    hint = f"; as a real arm it lacks {', '.join(lacks)}" if len(lacks) < 4 else ""
-    raise TypeMismatch(f"arm is {shown(arm)}, expected an Arm; {ORDER}{hint}")
 
 
 _FLOAT = np.dtype(np.float64)

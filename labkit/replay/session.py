@@ -24,13 +24,12 @@ from typing import Any, cast
 import numpy as np
 
 from ..arm import Arm
-from ..arm_adapters import Simulated
 from ..control import JointTorque
 from ..errors import Diverged, LabkitError
 from ..log import Log
 from ..model import Model
 from ..plant import Plant
-from ..run import run_driven
+from ..run import Driven, run_driven
 from ..shapes import Array
 from .hand import Hand
 from .surroundings import Surroundings
@@ -152,7 +151,7 @@ def arguments(law: Callable[..., Any]) -> tuple[str, ...]:
         return ()
 
 
-class Session(Simulated):
+class Session(Driven):
     """An arm, its controllers and a hand, which run in a separate thread until `close`.
 
     Attributes:
