@@ -1,4 +1,4 @@
-"""01_paths with two more cells that a person marks: an answer in words and a task."""
+"""01_curves with two more cells that a person marks: an answer in words and a task."""
 
 from __future__ import annotations
 

@@ -9,7 +9,8 @@ from functools import cache
 
 import nbgrader.api
 import pytest
-from handmade import ROOT
+from courses import synthetic
+from handmade import NAME
 
 from labkit.course.authoring.bundle import Bundle
 from labkit.course.authoring.layout import Course
@@ -29,12 +30,9 @@ def _version_of_the_tables():
 
 @pytest.fixture(scope="session")
 def released(tmp_path_factory):
-    """A course with 01_paths released, to which no test writes."""
-    root = tmp_path_factory.mktemp("course")
-    (root / "solutions").symlink_to(ROOT / "solutions")
-    shutil.copy(ROOT / "nbgrader_config.py", root)
-    course = Course(root)
-    release(course, "01_paths", SEED)
+    """The course of three questions, released, to which no test writes."""
+    course = synthetic(tmp_path_factory.mktemp("course"))
+    release(course, NAME, SEED)
     return course
 
 
@@ -48,7 +46,7 @@ def course(released, tmp_path):
 
 @pytest.fixture(scope="session")
 def bundle(released):
-    return Bundle.of(released, "01_paths")
+    return Bundle.of(released, NAME)
 
 
 @pytest.fixture(scope="session")
@@ -59,12 +57,12 @@ def sandbox():
 
 @pytest.fixture(scope="session")
 def _blank(released):
-    return json.loads((released.release / "01_paths" / "01_paths.ipynb").read_text())
+    return json.loads((released.release / NAME / f"{NAME}.ipynb").read_text())
 
 
 @pytest.fixture(scope="session")
 def _solved(released):
-    return json.loads((released.solution / "01_paths" / "01_paths.ipynb").read_text())
+    return json.loads((released.solution / NAME / f"{NAME}.ipynb").read_text())
 
 
 @pytest.fixture

@@ -4,16 +4,14 @@ from __future__ import annotations
 
 import os
 import re
-import shutil
 import zipfile
 
-from handmade import ROOT
+from courses import synthetic
+from handmade import NAME
 
-from labkit.course.authoring.layout import Course
 from labkit.grader.students.collect import collect
 from labkit.grader.students.roster import Roster, Student, save_roster
 
-NAME = "01_paths"
 MOODLE = "{}_{}_assignsubmission_file"
 CLASS = (
     Student("ada", "Ada", "Lovelace", "ada@x.test", "42", "ada", "4711", "gh-ada"),
@@ -23,11 +21,9 @@ CLASS = (
 
 def bare_course(root, *students):
     """A course without a release, which is enough for collecting, with a roster."""
-    root.mkdir(parents=True, exist_ok=True)
-    (root / "solutions").symlink_to(ROOT / "solutions")
-    shutil.copy(ROOT / "nbgrader_config.py", root)
-    save_roster(Course(root), Roster(students or CLASS))
-    return Course(root)
+    course = synthetic(root)
+    save_roster(course, Roster(students or CLASS))
+    return course
 
 
 def zipped(path, entries, when=(2026, 3, 1, 12, 0, 0)):

@@ -13,8 +13,10 @@ from pathlib import Path
 from labkit.grader.sandbox.limits import Limits
 
 ROOT = Path(__file__).parents[2]
+NAME = "01_curves"
+"""The assignment of the synthetic course."""
 FULL = 22.0
-"""The points by machine for a right 01_paths; two of its 24 points belong to a why."""
+"""The points by machine for a right one; two of its 24 points belong to a why."""
 QUICK = Limits(cell=2.0, call=1.0, question=20.0, wall=60.0)
 
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import json
 
 import pytest
-from courses import copied
+from courses import synthetic
 from handmade import hand_in, put
 
 from labkit.__main__ import main
@@ -17,7 +17,7 @@ from labkit.grader.feedback.explain import explain
 from labkit.grader.terms.release import release
 from labkit.grader.terms.student_bundle import remarks
 
-NAME = "05_impedance"
+NAME = "02_essays"
 CLASS = "Login,First name,Last name,Team\nada,Ada,L,one\nbob,Bob,M,one\neve,Eve,N,\n"
 
 
@@ -25,7 +25,7 @@ CLASS = "Login,First name,Last name,Team\nada,Ada,L,one\nbob,Bob,M,one\neve,Eve,
 def course(tmp_path_factory):
     """A released notebook that asks about one's own arm, and a class of three with one team."""
     root = tmp_path_factory.mktemp("arms")
-    course = copied(root)
+    course = synthetic(root)
     release(course, NAME, 7)
     (root / "class.csv").write_text(CLASS)
     assert main(["roster", str(root / "class.csv"), "--course", str(root)]) == 0
@@ -93,7 +93,7 @@ def test_an_arm_stays_when_others_join_and_after_a_new_release(course, capsys):
 
 def test_a_notebook_without_its_students_arms_is_named(course):
     """Before the list is imported all have the public arm; who asks for none is not named."""
-    names = (NAME, "01_paths")
+    names = (NAME, "01_curves")
     assert not list(remarks(course, names))
     (course.release / NAME / FILE).unlink()
     (said,) = remarks(course, names)

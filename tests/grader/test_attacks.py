@@ -35,10 +35,8 @@ def processes_of(uid):
     return found
 
 
-def test_enough():
-    """There are at least 12 classes and 100 attacks."""
-    assert len(CLASSES) >= 12
-    assert sum(map(len, CLASSES.values())) >= 100
+TOGETHER = ("files", "network", "kernel")
+"""Classes whose attacks are cells that do not disturb each other: they are in one notebook."""
 
 
 @pytest.mark.slow
@@ -46,8 +44,11 @@ def test_enough():
 def test_attacks_earn_nothing(kind, _blank, solved, released, bundle, sandbox):
     """An attack earns 0 points, reads nothing, leaves nothing, and harms nobody after it."""
     wrong = []
-    for name, attack in CLASSES[kind].items():
-        notebook = attack.planted(copy.deepcopy(_blank), root=released.root)
+    everything = [[*CLASSES[kind]]] if kind in TOGETHER else [[name] for name in CLASSES[kind]]
+    for names in everything:
+        notebook, name = copy.deepcopy(_blank), " ".join(names)
+        for one in names:
+            CLASSES[kind][one].planted(notebook, root=released.root)
         result = grade(raw(notebook), "mallory", bundle, sandbox, FAST)
         text = said(result)
         if result.score or result.rejected or "GOT" in text:

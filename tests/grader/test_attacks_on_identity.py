@@ -35,59 +35,59 @@ def _write(folder, course):
 
 def _link_folder(folder, course):
     folder.rmdir()
-    folder.symlink_to(course / "submitted" / "ada" / "01_paths")
+    folder.symlink_to(course / "submitted" / "ada" / "01_curves")
 
 
 def _link_file(folder, course):
-    (folder / "01_paths.ipynb").symlink_to(
-        course / "submitted" / "ada" / "01_paths" / "01_paths.ipynb"
+    (folder / "01_curves.ipynb").symlink_to(
+        course / "submitted" / "ada" / "01_curves" / "01_curves.ipynb"
     )
 
 
 def _hard_link(folder, course):
-    os.link(course / "build/course/solution/01_paths/01_paths.ipynb", folder / "01_paths.ipynb")
+    os.link(course / "build/course/solution/01_curves/01_curves.ipynb", folder / "01_curves.ipynb")
 
 
 def _link_secret(folder, course):
-    (folder / "01_paths.ipynb").write_bytes(b"{}")
+    (folder / "01_curves.ipynb").write_bytes(b"{}")
     (folder / "submission_secret.txt").symlink_to(course / "gradebook.db")
 
 
 MOODLES = (
-    f"Eve Mallory_77{M}x_42{M}01_paths(9).ipynb",
-    f"Eve Mallory_77{M}_42{M}01_paths.ipynb",
-    f"Eve Mallory_77{M}Ada Lovelace_42{M}01_paths.ipynb",
-    f"Eve Mallory_77{M}x_42{M}y_42{M}01_paths.ipynb",
-    f"Eve Mallory_77{M}/Ada Lovelace_42{M}01_paths.ipynb",
-    f"Eve Mallory_77{M}/Ada Lovelace_42{M}/01_paths.ipynb",
-    f"Eve Mallory_77{M}..\\Ada Lovelace_42{M}01_paths.ipynb",
-    f"Eve Mallory_77{M}/../../Ada-Lovelace/01_paths/01_paths.ipynb",
-    f"Ada Lovelace_77{M}01_paths.ipynb",
-    f"Ada\u00a0 Lovelace_77{M}01_paths.ipynb",
-    f"Ada-Lovelace_77{M}01_paths.ipynb",
-    f"ada lovelace_77{M}01_paths.ipynb",
-    f"Ada Lovelace 42_77{M}01_paths.ipynb",
-    f"Ada Lovelace-42_77{M}01_paths.ipynb",
-    f"Ada-Lovelace-42_77{M}01_paths.ipynb",
+    f"Eve Mallory_77{M}x_42{M}01_curves(9).ipynb",
+    f"Eve Mallory_77{M}_42{M}01_curves.ipynb",
+    f"Eve Mallory_77{M}Ada Lovelace_42{M}01_curves.ipynb",
+    f"Eve Mallory_77{M}x_42{M}y_42{M}01_curves.ipynb",
+    f"Eve Mallory_77{M}/Ada Lovelace_42{M}01_curves.ipynb",
+    f"Eve Mallory_77{M}/Ada Lovelace_42{M}/01_curves.ipynb",
+    f"Eve Mallory_77{M}..\\Ada Lovelace_42{M}01_curves.ipynb",
+    f"Eve Mallory_77{M}/../../Ada-Lovelace/01_curves/01_curves.ipynb",
+    f"Ada Lovelace_77{M}01_curves.ipynb",
+    f"Ada\u00a0 Lovelace_77{M}01_curves.ipynb",
+    f"Ada-Lovelace_77{M}01_curves.ipynb",
+    f"ada lovelace_77{M}01_curves.ipynb",
+    f"Ada Lovelace 42_77{M}01_curves.ipynb",
+    f"Ada Lovelace-42_77{M}01_curves.ipynb",
+    f"Ada-Lovelace-42_77{M}01_curves.ipynb",
     f"Bob\x1b]0;owned\x07_77{M}\x1b[2J.ipynb",
-    f"Eve_77{M}x.ipynb\nAda-Lovelace: 01_paths.ipynb: taken.ipynb",
+    f"Eve_77{M}x.ipynb\nAda-Lovelace: 01_curves.ipynb: taken.ipynb",
     f"{'E' * 300}_77{M}{'x' * 300}.ipynb",
-    f"..._77{M}01_paths.ipynb",
+    f"..._77{M}01_curves.ipynb",
 )
 CANVASES = (
-    "malloryeve_77_901_lovelaceada_42_900_01_paths.ipynb",
-    "malloryeve_LATE_77_901_42_900_01_paths.ipynb",
-    "lovelaceada_77_901_01_paths.ipynb",
+    "malloryeve_77_901_lovelaceada_42_900_01_curves.ipynb",
+    "malloryeve_LATE_77_901_42_900_01_curves.ipynb",
+    "lovelaceada_77_901_01_curves.ipynb",
 )
 EXCHANGES = (
-    ("ada+01_paths+2030-01-01 00:00:00 UTC+x", _write),
-    ("ada+01_paths+2030-01-01 00:00:00 UTC", _write),
-    ("Ada+01_paths+2030-01-01 00:00:00 UTC+x", _write),
-    ("ada +01_paths+2030-01-01 00:00:00 UTC+x", _write),
-    ("ada+01_paths+2030-01-01 00:00:00 UTC+y", _link_folder),
-    ("ada+01_paths+2030-01-01 00:00:00 UTC+z", _link_file),
-    ("ada+01_paths+2030-01-01 00:00:00 UTC+h", _hard_link),
-    ("ada+01_paths+2030-01-01 00:00:00 UTC+s", _link_secret),
+    ("ada+01_curves+2030-01-01 00:00:00 UTC+x", _write),
+    ("ada+01_curves+2030-01-01 00:00:00 UTC", _write),
+    ("Ada+01_curves+2030-01-01 00:00:00 UTC+x", _write),
+    ("ada +01_curves+2030-01-01 00:00:00 UTC+x", _write),
+    ("ada+01_curves+2030-01-01 00:00:00 UTC+y", _link_folder),
+    ("ada+01_curves+2030-01-01 00:00:00 UTC+z", _link_file),
+    ("ada+01_curves+2030-01-01 00:00:00 UTC+h", _hard_link),
+    ("ada+01_curves+2030-01-01 00:00:00 UTC+s", _link_secret),
 )
 IMPOSTORS = [
     *(("moodle", name, _write) for name in MOODLES),
@@ -103,8 +103,8 @@ def test_nobody_is_taken_for_another(tmp_path, capsys, system, name, put):
     where = tmp_path / "course"
     course = bare_course(where)
     assert believed(name), "a reader that believes it is led astray"
-    (course.root / "build/course/solution/01_paths").mkdir(parents=True)
-    (course.root / "build/course/solution/01_paths/01_paths.ipynb").write_text("the solution")
+    (course.root / "build/course/solution/01_curves").mkdir(parents=True)
+    (course.root / "build/course/solution/01_curves/01_curves.ipynb").write_text("the solution")
     (course.root / "gradebook.db").touch()
     first = zipped(tmp_path / "1.zip", [(FIRST.get(system, FIRST["moodle"]), "ada")])
     assert main(["collect", NAME, str(first), "--course", str(where)]) == 0

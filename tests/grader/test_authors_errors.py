@@ -6,14 +6,13 @@ from types import SimpleNamespace
 
 import nbformat
 import pytest
-from handmade import ROOT
+from courses import SYNTHETIC
+from handmade import NAME
 
 from labkit.course.authoring.layout import Course
 from labkit.course.authoring.problem import Problem, Trial, call
 from labkit.errors import LabkitError
 from labkit.grader.terms import release
-
-NAME = "01_paths"
 
 
 def double(x):
@@ -40,7 +39,7 @@ def released(monkeypatch, problems, source="def double(x):\n    pass", first="# 
         return SimpleNamespace(source=SimpleNamespace(cells=cells), questions=made)
 
     monkeypatch.setattr(release, "prepare", prepare)
-    return release.prepared(Course(ROOT), NAME, 1)
+    return release.prepared(Course(SYNTHETIC.parent), NAME, 1)
 
 
 def test_what_is_in_order_passes(monkeypatch):
@@ -101,7 +100,7 @@ def test_the_outcome_of_a_measurement_is_checked_too(monkeypatch):
 def test_an_import_in_a_stub_that_finds_nothing_is_refused(monkeypatch, wrong):
     """The solution region is cleared for students, but anyone who solves the notebook meets it."""
     source = f"def double(x):\n    ### BEGIN SOLUTION\n    {wrong}\n    ### END SOLUTION"
-    with pytest.raises(LabkitError, match=rf"01_paths\.py:\nthe stub of double says `{wrong}`: "):
+    with pytest.raises(LabkitError, match=rf"01_curves\.py:\nthe stub of double says `{wrong}`: "):
         released(monkeypatch, (problem(),), source=source)
 
 

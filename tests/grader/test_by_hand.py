@@ -32,19 +32,16 @@ from labkit.grader.terms.release import release
 @pytest.fixture(scope="module")
 def authored(tmp_path_factory):
     """The assignment with both cells, released; never written to again."""
-    root = tmp_path_factory.mktemp("by_hand") / "course"
-    root.mkdir()
-    (root / "solutions").symlink_to(ROOT / "solutions")
-    shutil.copy(ROOT / "nbgrader_config.py", root)
+    course = synthetic(tmp_path_factory.mktemp("by_hand") / "course")
     with pytest.MonkeyPatch.context() as monkeypatch:
         author(monkeypatch)
-        made = release(Course(root), NAME, 7)
+        made = release(course, NAME, 7)
     assert str(made).splitlines()[1:] == [
         f"  to be marked by hand: {WHY}, 2 points",
         f"  to be marked by hand: {REPORT}, 4 points",
     ]
     assert made.points == 28
-    return Course(root)
+    return course
 
 
 @pytest.fixture

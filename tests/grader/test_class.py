@@ -17,7 +17,6 @@ from pathlib import Path
 
 import pytest
 from handmade import FULL, QUICK, ROOT, add, hand_in, timeless
-from plain_nbgrader import grade_with_nbgrader, pack_hidden
 from processes import below, child, wait_until_gone
 
 from labkit.__main__ import main
@@ -38,8 +37,8 @@ from tests.synthetic import differences, make_class
 
 pytestmark = pytest.mark.slow  # whole classes are graded
 
-NAME = "01_paths"
-PART = 8
+NAME = "01_curves"
+PART, FEW = 8, 4
 
 
 def grade_all(course, **how):
@@ -59,7 +58,7 @@ def verdicts(course):
 @pytest.fixture
 def part(course):
     """A course with the first few of the synthetic class, all of them harmless."""
-    make_class(course, NAME, seed=3, count=PART)
+    make_class(course, NAME, seed=3, count=FEW)
     return course
 
 
@@ -90,14 +89,6 @@ def test_synthetic_class_gets_what_it_deserves(course):
     with open_gradebook(course) as book:
         scores = {s.student.id: s.score for s in book.assignment_submissions(NAME)}
     assert scores == {one.result.student: one.result.score for one in done}
-
-
-def test_class_is_drawn_from_its_seed(course):
-    """A seed gives the same class again, another one another order."""
-    first = make_class(course, NAME, seed=1, count=40)
-    assert first == make_class(course, NAME, seed=1, count=40)
-    other = make_class(course, NAME, seed=2, count=40)
-    assert {k: v["kind"] for k, v in first.items()} != {k: v["kind"] for k, v in other.items()}
 
 
 @pytest.mark.slow
@@ -135,7 +126,7 @@ def test_killed_worker(part):
     thread.start()
     done = grade_all(part)
     thread.join()
-    assert len(done) == PART
+    assert len(done) == FEW
     assert not list(differences(part, NAME))
 
 
@@ -195,19 +186,6 @@ def test_results_outlive_a_crash_while_writing(graded):
     assert results.get(who) is None
     grade_all(graded)
     assert results.get(who) is not None
-
-
-@pytest.mark.slow
-def test_same_scores_as_nbgrader_on_honest_work(course):
-    """On honest submissions nbgrader's own engine comes to the same scores."""
-    pack_hidden(course, NAME)
-    make_class(course, NAME, seed=5, count=12)
-    kinds = json.loads((course.build.parent / "class" / f"{NAME}.json").read_text())
-    honest = ("perfect", "perfect, in other words", "mistakes, the first of each")
-    for student, about in kinds.items():
-        if about["kind"] in honest:
-            score = grade_with_nbgrader(course, NAME, student)
-            assert score == about["score"], about["kind"]
 
 
 def test_loud_when_many_fail(graded):
@@ -318,7 +296,7 @@ def test_command(part, capsys):
     """`labkit grade` prints a line each, and what isolates."""
     assert main(["grade", NAME, "--course", str(part.root)]) == 0
     out = capsys.readouterr().out
-    assert out.count("\n[") >= PART - 1
+    assert out.count("\n[") >= FEW - 1
     assert "isolation: bubblewrap" in out
 
 

@@ -39,7 +39,7 @@ NOBODY = 64990
 ADA, EVE = ("Ada Lovelace", 101), ("Eve Mallory", 102)
 PIECES = st.sampled_from(
     ["_42_assignsubmission_file", "_", "_7_99_", "LATE_", "_1", "9_", "42_", " ", "/", "Ada",
-     "assignsubmission_onlinetext", "-", ".", "é", "०१", "\x1b[2J", "(3)", "01_paths"]
+     "assignsubmission_onlinetext", "-", ".", "é", "०१", "\x1b[2J", "(3)", "01_curves"]
 )  # fmt: skip
 TEXTS = st.lists(PIECES | st.text(max_size=3), max_size=8).map("".join)
 FILES = TEXTS.map(lambda text: text.replace("/", "") + ".ipynb")
@@ -54,7 +54,7 @@ def bare(tmp_path):
 
 
 @given(TEXTS, st.integers(1, 10**15), FILES, st.booleans())
-@example("Eve Mallory", 77, "x_42_assignsubmission_file_01_paths(9).ipynb", False)
+@example("Eve Mallory", 77, "x_42_assignsubmission_file_01_curves(9).ipynb", False)
 def test_a_file_from_moodle_is_the_participants(name, number, file, in_folders):
     """Whatever people and files are called, the first number is the participant's."""
     found = reading(moodle_writes(name, number, file, in_folders))
@@ -88,7 +88,7 @@ def test_everybody_has_their_own_work_or_none(people):
 def test_no_name_of_a_file_replaces_anothers_work(bare, tmp_path):
     """Eve calls her file as Moodle would call Ada's: it is Eve's, and Ada's stays."""
     take(bare, from_moodle(tmp_path / "1.zip", [(ADA, f"{NAME}.ipynb", "ada's")]))
-    file = "x_101_assignsubmission_file_01_paths(9).ipynb"
+    file = "x_101_assignsubmission_file_01_curves(9).ipynb"
     take(bare, zipped(tmp_path / "2.zip", [(moodle_writes(*EVE, file, False), "eve's")]))
     assert counting(bare) == {"ada": "ada's", "eve": "eve's"}
     assert {x: y.number for x, y in participants(bare)[NAME].items()} == {
@@ -245,7 +245,7 @@ def test_what_a_person_put_there_counts_until_something_new_comes(bare, tmp_path
 
 def test_the_time_is_the_platforms_or_the_instructors(bare, tmp_path):
     """Moodle's zip has none, so that nobody is late; --at gives one to all."""
-    (bare.root / "course.toml").write_text("[assignments.01_paths]\ndue = 2026-02-01T12:00:00\n")
+    (bare.root / "course.toml").write_text("[assignments.01_curves]\ndue = 2026-02-01T12:00:00\n")
     source = from_moodle(tmp_path / "1.zip", [(ADA, "x.ipynb", "1")])
     stamp = bare.submitted / "ada" / NAME / "timestamp.txt"
     taken, _ = take(bare, source)

@@ -26,7 +26,7 @@ from labkit.grader.sandbox.limits import Limits
 from labkit.grader.sandbox.mounts import Isolation, NoIsolation
 from labkit.grader.submission import Submission
 
-NAME = "01_paths"
+NAME = "01_curves"
 
 
 def noted(path):

@@ -6,8 +6,8 @@ import csv
 import json
 
 import pytest
-from courses import copied
-from handmade import ROOT
+from courses import synthetic
+from handmade import NAME
 
 from labkit.course.authoring.layout import Course
 from labkit.errors import LabkitError
@@ -19,17 +19,22 @@ from tests.synthetic.rehearsal import rehearse
 
 pytestmark = [pytest.mark.slow, pytest.mark.xdist_group("rehearsal")]  # whole classes are graded
 
-NAME, COUNT = "00_warmup", 6
+COUNT = 6
 
 
 @pytest.fixture(scope="module")
 def played(tmp_path_factory):
     """A folder in which the first three steps are done, and then, anew, all of them."""
     to = tmp_path_factory.mktemp("rehearsal") / "term"
-    steps = rehearse(Course(ROOT), NAME, to, COUNT, GradeOptions(jobs=2))
+    source = synthetic(to.with_name("source"))
+    steps = rehearse(source, NAME, to, COUNT, GradeOptions(jobs=2))
     first = [next(steps) for _ in range(3)]
     steps.close()
-    return Course(to), first, list(rehearse(Course(ROOT), NAME, to, COUNT, GradeOptions(jobs=2)))
+    return Course(to), first, list(rehearse(source, NAME, to, COUNT, GradeOptions(jobs=2)))
+
+
+def source_of(course):
+    return Course(course.root.with_name("source"))
 
 
 def test_a_term_is_played_through(played):
@@ -40,7 +45,7 @@ def test_a_term_is_played_through(played):
     ]  # fmt: skip
     assert then[-1].startswith("every mark is what was deserved")
     assert len(list(course.root.glob(f"feedback/*/{NAME}/{NAME}.html"))) == COUNT
-    assert "# 00_warmup: what the class understood" in (course.root / "report.md").read_text()
+    assert f"# {NAME}: what the class understood" in (course.root / "report.md").read_text()
 
 
 def test_it_goes_on_where_it_was_stopped(played):
@@ -49,7 +54,7 @@ def test_it_goes_on_where_it_was_stopped(played):
     assert f"{COUNT} of {COUNT} are new" in first[2]
     assert f"0 of {COUNT} are new" in then[0]
     assert f"{COUNT} of {COUNT} anew" in then[1]
-    again = list(rehearse(Course(ROOT), NAME, course.root, COUNT, GradeOptions(jobs=2)))
+    again = list(rehearse(source_of(course), NAME, course.root, COUNT, GradeOptions(jobs=2)))
     assert f"0 of {COUNT} anew" in again[1]
 
 
@@ -75,14 +80,14 @@ def test_a_mark_that_nobody_deserved_is_said(played):
     data[who]["questions"] = dict.fromkeys(data[who]["questions"], 99.0)
     path.write_text(json.dumps(data))
     with pytest.raises(LabkitError, match="not what was deserved"):
-        list(rehearse(Course(ROOT), NAME, course.root, COUNT, GradeOptions(jobs=2)))
+        list(rehearse(source_of(course), NAME, course.root, COUNT, GradeOptions(jobs=2)))
     path.write_text(text)
 
 
 def test_a_true_course_is_no_stage(tmp_path):
     """Where a course lies, nothing is handed in and nobody's submissions go."""
-    course = copied(tmp_path)
-    notebook = course.submitted / "ada" / "01_paths" / "01_paths.ipynb"
+    course = synthetic(tmp_path)
+    notebook = course.submitted / "ada" / "01_curves" / "01_curves.ipynb"
     notebook.parent.mkdir(parents=True)
     notebook.write_text("work of a week")
     with pytest.raises(LabkitError, match="new or empty"):
@@ -93,9 +98,16 @@ def test_a_true_course_is_no_stage(tmp_path):
 def test_command(played, monkeypatch, capsys):
     """`python -m tests.synthetic --rehearse` does it, and writes nothing into the course."""
     course, _, _ = played
-    before = sorted(Results(Course(ROOT), NAME).folder.glob("*"))
-    words = ["--count", str(COUNT), "--course", str(ROOT), "--rehearse", str(course.root)]
+    before = sorted(Results(source_of(course), NAME).folder.glob("*"))
+    words = [
+        "--count",
+        str(COUNT),
+        "--course",
+        str(source_of(course).root),
+        "--rehearse",
+        str(course.root),
+    ]
     monkeypatch.setattr("sys.argv", ["synthetic", NAME, *words])
     assert main() == 0
     assert "every mark is what was deserved" in capsys.readouterr().out
-    assert sorted(Results(Course(ROOT), NAME).folder.glob("*")) == before
+    assert sorted(Results(source_of(course), NAME).folder.glob("*")) == before

@@ -2,13 +2,15 @@
 
 import json
 import re
+import shutil
 from dataclasses import replace
 from pathlib import Path
 
 import nbformat
 import numpy as np
 import pytest
-from courses import copied
+from courses import SYNTHETIC, synthetic
+from handmade import NAME
 
 from labkit.__main__ import main
 from labkit.course import read_question
@@ -21,8 +23,8 @@ from labkit.course.notebook import source_notebook
 from labkit.errors import LabkitError
 from labkit.grader.terms.release import FORBIDDEN, release
 
-COURSE = Course.here(Path(__file__))
-NAME = "00_warmup"
+COURSE = Course(SYNTHETIC.parent)
+REAL = Course.here(Path(__file__))
 PROBLEMS = {problem.name: problem for problem in COURSE.problems(NAME)}
 QUESTIONS = {name: problem.question(1) for name, problem in PROBLEMS.items()}
 
@@ -55,9 +57,9 @@ def test_each_question_gets_brief_stub_and_check():
 
 def test_the_brief_says_what_is_hidden_and_withheld():
     """Points, gate, classes of hidden case, withheld names and the hint stand above each stub."""
-    words = brief(QUESTIONS["orientation_error"])
-    assert "4 points" in words and "rolls at other yaws" in words
-    assert "`lk.se3.orientation_error`" in words and "hint(" in words
+    words = brief(QUESTIONS["circle"])
+    assert "4 points" in words and "other circles" in words
+    assert "`lk.Circle`" in words and "hint(" in words
 
 
 def test_stubs_and_questions_must_match(tmp_path):
@@ -66,26 +68,26 @@ def test_stubs_and_questions_must_match(tmp_path):
     text.write_text('# %% question="double"\ndef double(x):\n    pass\n')
     with pytest.raises(LabkitError, match=r"'double', which is not in PROBLEMS of problems\.py"):
         source_notebook(text, {})
-    one = QUESTIONS["joint_error"]
+    one = QUESTIONS["circle"]
     region = "    ### BEGIN SOLUTION\n    return 1\n    ### END SOLUTION\n\n"
-    stub = f'# %% question="joint_error"\ndef joint_error(x):\n{region}'
+    stub = f'# %% question="circle"\ndef circle(x):\n{region}'
     for source, sentence in (
-        ("# %%\nx = 1\n", "has 0 stubs of joint_error"),
-        (stub + stub, "has 2 stubs of joint_error"),
-        (stub.replace("def joint_error", "def error"), "does not define joint_error"),
+        ("# %%\nx = 1\n", "has 0 stubs of circle"),
+        (stub + stub, "has 2 stubs of circle"),
+        (stub.replace("def circle", "def disc"), "does not define circle"),
         (stub.replace("    ### END SOLUTION\n", ""), "needs one region"),
     ):
         text.write_text(source)
         with pytest.raises(LabkitError, match=sentence):
-            source_notebook(text, {"joint_error": one})
+            source_notebook(text, {"circle": one})
 
 
 @pytest.mark.parametrize(
     ("key", "name", "listed"),
     [
-        ("question", "farthest_off", r"PROBLEMS of problems\.py"),
-        ("predict", "joint_error", r"PREDICTIONS of predictions\.py"),
-        ("find_out", "joint_error", r"PREDICTIONS of predictions\.py"),
+        ("question", "twice_the_time", r"PROBLEMS of problems\.py"),
+        ("predict", "circle", r"PREDICTIONS of predictions\.py"),
+        ("find_out", "circle", r"PREDICTIONS of predictions\.py"),
     ],
 )
 def test_what_is_in_the_other_list_is_refused(tmp_path, key, name, listed):
@@ -96,27 +98,30 @@ def test_what_is_in_the_other_list_is_refused(tmp_path, key, name, listed):
         source_notebook(text, QUESTIONS, COURSE.predictions(NAME))
 
 
-@pytest.mark.parametrize("name", COURSE.names())
+@pytest.mark.parametrize("name", REAL.names())
 def test_solutions_are_whole(name):
-    """The solved notebook holds the answers' source, runs on its own, and no hidden cases."""
-    problems = {p.name: p for p in COURSE.problems(name)}
-    questions = {key: p.question(1) for key, p in problems.items()}
-    source = source_notebook(COURSE.notebook_source(name), questions, COURSE.predictions(name))
-    solved = solution_notebook(source, problems)
-    text = "\n".join(cell.source for cell in solved.cells)
+    """Each answer's source runs on its own; the solved notebook holds no hidden case."""
+    text = "\n".join(cell.source for cell in solution_notebook(source(), PROBLEMS).cells)
     assert not [word for word in FORBIDDEN if word in text]
-    for problem in problems.values():
+    for problem in REAL.problems(name):
         names: dict[str, object] = {}
         exec(inlined(problem), names)
         assert callable(names[problem.name])
 
 
-@pytest.mark.slow
+def written(root):
+    """The synthetic course, with sources that a test may change."""
+    course = synthetic(root / "course")
+    (course.root / "solutions").unlink()
+    shutil.copytree(SYNTHETIC, course.root / "solutions")
+    return course
+
+
 def test_an_answer_that_leaks_stops_the_release(tmp_path):
     """If an answer stands outside its solution region, nothing is released."""
-    course = copied(tmp_path)
+    course = written(tmp_path)
     path = course.notebook_source(NAME)
-    path.write_text(path.read_text() + "\n# %%\nfrom solutions.warmup import joint_error\n")
+    path.write_text(path.read_text() + "\n# %%\nfrom solutions.curves import problems\n")
     with pytest.raises(LabkitError, match="nothing released"):
         release(course, NAME, 1)
     assert not (course.release / NAME).exists()
@@ -124,19 +129,19 @@ def test_an_answer_that_leaks_stops_the_release(tmp_path):
 
 def test_a_notebook_without_problems_is_a_sentence(tmp_path):
     """A source that somebody has begun says which file is still to be written."""
-    course = copied(tmp_path)
-    (tmp_path / "solutions/dance").mkdir()
-    (tmp_path / "solutions/dance/09_dance.py").write_text("# %%\n")
+    course = written(tmp_path)
+    (course.root / "solutions/dance").mkdir()
+    (course.root / "solutions/dance/09_dance.py").write_text("# %%\n")
     with pytest.raises(LabkitError, match=r"write solutions/dance/problems\.py with PROBLEMS"):
         course.problems("09_dance")
 
 
 def test_a_withheld_name_must_exist(tmp_path, monkeypatch):
     """A name that is misspelt would withhold nothing; so nothing is released."""
-    course = copied(tmp_path)
     (first, *others) = PROBLEMS.values()
     problems = (replace(first, withheld=("labkit.Circel",)), *others)
     monkeypatch.setattr(Course, "problems", lambda self, name: problems)
+    course = synthetic(tmp_path / "course")
     with pytest.raises(LabkitError, match=r"withholds labkit\.Circel, which does not exist"):
         release(course, NAME, 1)
     assert not course.build.exists()
@@ -149,14 +154,14 @@ def test_a_students_environment_is_told_what_an_instructors_has(monkeypatch, cap
         raise ModuleNotFoundError("No module named 'nbgrader'", name="nbgrader.apps")
 
     monkeypatch.setattr("labkit.grader.terms.release.release", missing)
-    assert main(["release", NAME, "--course", str(COURSE.root)]) == 2
+    assert main(["release", "00_warmup", "--course", str(REAL.root)]) == 2
     said = "labkit release: nbgrader is missing; type: pip install 'labkit[grader]'\n"
     assert capsys.readouterr().err == said
 
 
 def test_mistakes_of_the_caller_are_one_sentence(capsys):
     """An unknown assignment, a folder without a course: exit code 2 and a way out."""
-    assert main(["release", "09_nothing", "--course", str(COURSE.root)]) == 2
+    assert main(["release", "09_nothing", "--course", str(REAL.root)]) == 2
     assert "'00_warmup'" in capsys.readouterr().err
     assert main(["release", "--course", "/"]) == 2
     assert "nbgrader_config.py" in capsys.readouterr().err
@@ -171,7 +176,7 @@ def test_one_refusal_stops_no_other_release(monkeypatch, capsys):
         return f"{name} is made"
 
     monkeypatch.setattr("labkit.grader.terms.release.release", release)
-    words = ["00_warmup", "01_paths", "08_report", "--course", str(COURSE.root)]
+    words = ["00_warmup", "01_paths", "08_report", "--course", str(REAL.root)]
     assert main(["release", *words]) == 1
     said = capsys.readouterr()
     assert said.out.startswith("00_warmup is made\n08_report is made\ntried: ")
@@ -182,8 +187,8 @@ def test_one_refusal_stops_no_other_release(monkeypatch, capsys):
 
 def test_the_public_file_is_small_and_valid():
     """What lies beside the notebook is one line of JSON without a hidden case."""
-    for name in COURSE.names():
-        path = COURSE.release / name / "checks.json"
+    for name in REAL.names():
+        path = REAL.release / name / "checks.json"
         assert path.stat().st_size < 500_000
         data = json.loads(path.read_text(encoding="utf-8"))
         assert data["assignment"] == name
@@ -193,7 +198,7 @@ def test_the_public_file_is_small_and_valid():
 
 
 def refused(problems, text=None):
-    """Why the warm-up with these problems, and with this notebook text, should not be released."""
+    """Why a release with these problems, and with this notebook text, is refused."""
     questions = {name: problem.question(1) for name, problem in problems.items()}
     return refusals(
         source_notebook(text or COURSE.notebook_source(NAME), questions, COURSE.predictions(NAME)),
@@ -203,76 +208,57 @@ def refused(problems, text=None):
 
 
 def with_trials(name, change):
-    """The warm-up's problems, one of them with changed trials."""
+    """The problems, one of them with changed trials."""
     problem = PROBLEMS[name]
     trials = tuple(change(k, trial) for k, trial in enumerate(problem.trials))
     return PROBLEMS | {name: replace(problem, trials=trials)}
 
 
-@pytest.mark.parametrize("name", COURSE.names())
-@pytest.mark.parametrize("seed", [2019, 41])
-def test_the_course_itself_is_refused_nothing(name, seed):
+@pytest.mark.slow
+@pytest.mark.parametrize("name", REAL.names())
+def test_the_course_itself_is_refused_nothing(name):
     """No question pays without work or takes one mistake for another, whatever its hidden cases."""
-    problems = {p.name: p for p in COURSE.problems(name)}
-    questions = {key: p.question(seed) for key, p in problems.items()}
-    source = source_notebook(COURSE.notebook_source(name), questions, COURSE.predictions(name))
+    problems = {p.name: p for p in REAL.problems(name)}
+    questions = {key: p.question(41) for key, p in problems.items()}
+    source = source_notebook(REAL.notebook_source(name), questions, REAL.predictions(name))
     assert refusals(source, problems, questions) == []
 
 
 def test_a_weighted_test_needs_a_hidden_case():
-    """Without one the public file has its points; the sentence says which test, and how many."""
-    bare = with_trials("transform_point", lambda k, t: replace(t, hidden=_none) if k == 1 else t)
-    (sentence,) = refused(bare)
-    assert sentence == (
-        "transform_point: the test 'a frame shifted and turned by 90 degrees of yaw' carries 1 of "
-        "2 points and has no hidden case; give its Trial `hidden` cases"
-    )
-    gate = with_trials("transform_point", lambda k, t: replace(t, hidden=_none) if k == 0 else t)
+    """Without one the public file has its points, and who memorises it earns them."""
+    bare, by_heart = refused(with_trials("circle", lambda k, t: replace(t, hidden=_none)))
+    assert "'on its way' carries 4 of 4 points and has no hidden case" in bare
+    assert "memorises its public cases earns 4 of 4 points" in by_heart
+    gate = with_trials("circle", lambda k, t: replace(t, hidden=t.hidden if k else _none))
     assert refused(gate) == [], "a gate carries no points"
-
-
-def test_public_cases_by_heart_pay_nothing():
-    """A table of the public calls with their answers earns what no hidden case takes away."""
-    bare = with_trials("transform_point", lambda k, t: replace(t, hidden=_none) if k < 2 else t)
-    _, by_heart = refused(bare)
-    assert "memorises its public cases earns 1 of 2 points; add hidden cases" in by_heart
 
 
 def test_a_stand_in_pays_nothing(tmp_path):
     """A notebook that falls back to the answer gives it away, unless the question withholds it."""
     text = tmp_path / f"{NAME}.py"
     source = COURSE.notebook_source(NAME).read_text()
-    answer = "return T_ab[:3, :3] @ p_b + T_ab[:3, 3]"
-    text.write_text(source.replace("return np.full(3, np.nan)", answer))
-    (sentence,) = refused(PROBLEMS, text)
-    assert "third argument of use(), earns 2 of 2 points; make the stand-in worse" in sentence
-    open_door = {"orientation_error": replace(PROBLEMS["orientation_error"], withheld=())}
-    (sentence,) = refused(PROBLEMS | open_door)
-    assert "orientation_error: the stand-in" in sentence and "earns 4 of 4 points" in sentence
+    worse = "return np.clip(t / duration, 0.0, 1.0), 1.0 / duration, 0.0"
+    text.write_text(source.replace(worse, "return lk.BangBang(duration)(t)"))
+    assert refused(PROBLEMS, text) == []
+    open_door = {"bang_bang": replace(PROBLEMS["bang_bang"], withheld=())}
+    (sentence,) = refused(PROBLEMS | open_door, text)
+    assert "bang_bang: the stand-in" in sentence and "earns 3 of 3 points" in sentence
 
 
 def test_a_stand_in_is_run_alone():
     """Of the notebook only what the stand-in needs is run: no arm, no figure, no other check."""
-    name = "03_velocity_control"
-    questions = {p.name: p.question(1) for p in COURSE.problems(name)}
-    more = COURSE.predictions(name)
-    text = stand_ins(source_notebook(COURSE.notebook_source(name), questions, more))
-    assert set(text) == set(questions)
-    whole = text["workspace_velocity_pd"]
-    for part in ("def tip_feedforward", "my_damped_inverse = use(", "import labkit as lk"):
-        assert part in whole
-    for part in ("lk.run(", "plt", "check("):
-        assert part not in whole
+    (text,) = stand_ins(source()).values()
+    assert "def given_bang_bang" in text and "check(" not in text and "hand_in" not in text
 
 
 def test_known_mistakes_must_be_told_apart():
     """Two with the same answers, or one with the right ones, would accuse the innocent."""
-    problem = PROBLEMS["joint_error"]
+    problem = PROBLEMS["circle"]
     first = problem.wrong[0]
     twin = replace(first, name="its twin")
     right = replace(first, name="nothing wrong", function=problem.answer)
     (sentence,) = refused(PROBLEMS | {problem.name: replace(problem, wrong=(first, twin))})
-    assert "'actual minus target' and 'its twin' give the same answers on all" in sentence
+    assert "'backwards' and 'its twin' give the same answers on all" in sentence
     (sentence,) = refused(PROBLEMS | {problem.name: replace(problem, wrong=(right,))})
     assert "'nothing wrong' gives the right answers on all public calls" in sentence
 
@@ -283,46 +269,40 @@ def test_a_known_mistake_must_give_an_answer():
     def slips(*args):
         return undefined_here(args)  # noqa: F821
 
-    problem = PROBLEMS["joint_error"]
+    problem = PROBLEMS["circle"]
     broken = replace(problem.wrong[0], name="no turn", function=slips)
     (sentence,) = refused(PROBLEMS | {problem.name: replace(problem, wrong=(broken,))})
     assert "its known mistake 'no turn' raises NameError on each public call" in sentence
-    divides = replace(broken, function=lambda *args: np.full(7, np.nan))
+    divides = replace(broken, function=lambda *args: np.full(3, np.nan))
     (sentence,) = refused(PROBLEMS | {problem.name: replace(problem, wrong=(divides,))})
     assert "its known mistake 'no turn' returns NaN on each public call" in sentence
 
 
 def test_a_solved_cell_brings_only_what_it_needs():
     """A variable of the answer brings no function of its module that has the same name."""
-    (coriolis,) = (p for p in COURSE.problems("02_model") if p.name == "coriolis")
+    (coriolis,) = (p for p in REAL.problems("02_model") if p.name == "coriolis")
     text = inlined(coriolis)
     assert "def coriolis" in text and "def mass_matrix" not in text
 
 
-@pytest.mark.slow
-def test_a_release_with_a_reason_against_it_writes_nothing(tmp_path, monkeypatch):
+def test_a_release_with_a_reason_against_it_writes_nothing(course, monkeypatch):
     """All reasons are said at once, and what was released before stays."""
-    course = copied(tmp_path)
-    release(course, NAME, 1)
     before = {p: p.read_bytes() for p in course.root.rglob("*") if p.is_file()}
-    bare = with_trials("transform_point", lambda k, t: replace(t, hidden=_none))
+    bare = with_trials("circle", lambda k, t: replace(t, hidden=_none))
     monkeypatch.setattr(Course, "problems", lambda self, name: tuple(bare.values()))
     with pytest.raises(LabkitError, match=rf"^solutions/{NAME[3:]}:\n") as caught:
         release(course, NAME, 1)
-    assert str(caught.value).count("transform_point: ") == 3
+    assert str(caught.value).count("circle: ") == 2
     assert before == {p: p.read_bytes() for p in course.root.rglob("*") if p.is_file()}
 
 
-@pytest.mark.slow
-def test_what_another_machine_rounds_otherwise_changes_no_file(tmp_path):
+def test_what_another_machine_rounds_otherwise_changes_no_file(course):
     """A release anew leaves public cases that agree, and writes them if a number is another."""
-    course = copied(tmp_path)
-    release(course, NAME, 1)
     checks = course.release / NAME / "checks.json"
     text = checks.read_text()
     for factor, kept in ((1 + 1e-12, True), (1 + 1e-6, False)):
         other = re.sub(r"[0-9]+\.[0-9]{9,}", lambda x, k=factor: repr(float(x[0]) * k), text)
         assert other != text
         checks.write_text(other)
-        release(course, NAME, 1)
+        release(course, NAME, 7)
         assert checks.read_text() == (other if kept else text)

@@ -13,7 +13,7 @@ from labkit.__main__ import main
 from labkit.grader.students.exchange import SECRET
 from labkit.grader.students.roster import Roster, Student, save_roster
 
-NAME = "01_paths"
+NAME = "01_curves"
 
 pytestmark = pytest.mark.slow
 

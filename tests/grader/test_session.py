@@ -3,27 +3,21 @@
 from __future__ import annotations
 
 import json
-import shutil
 import time
 from contextlib import closing
 
 import pytest
-from handmade import FULL, QUICK, ROOT, add, cell_of, put, raw
+from handmade import FULL, QUICK, add, cell_of, put, raw
 
-from labkit.course.authoring.bundle import Bundle
-from labkit.course.authoring.layout import Course
 from labkit.course.equivalence import MOST_COEFFICIENTS, Ratio
 from labkit.course.messages import why
 from labkit.course.reply import NoAnswer
 from labkit.errors import OutOfRange
 from labkit.grader.grading import grade as checker
 from labkit.grader.grading.grade import grade
-from labkit.grader.grading.plan import imports
-from labkit.grader.sandbox.launch import Sandbox
-from labkit.grader.sandbox.limits import MAX_REPLY, MAX_VALUES, Limits, TextBudget, slowness
+from labkit.grader.sandbox.limits import MAX_REPLY, MAX_VALUES, Limits, TextBudget
 from labkit.grader.sandbox.parse import read
 from labkit.grader.sandbox.session import MAX_LOST, RemoteFunction, Session, Step
-from labkit.grader.terms.release import release
 
 LARGEST = 2_000_000  # bytes of a result
 
@@ -86,35 +80,15 @@ def test_what_cells_say_is_older_than_any_hidden_case(monkeypatch, solved, bundl
     assert int(cell["output"]) < began[0]
 
 
-@pytest.mark.parametrize(
-    ("body", "words"),
-    [
-        ("return [[]] * 100_000", "256 kB came back"),
-        ("return [0.5] * 90_000", "256 kB came back"),
-        ("return 'x' * 300_000", "256 kB came back"),
-        ("return [[]] * 15_000", "10,000 values came back"),
-        ("return {'a': [1] * 12_000}", "10,000 values came back"),
-    ],
-)
-def test_an_answer_that_is_too_large_costs_its_question_only(body, words, solved, bundle, sandbox):
+def test_an_answer_that_is_too_large_costs_its_question_only(solved, bundle, sandbox):
     """Long replies and replies of many values are refused before they are read."""
-    put(solved, "circle", f"def circle(s, start, centre):\n    {body}")
+    put(solved, "bang_bang", "def bang_bang(*_):\n    return 'x' * 300_000")
+    put(solved, "circle", "def circle(*_):\n    return {'a': [1] * 12_000}")
     result = grade(raw(solved), "mallory", bundle, sandbox, QUICK)
-    assert result.score == FULL - 4
-    assert words in says(result, "circle")
-
-
-def test_the_limits_of_a_reply_have_a_margin():
-    """The largest honest answer, of 1,600 bytes and 80 values, is far below the limits."""
-    assert MAX_REPLY > 100 * 1_600
-    assert MAX_VALUES > 100 * 80
-
-
-def test_what_a_submission_may_take_is_stated():
-    """On a free machine a minute in all, its parsing included, and 15 s for an endless question."""
-    limits = Limits()
-    assert limits.parse + limits.wall <= 60.0
-    assert limits.question + limits.grace <= 15.0
+    assert result.score == FULL - 7
+    assert "256 kB came back" in says(result, "bang_bang")
+    assert "10,000 values came back" in says(result, "circle")
+    assert MAX_REPLY > 100 * 1_600 and MAX_VALUES > 100 * 80, "the largest honest answer's"
 
 
 def test_a_polynomial_has_few_coefficients():
@@ -149,13 +123,13 @@ def test_an_endless_question_is_asked_no_more(body, solved, bundle, sandbox, ask
 def test_calls_that_are_lost_on_hidden_cases_count_too(solved, bundle, sandbox, asked):
     """An answer that is right on public cases and hangs on hidden ones is not asked for ever."""
     grade(raw(solved), "ada", bundle, sandbox, QUICK)
-    before = asked.count("trapezoid")
+    before = asked.count("bang_bang")
     asked.clear()
-    on_hidden_cases(solved, bundle, "trapezoid", "__import__('time').sleep(1000)")
+    on_hidden_cases(solved, bundle, "bang_bang", "__import__('time').sleep(1000)")
     limits = Limits(call=0.2, question=2.0)
     result = grade(raw(solved), "mallory", bundle, sandbox, limits)
-    public = len(next(q for q in bundle.questions if q.name == "trapezoid").calls)
-    assert public < asked.count("trapezoid") <= public + MAX_LOST < before
+    public = len(next(q for q in bundle.questions if q.name == "bang_bang").calls)
+    assert public < asked.count("bang_bang") <= public + MAX_LOST < before
     assert result.score < FULL
 
 
@@ -195,79 +169,29 @@ def test_slow_cells_leave_time_for_the_answers(solved, bundle, sandbox):
     assert [cell["kind"] for cell in result.cells] == ["TimeUp"] * 12
 
 
-@pytest.fixture(scope="module")
-def torque(tmp_path_factory):
-    """A course with the notebook whose answers are asked most often."""
-    root = tmp_path_factory.mktemp("torque")
-    (root / "solutions").symlink_to(ROOT / "solutions")
-    shutil.copy(ROOT / "nbgrader_config.py", root)
-    release(Course(root), "04_torque_control", 7)
-    return Course(root)
-
-
-SLOWER = """
-def _slower(function):
-    import time
-    def slower(*args, **kwargs):
-        began = time.perf_counter()
-        answer = function(*args, **kwargs)
-        until = began + 5.0 * (time.perf_counter() - began)
-        while time.perf_counter() < until:
-            pass
-        return answer
-    return slower
-"""
-
-
-@pytest.mark.slow
-def test_an_honest_answer_five_times_slower_than_ours_is_marked(torque):
-    """Where every function takes five times its time, in 1,300 calls of a run, marks are full."""
-    name = "04_torque_control"
-    bundle = Bundle.of(torque, name)
-    notebook = json.loads((torque.solution / name / f"{name}.ipynb").read_text())
-    for one in bundle.questions:
-        source = "".join(cell_of(notebook, one.name)["source"])
-        if f"def {one.name}(" in source:  # and no value that was written down
-            put(notebook, one.name, f"{source}\n{SLOWER}\n{one.name} = _slower({one.name})")
-    with Sandbox(imports(bundle.data["cells"])) as sandbox:
-        result = grade(raw(notebook), "ada", bundle, sandbox, Limits().scaled(slowness()))
-    assert result.score == bundle.points, [q.verdict for q in result.questions]
-
-
 EMOJI = "\U0001f600"
 
 
 @pytest.mark.parametrize("what", ["outputs", "own cells", "sources", "sentences"])
 def test_no_result_is_longer_than_two_megabytes(what, solved, bundle, sandbox):
     """However much is printed, raised or written, a result stays small, says so, and counts."""
-    if what == "outputs":  # the runner's own limit is lifted, in the student's own process
-        add(
-            solved,
-            "import labkit.grader.sandbox.runner as i\ni._Capped.write = i.io.StringIO.write",
-        )
+    if what == "outputs":
         much = f"print({EMOJI!r} * 20_000)\nraise ValueError({EMOJI!r} * 500)"
-        for _ in range(900):
+        for _ in range(300):
             add(solved, much, at=3)
     elif what == "own cells":
         for _ in range(9):
             add(solved, f"# {EMOJI * 200_000}")
     elif what == "sources":
-        put(
-            solved,
-            "circle",
-            "".join(cell_of(solved, "circle")["source"]) + f"\n# {EMOJI * 900_000}",
-        )
+        own = "".join(cell_of(solved, "circle")["source"])
+        put(solved, "circle", f"{own}\n# {EMOJI * 900_000}")
     else:
-        for one in bundle.questions:
-            put(
-                solved,
-                one.name,
-                f"def {one.name}(*args):\n    raise ValueError({EMOJI!r} * 100_000)",
-            )
+        for name in ("bang_bang", "circle"):
+            put(solved, name, f"def {name}(*args):\n    raise ValueError({EMOJI!r} * 100_000)")
     result = grade(raw(solved), "mallory", bundle, sandbox, QUICK)
     assert len(result.text().encode()) <= LARGEST
     assert not result.rejected
-    assert result.score == (0 if what == "sentences" else FULL)
+    assert result.score == (FULL - 7 * (what == "sentences"))
     cut = any("MB of text is kept; cut short: " in note for note in result.notes)
     assert cut == (what in {"outputs", "own cells", "sources"})
 
@@ -291,17 +215,9 @@ def test_a_text_budget_is_never_exceeded():
     assert budget.cut >= 1
 
 
-def test_what_cells_print_is_cleaned(solved, bundle, sandbox):
-    """Escape sequences and lone surrogates of outputs and errors reach no file and no terminal."""
-    add(solved, "print('a\\x1b[2Jb\\ud800c')\nraise ValueError('d\\x1b]0;owned\\x07e\\ud800f')")
-    (cell,) = grade(raw(solved), "ada", bundle, sandbox, QUICK).cells
-    assert "\x1b" not in cell["output"] + cell["error"]
-    (cell["output"] + cell["error"]).encode()
-
-
 def test_what_an_exception_says_is_one_clean_line_before_there_is_a_result(bundle, sandbox):
     """No exception, of a cell or of an answer, forges a line or commands a terminal."""
-    fails = "raise ValueError('a\\n[1/1] zoe: 0 of 20\\x1b[2J\\ud800')"
+    fails = "print('a\\x1b[2J\\ud800'); raise ValueError('a\\n[1/1] zoe: 0 of 20\\x1b[2J\\ud800')"
     question = next(q for q in bundle.questions if q.name == "circle")
     answers = Step(1, f"def circle(*args):\n    {fails}", ("circle",))
     with closing(Session(sandbox, [Step(0, fails), answers], QUICK)) as session:
@@ -310,6 +226,7 @@ def test_what_an_exception_says_is_one_clean_line_before_there_is_a_result(bundl
         with pytest.raises(NoAnswer) as failed:
             RemoteFunction(question, session)()
     line = "a [1/1] zoe: 0 of 20 [2J\ufffd"
+    assert "\x1b" not in cell["output"] and cell["output"].encode()
     assert cell["error"].startswith(line) and "\n" not in cell["error"]
     assert str(failed.value).startswith(f"ValueError: {line}") and "\n" not in str(failed.value)
 

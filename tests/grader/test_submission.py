@@ -13,7 +13,7 @@ from labkit.course.authoring.layout import Course
 from labkit.errors import LabkitError
 from labkit.grader.submission import Submission, none_of, read_file
 
-NAME = "01_paths"
+NAME = "01_curves"
 
 
 def put_there(kind, path):
@@ -61,10 +61,10 @@ def test_a_device_is_not_opened():
 def test_who_handed_in_nothing_is_answered_with_near_names(tmp_path):
     """Or with the command that collects, where nobody did."""
     course = Course(tmp_path)
-    assert "type: labkit collect 01_paths" in none_of(course, "01_paths", "ada")
+    assert "type: labkit collect 01_curves" in none_of(course, "01_curves", "ada")
     for student in ("Ada-Lovelace", "Bob-Hope"):
-        (course.submitted / student / "01_paths").mkdir(parents=True)
-    said = "no submission of {!r} for 01_paths; {}"
+        (course.submitted / student / "01_curves").mkdir(parents=True)
+    said = "no submission of {!r} for 01_curves; {}"
     near = (("ada", "did you mean Ada-Lovelace?"), ("bobhope", "did you mean Bob-Hope?"))
     for name, end in (*near, ("zz", "there are Ada-Lovelace, Bob-Hope")):
-        assert none_of(course, "01_paths", name) == said.format(name, end)
+        assert none_of(course, "01_curves", name) == said.format(name, end)

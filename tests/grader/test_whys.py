@@ -35,7 +35,7 @@ def test_only_a_why_that_is_drawn_waits_for_a_person(course, capsys):
     """One that is written and not drawn has its points; one that is blank or as before has 0."""
     given = next(x for x in release_source(course, NAME).cells if grade_id(x) == WHY).source
     so = "Because it is so."
-    texts = {"ada": so, "bob": None, "carl": " \n", "don": so, "eve": f"{given}\n",
+    texts = {"ada": so, "bob": None, "carl": " \n", "dan": so, "eve": f"{given}\n",
              "flo": "<!-- -->", "gus": "\u00a0\u200b"}  # fmt: skip
     for student, text in texts.items():
         data = notebook_of(student)
@@ -48,18 +48,18 @@ def test_only_a_why_that_is_drawn_waits_for_a_person(course, capsys):
         grades = {s: book.find_grade(WHY, NAME, NAME, s) for s in texts}
         found = {s: (g.auto_score, g.needs_manual_grade) for s, g in grades.items()}
     zero, waits = (0.0, False), (None, True)
-    right = {"ada": (2.0, False), "don": waits}
+    right = {"ada": (2.0, False), "dan": waits}
     assert found == dict.fromkeys(texts, zero) | right
     assert main(["feedback", NAME, "--course", str(course.root)]) == 2
     said = capsys.readouterr().err
-    assert f"don ({WHY})" in said and "ada" not in said
+    assert f"dan ({WHY})" in said and "ada" not in said
 
 
 def test_a_why_that_is_marked_is_one_of_the_two(course):
     """A list that is imported later gives a folder another name, and so other whys by lot."""
-    data = notebook_of("don")  # by lot one of Don's two is WHY
-    hand_in(course, NAME, "don", data)
-    result = result_of(course, "don", data=data)
+    data = notebook_of("dan")  # by lot one of Dan's two is WHY
+    hand_in(course, NAME, "dan", data)
+    result = result_of(course, "dan", data=data)
     Results(course, NAME).keep(result)
     with open_gradebook(course) as book:
         for name, why in [("00_warmup", "why_base_joint"), ("02_model", "why_farthest_off")]:
@@ -74,7 +74,7 @@ def test_a_why_that_is_marked_is_one_of_the_two(course):
         book.db.commit()
     record(course, NAME, [result])
     with open_gradebook(course) as book:
-        grade = book.find_grade(WHY, NAME, NAME, "don")
+        grade = book.find_grade(WHY, NAME, NAME, "dan")
         assert (grade.auto_score, grade.needs_manual_grade) == (2.0, False)
 
 
@@ -104,12 +104,12 @@ def test_whys_are_drawn_under_the_seed_of_the_term(course):
 
 def test_no_why_is_drawn_where_the_secret_is_lost(course):
     """Under another key a why that waits would have its points."""
-    hand_in(course, NAME, "don", notebook_of("don"))  # by lot one of Don's two is WHY
-    result = result_of(course, "don", written={WHY: "So."}, data=notebook_of("don"))
+    hand_in(course, NAME, "dan", notebook_of("dan"))  # by lot one of Dan's two is WHY
+    result = result_of(course, "dan", written={WHY: "So."}, data=notebook_of("dan"))
     record(course, NAME, [result])
     course.term.parent.mkdir(exist_ok=True)
     course.term.write_text("{}")
     with open_gradebook(course) as book:
         with pytest.raises(LabkitError, match=r"term\.json is damaged"):
             apply_rules(course, book, NAME)
-        assert book.find_grade(WHY, NAME, NAME, "don").needs_manual_grade
+        assert book.find_grade(WHY, NAME, NAME, "dan").needs_manual_grade

@@ -1,0 +1,58 @@
+# %% [markdown]
+# # 02 · Essays
+#
+# Texts that a person marks, if they are drawn. 15 points.
+
+# %% setup=true
+import labkit as lk
+
+# %%
+HANDLE = "demo"
+mine = lk.my_arm(HANDLE)
+
+# %% find_out="my_payload"
+
+# %% [markdown] why="why_slow"
+# Why slow?
+#
+# ### BEGIN SOLUTION
+# Because.
+# ### END SOLUTION
+
+# %% [markdown] why="why_time"
+# Why time?
+#
+# ### BEGIN SOLUTION
+# Because.
+# ### END SOLUTION
+
+# %% [markdown] why="why_weak"
+# Why weak?
+#
+# ### BEGIN SOLUTION
+# Because.
+# ### END SOLUTION
+
+# %% [markdown] why="why_friction"
+# Why friction?
+#
+# ### BEGIN SOLUTION
+# Because.
+# ### END SOLUTION
+
+# %% [markdown] why="why_gravity"
+# Why gravity?
+#
+# ### BEGIN SOLUTION
+# Because.
+# ### END SOLUTION
+
+# %% [markdown] why="why_lag"
+# Why lag?
+#
+# ### BEGIN SOLUTION
+# Because.
+# ### END SOLUTION
+
+# %% setup=true
+lk.hand_in("02_essays")

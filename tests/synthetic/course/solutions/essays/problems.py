@@ -1,0 +1,3 @@
+"""A notebook of texts alone."""
+
+PROBLEMS = ()
