@@ -109,7 +109,7 @@ def test_results_of_another_version_are_refused(marked):
     for numbers in ({}, stamp() | {"format": FORMAT + 1}, stamp() | {"physics": 99}):
         results.path("ada").write_text(json.dumps(old | numbers))
         assert results.get("ada") is None
-        with pytest.raises(LabkitError, match=r"^ada\.json has (format|physics) \d+"):
+        with pytest.raises(LabkitError, match=r"^ada\.json has (format|physics)"):
             results.read("ada")
     (failed,) = [x for x in current_results(marked, NAME) if isinstance(x, Failure)]
     assert str(failed).endswith(f"type: labkit grade {NAME} --student ada")

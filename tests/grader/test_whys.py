@@ -99,7 +99,7 @@ def test_whys_are_drawn_under_the_seed_of_the_term(course):
     """Also those of a notebook that was released with another seed: two of all, not of each."""
     for name in {*course.names()} - {NAME}:
         (course.bundle / f"{name}.json").write_text("{}")
-    assert a_person_marks(course, 4)  # under 7 WHY is not drawn
+    assert a_person_marks(course, 1)  # under 7 WHY is not drawn
 
 
 def test_no_why_is_drawn_where_the_secret_is_lost(course):

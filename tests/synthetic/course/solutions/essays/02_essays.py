@@ -5,6 +5,7 @@
 
 # %% setup=true
 import labkit as lk
+from labkit.course import check
 
 # %%
 HANDLE = "demo"
