@@ -10,7 +10,8 @@ from dataclasses import replace
 
 import pytest
 from by_hand import BLANK, REPORT, WHY, author, written_in
-from handmade import ROOT, hand_in, raw
+from courses import synthetic
+from handmade import hand_in, raw
 from made import NAME, notebook_of, result_of
 from sqlalchemy.exc import OperationalError
 from sqlalchemy.orm import Session

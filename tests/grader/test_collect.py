@@ -134,7 +134,7 @@ def test_canvas_knows_its_users_by_number(bare, tmp_path):
         ("lovelaceada_42_900_x.ipynb", "ada's"),
         ("lovelaceada_99_901_x.ipynb", "no one's"),
         ("lovelaceada_42_77_902_x.ipynb", "eve's, who calls herself so"),
-        ("malloryeve_LATE_77_903_42_90_01_paths.ipynb", "eve's"),
+        ("malloryeve_LATE_77_903_42_90_01_curves.ipynb", "eve's"),
     ]
     _, left = take(bare, zipped(tmp_path / "1.zip", entries))
     assert counting(bare) == {"ada": "ada's", "eve": "eve's"}

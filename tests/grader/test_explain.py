@@ -13,7 +13,7 @@ from labkit.errors import LabkitError, UnknownName
 from labkit.grader.feedback.explain import explain
 from labkit.grader.terms.release import release
 
-NAME = "01_paths"
+NAME = "01_curves"
 SLIGHTLY_WRONG = """def bang_bang(t, duration):
     if t <= 0 or t >= duration:
         return float(t > 0), 0.0, 0.0
@@ -70,15 +70,15 @@ def test_a_mark_that_was_kept_after_a_test_changed_is_told_as_kept(course, solve
     assert main(["grade", *words]) == 0
     path = course.bundle / f"{NAME}.json"
     data = json.loads(path.read_text())
-    (witness,) = [question for question in data["questions"] if question["name"] == "witness"]
-    hidden = witness["tests"]["items"][0]["cases"]["items"][-1]
-    hidden["expected"] = [[0.0, 0.1]]  # so that the right answer is wrong
+    (first_one,) = [question for question in data["questions"] if question["name"] == "bang_bang"]
+    hidden = first_one["tests"]["items"][1]["cases"]["items"][-1]
+    hidden["expected"] = [0.0, 0.1, 0.0]  # so that the right answer is wrong
     path.write_text(json.dumps(data | {"hash": "0" * 64}))
     assert main(["grade", *words]) == 0
     assert "kept; --lower lets the mark fall" in capsys.readouterr().out
-    assert main(["explain", "ada", "witness", *words[1:]]) == 0
+    assert main(["explain", "ada", "bang_bang", *words[1:]]) == 0
     said = " ".join(capsys.readouterr().out.split())
-    earns = "has changed: now it earns 0 of 2"
+    earns = "has changed: now it earns 0 of 3"
     assert f"Since this mark was made, the release or labkit {earns}" in said
     assert "The hidden case that decided" not in said
 
@@ -104,7 +104,7 @@ def test_what_cannot_be_explained_is_a_sentence(course):
     """An unknown question and a student who handed in nothing are named."""
     with pytest.raises(UnknownName, match="band_bang"):
         explain(course, "ada", "band_bang")
-    with pytest.raises(LabkitError, match="nothing was handed in for 01_paths; type"):
+    with pytest.raises(LabkitError, match="nothing was handed in for 01_curves; type"):
         explain(course, "ada", "bang_bang")
 
 

@@ -7,12 +7,15 @@ import io
 import json
 import re
 from dataclasses import replace
+from html.parser import HTMLParser
 
 import pytest
 from handmade import QUICK
+from made import said_by_hand, saying
 
 from labkit.__main__ import main
 from labkit.course.serialize import encode
+from labkit.course.verdict import Outcome
 from labkit.grader.feedback.class_report import report
 from labkit.grader.feedback.page import page
 from labkit.grader.grading.batch import (
@@ -52,6 +55,45 @@ def term(released, tmp_path_factory):
     done = grade_class(course, NAME, students(course, NAME), GradeOptions(jobs=2, limits=QUICK))
     record(course, NAME, [one.result for one in done if isinstance(one, GradedSubmission)])
     return course
+
+
+class Page(HTMLParser):
+    """The elements and texts of a page."""
+
+    def __init__(self, text):
+        super().__init__()
+        self.tags, self.words = [], []
+        self.feed(text)
+
+    def handle_starttag(self, tag, attrs):
+        self.tags.append((tag, dict(attrs)))
+
+    def handle_data(self, data):
+        self.words.append(data)
+
+
+def test_feedback_page_shows_text_as_text(term):
+    """Whatever a student's code said, the page holds no element but its own, and a policy."""
+    result = max(Results(term, NAME), key=lambda r: len(r.cells) + sum(
+        q.verdict.outcome is Outcome.WRONG for q in r.questions))  # fmt: skip
+    evil = "<script>alert(1)</script><img src=x onerror=alert(1)>"
+    worst = replace(
+        result,
+        notes=(evil,),
+        cells=({"cell": 3, "kind": evil, "error": evil, "output": evil, "seconds": 0.0},),
+        questions=tuple(
+            replace(q, source=evil, notes=(evil,), verdict=saying(q.verdict, evil))
+            for q in result.questions
+        ),
+    )
+    found = Page(page(worst, said_by_hand(worst, circle=evil)))
+    tags = {tag for tag, _ in found.tags}
+    assert not tags & {"script", "img", "iframe", "object", "link"}
+    leads = {a["href"] for t, a in found.tags if t == "a"}
+    assert leads <= {f"#{q.verdict.name}" for q in worst.questions}
+    policy = [a for t, a in found.tags if t == "meta" and "http-equiv" in a]
+    assert "default-src 'none'" in policy[0]["content"]
+    assert any(evil in words for words in found.words)
 
 
 def numbers(data):
@@ -121,7 +163,7 @@ def test_grade_says_first_and_never_lowers_unasked(course):
     path.write_text(json.dumps(data))
     moved = list(grade_class(course, NAME, who, how, change=False))
     lose = {m.now.student for m in moved if m.now.score != m.before.score}
-    assert lose and {m.now.score - m.before.score for m in moved} == {-2.0, 0.0}
+    assert lose and {m.now.score - m.before.score for m in moved} == {-3.0, 0.0}
     assert {m.result.student for m in moved if m.kept} == lose
     *each, last = changes(moved)
     assert len(each) == len(lose) and last.startswith(f"{len(lose)} of 5 marks")
