@@ -112,7 +112,7 @@ def test_a_report_has_points_and_words_for_each_question(course):
 def test_a_notebook_of_another_assignment_is_named(course, bundle, sandbox, solved, capsys):
     """Where it is graded, here and at Gradescope; a right one with cells of its own is not."""
     other = (ROOT / "assignments/02_model/02_model.ipynb").read_bytes()
-    note = f"{OTHER_NOTEBOOK}: only 2 of the 18 named cells are of {NAME}"
+    note = f"{OTHER_NOTEBOOK}: only 2 of the 15 named cells are of {NAME}"
     result = grade(other, "ada", bundle, sandbox, QUICK)
     assert result.notes == (note,)
     assert f"Note: {note}." in gradescope_results(bundle, result)["output"]
