@@ -159,8 +159,8 @@ def test_files_from_anywhere_are_found_by_the_column_that_is_named(bare, tmp_pat
     for one in CLASS:
         place = clones / f"paths-{getattr(one, column)}"
         place.mkdir(parents=True)
-        (place / "01_PATHS.IPYNB").write_text(one.id)
-        (place / "02_model.ipynb").write_text("{}")
+        (place / f"{NAME.upper()}.IPYNB").write_text(one.id)
+        (place / "02_essays.ipynb").write_text("{}")
     for source in (clones, shutil.make_archive(str(tmp_path / "z"), "zip", clones)):
         _, left = take(bare, Path(source), named=f"paths-{{{column}}}/*.ipynb")
         assert counting(bare) == {"ada": "ada", "eve": "eve"} and not left
@@ -178,7 +178,7 @@ def test_a_folder_of_the_exchange_belongs_to_the_user_who_owns_it(bare, tmp_path
     handed_in(inbound, "root", "mine")
     handed_in(inbound, "root", "eve's", "2026-03-02 10:00:00 UTC", owner=NOBODY)
     handed_in(inbound, "ada", "ada's")
-    handed_in(inbound, "root", "other", name="02_model")
+    handed_in(inbound, "root", "other", name="02_essays")
     _, left = take(bare, inbound)
     assert counting(bare) == {"root": "mine"} and len(left) == 2
     take(bare, inbound, unverified=True)

@@ -43,7 +43,7 @@ def course(tmp_path_factory):
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize(("student", "score"), [("ada", 12.0), ("ben", 0.0), ("cleo", 6.0)])
+@pytest.mark.parametrize(("student", "score"), [("ada", 9.0), ("ben", 0.0), ("cleo", 6.0)])
 def test_autograde(course, student, score):
     """Full marks for the answers, none for the release, and each question for itself."""
     assert grade_with_nbgrader(course, NAME, student) == score

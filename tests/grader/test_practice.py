@@ -14,6 +14,7 @@ from handmade import ROOT, cell_of, put
 from labkit.__main__ import main
 from labkit.course import Outcome, Verdict, hand_in
 from labkit.course.notebook import verdict_metadata
+from labkit.grader.students.roster import Roster, Student, save_roster
 from labkit.grader.terms.release import release
 from labkit.grader.terms.student_bundle import PICTURE, _start_here
 
@@ -50,12 +51,13 @@ def test_one_prediction_goes_all_the_way(tmp_path, monkeypatch, capsys):
         tmp_path / "moodle.zip", [(("Ada Lovelace", 101), mine.name, mine.read_bytes())]
     )
     there = ("--course", str(course.root))
+    save_roster(course, Roster((Student("ada", "Ada", "Lovelace"),)))
     assert main(["collect", NAME, str(zipped), *there]) == 0
     assert main(["grade", NAME, *there]) == 0
     assert main(["feedback", NAME, *there]) == 0
     (page,) = (course.root / "feedback").glob("*/*/*.html")
     html = page.read_text()
-    assert "feedback for Ada-Lovelace-101" in html and "1 of 14 points." in html
+    assert "Ada Lovelace" in html and "1 of 11 points." in html
     assert f"<code>{receipt}</code>" in html
     section = html.partition(f'<h2 id="{asked}">')[2].partition("</section>")[0]
     assert "1 of 1 point." in section

@@ -6,7 +6,7 @@ import csv
 import json
 
 import pytest
-from courses import synthetic
+from courses import copied, synthetic
 from handmade import NAME
 
 from labkit.course.authoring.layout import Course
@@ -86,7 +86,7 @@ def test_a_mark_that_nobody_deserved_is_said(played):
 
 def test_a_true_course_is_no_stage(tmp_path):
     """Where a course lies, nothing is handed in and nobody's submissions go."""
-    course = synthetic(tmp_path)
+    course = copied(tmp_path)
     notebook = course.submitted / "ada" / "01_curves" / "01_curves.ipynb"
     notebook.parent.mkdir(parents=True)
     notebook.write_text("work of a week")
@@ -99,14 +99,8 @@ def test_command(played, monkeypatch, capsys):
     """`python -m tests.synthetic --rehearse` does it, and writes nothing into the course."""
     course, _, _ = played
     before = sorted(Results(source_of(course), NAME).folder.glob("*"))
-    words = [
-        "--count",
-        str(COUNT),
-        "--course",
-        str(source_of(course).root),
-        "--rehearse",
-        str(course.root),
-    ]
+    words = ["--count", str(COUNT), "--course", str(source_of(course).root)]
+    words += ["--rehearse", str(course.root)]
     monkeypatch.setattr("sys.argv", ["synthetic", NAME, *words])
     assert main() == 0
     assert "every mark is what was deserved" in capsys.readouterr().out

@@ -126,9 +126,9 @@ def grade_class(
             before = results.get(result.student)
             lower = before is not None and result.falls_from(before)
             one = GradedSubmission(result, before, kept=lower and not options.lower)
-            if change and not one.kept:
-                results.keep(result)
-            yield one
+            keeps = change and not one.kept
+            failed = for_student(result.student, results.keep, result) if keeps else None
+            yield failed or one
 
 
 def _graded(

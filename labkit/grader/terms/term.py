@@ -134,7 +134,7 @@ def of_student(course: Course, student: str) -> tuple[list[Path], list[Path]]:
     Raises:
         LabkitError: No student can have this name.
     """
-    if not is_name(student) or {"/", "."} & {student, student[:1]} or not student:
+    if not is_name(student) or "/" in student or student[:1] in {"", "."}:
         raise LabkitError(f"{student!a} is not the name of a student's folder")
     theirs, others = list[Path](), list[Path]()
     for term in (course.root, *_archives(course)):
