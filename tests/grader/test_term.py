@@ -14,6 +14,7 @@ from handmade import QUICK
 from made import said_by_hand, saying
 
 from labkit.__main__ import main
+from labkit.course.authoring.outcomes import OUTCOMES
 from labkit.course.serialize import encode
 from labkit.course.verdict import Outcome
 from labkit.grader.feedback.class_report import report
@@ -186,7 +187,7 @@ def test_class_report(term, capsys):
     assert not [r.student for r in results if r.student in text]
     assert main(["class-report", NAME, "--names", "--course", str(term.root)]) == 0
     told = capsys.readouterr().out
-    assert "`bang_bang`" in told
+    assert OUTCOMES["motion"] in told and "`bang_bang`" in told
     said = sum("twice_the_time" in r.text() and "predict(" in q.source for r in results
                for q in r.questions if q.verdict.name == "twice_the_time")  # fmt: skip
     believed = told.partition("**`twice_the_time`**")[2].partition("\n## ")[0]

@@ -110,6 +110,7 @@ PROBLEMS = (
         ),
         Close(parts=("s", "ds", "dds")),
         withheld=("labkit.BangBang",),
+        outcomes=("motion",),
         hints=("Draw the acceleration.", "It is 4 / T².", "Mirror the first half."),
         wrong=(
             Wrong("no rest", "Outside the motion the reference is at rest.", goes_on, "Rest."),
