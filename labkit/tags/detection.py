@@ -1,6 +1,7 @@
 r"""Detection: from a picture to the poses of the tags in it.
 
-OpenCV finds the tags, once more in the doubled picture if one is missing or any may be there;
+OpenCV finds the tags; if one is missing, or there is none, once more in the doubled picture, and
+then by the edge of their paper, which counts where the ground is brighter than the paper;
 `fitting` makes the corners exact.
 A flat square seen from afar looks the same tilted in either of two directions, so there are two
 poses to choose from (Collins & Bartoli 2014, "Infinitesimal plane-based pose estimation", IPPE);
@@ -9,7 +10,7 @@ the ratio of their errors says how reliable the choice is.
 The covariance is that of least squares, :math:`J^+ C J^{+T}`, with J the derivative of the corners'
 pixels with respect to a small motion of the tag, and C the corners' covariance from
 the same picture.  Where the pattern cannot be fitted, OpenCV's corners stay, with their own, larger
-errors; where the corners are not those of a square, C is as much larger as they differ.
+errors; where the corners are not those of a square, C is larger, as a lens's error mostly fits one.
 """
 
 from __future__ import annotations
@@ -27,14 +28,16 @@ from ..errors import LabkitError, OutOfRange, TypeMismatch
 from ..shapes import Array, as_array, as_number, locked, shown
 from .fitting import Outline, fitted
 from .intrinsics import Intrinsics
-from .tag import PATTERNS, Picture, as_picture, tag_corners
+from .tag import CELLS, PATTERNS, Picture, as_picture, tag_corners
 
 if TYPE_CHECKING:
     from .camera import Camera
 
+_LOOKS = ((1, 0), (2, 0), (2, 1))  # how much larger, and cells of white paper that count
 _NONE = Intrinsics().distortion
 _INSIDE = 0.6  # [px] from the outermost dark pixels, which OpenCV gives, to the corner
 _ROUGH = 0.6  # [px]; how exact those are
+_HIDDEN = 32.0  # by which a wrong lens moves corners more than it shows, in squares
 
 
 class TagNotFound(LabkitError, LookupError):
@@ -225,7 +228,7 @@ def _detection(id: int, outline: Outline, lens: Intrinsics, size: float) -> Dete
         reprojection_error(T, corners, flat, size) for T in (best, first, other)
     )
     noise = float(np.sqrt(outline.covariance.diagonal().mean()))
-    unlike = max(1.0, (error / noise) ** 2)  # the corners of a square, as if the lens were wrong
+    unlike = _HIDDEN * max(0.0, error**2 - 3.0 * noise**2)  # a square, as if the lens were wrong
     return Detection(
         id=id,
         corners=locked(lens.bent(corners) if any(lens.distortion) else corners),
@@ -233,7 +236,7 @@ def _detection(id: int, outline: Outline, lens: Intrinsics, size: float) -> Dete
         T_cm=best,
         error=error,
         ratio=other_error / max(first_error, 1e-9),
-        covariance=pose_covariance(best, flat, size, unlike * outline.covariance),
+        covariance=pose_covariance(best, flat, size, outline.covariance + unlike * np.eye(8)),
     )
 
 
@@ -262,15 +265,17 @@ def _outlines(grey: Picture, wanted: list[int], lens: Intrinsics) -> list[tuple[
     """Numbers and outlines; the second look, closer, is for tags that the first did not see."""
     found: list[tuple[int, Outline]] = []
     rough: list[tuple[int, Outline]] = []
-    for zoom in (1, 2):
-        for number, corners in _numbered(grey, zoom, lens):
+    for look in _LOOKS:
+        for number, corners in _numbered(grey, *look, lens):
             if _new(corners, found):
                 outline = fitted(grey, corners, number, lens)
+                if outline is not None and look != _LOOKS[0]:  # from corners that are rougher
+                    outline = fitted(grey, outline.corners, number, lens)
                 if outline is not None:
                     found.append((number, outline))
-                elif zoom == 1:
+                elif look == _LOOKS[0]:
                     rough.append((number, Outline(corners, _ROUGH**2 * np.eye(8))))
-        if wanted and {number for number, _ in found} >= set(wanted):
+        if found and {number for number, _ in found} >= set(wanted):
             break
     return found + [one for one in rough if _new(one[1].corners, found)]
 
@@ -281,24 +286,28 @@ def _new(corners: Array, found: list[tuple[int, Outline]]) -> bool:
     return all(np.linalg.norm(o.corners.mean(axis=0) - middle) > near for _, o in found)
 
 
-def _numbered(grey: Picture, zoom: int, lens: Intrinsics) -> list[tuple[int, Array]]:
-    """Numbers and straightened corners by OpenCV."""
+def _numbered(grey: Picture, zoom: int, ring: int, lens: Intrinsics) -> list[tuple[int, Array]]:
+    """Numbers and straightened corners by OpenCV; with a ring, from the edge of the paper."""
     size = (zoom * grey.shape[1], zoom * grey.shape[0])
     large = grey if zoom == 1 else cv2.resize(grey, size, interpolation=cv2.INTER_CUBIC)
-    found, numbers, _ = _detector(zoom).detectMarkers(large)
+    found, numbers, _ = _detector(zoom, ring).detectMarkers(large)
     pairs = []
     for number, corners in zip([] if numbers is None else numbers.ravel(), found, strict=True):
         seen = (corners.reshape(4, 2).astype(float) + 0.5) / zoom - 0.5
         out = seen - seen.mean(axis=0)
         seen += _INSIDE / zoom * out / np.linalg.norm(out, axis=1, keepdims=True)
-        pairs.append((int(number), lens.straightened(seen)))
+        paper, square = (tag_corners(CELLS + n)[None, :, :2] for n in (2 * ring, 0))
+        H = cv2.getPerspectiveTransform(paper.astype(np.float32), seen.astype(np.float32))
+        pairs.append((int(number), lens.straightened(cv2.perspectiveTransform(square, H)[0])))
     return pairs
 
 
 @cache
-def _detector(zoom: int) -> Any:
+def _detector(zoom: int, ring: int) -> Any:
     settings = cv2.aruco.DetectorParameters()
-    if zoom > 1:  # what it reads wrong does not look like the tag, and `fitted` says so
+    settings.markerBorderBits += ring
+    settings.maxErroneousBitsInBorderRate += ring  # the ring is white
+    if zoom + ring > 1:  # what it reads wrong does not look like the tag, and `fitted` says so
         settings.perspectiveRemovePixelPerCell = 8
         settings.errorCorrectionRate = 1.0
     return cv2.aruco.ArucoDetector(PATTERNS, settings)

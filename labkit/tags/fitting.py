@@ -15,7 +15,8 @@ Weights make pixels harmless that the model cannot explain, such as those behind
 
 The covariance is that of least squares.  Counting pixels as independent makes it too small, since
 neighbours agree; counting each cell as one (Liang & Zeger 1986) makes it too large where only the
-edges' profile is not quite a Gaussian's.  The variance taken is the geometric mean of the two.
+edges' profile is not quite a Gaussian's.  The variance taken is the cube root of the first squared
+times the second.
 """
 
 from __future__ import annotations
@@ -31,9 +32,10 @@ from .tag import CELLS, Picture, Tag
 
 _SQUARE = 0.5 * CELLS * np.array([[-1, -1], [1, -1], [1, 1], [-1, 1]])  # in cells, y down
 _EDGES = np.arange(-0.5 * CELLS, 0.5 * CELLS + 1)
-_BESIDE = 0.5  # cells around the black square that are looked at: the paper may end after one
-_MOST, _FEW = 6000, 400  # pixels that are looked at, and until the corners move less than
+_BESIDE = 0.2  # cells around the black square that are looked at: blur adds what is beside paper
+_MOST, _FEW = 1500, 300  # pixels that are looked at, and until the corners move less than
 _NEARLY = 0.05  # [px]
+_CLEAR = 3.0  # widths of the blur to the edge of the paper, beside which all may be
 _FAR = 50.0  # [px]; the unit of the leans of black and white
 _STEPS, _STILL = 15, 0.01  # at most so many, until the corners move less than this [px]
 _FIRST = np.array([0.0] * 8 + [1.2, 1.2, 0.0, 0.0])
@@ -41,8 +43,8 @@ _FIRST = np.array([0.0] * 8 + [1.2, 1.2, 0.0, 0.0])
 _LOOSE = np.array([1.5] * 8 + [1.0, 1.0, 0.4, 0.3])  # how far they may be from that
 _LIMIT = np.array([1.0] * 8 + [0.3] * 4 + [np.inf] * 6)  # of one step
 _LOW, _HIGH = np.array([[0.1, 0.1, -0.9, -0.9], [8.0, 8.0, 0.9, 0.9]])
-_LEAST = 0.002  # [px]; corners without noise are off by this
-_SPARE = 1.25  # by which the variance is larger, as rendered pictures say
+_LEAST = 0.001  # [px]; corners without noise are off by this
+_SPARE = 1.8  # by which the variance is larger, as rendered pictures say
 _FAINT = 10.0  # grey levels from black to white
 _EXPLAINED = 0.6  # least share of the variance of the grey levels
 
@@ -85,10 +87,10 @@ def fitted(picture: Picture, corners: Array, number: int, lens: Intrinsics) -> O
     p, known = first, np.zeros(len(first))
     every = max(1, len(near) // _FEW)
     for _ in range(_STEPS):
-        seen, J, cells = _model(p, given, places[::every], number)
+        seen, J, cells, clear = _model(p, given, places[::every], number)
         off, contrast = levels[::every] - seen, p[15] - p[12]
         scale = max(1.0, 0.03 * abs(contrast), 1.48 * float(np.median(abs(off))))
-        weight = 1.0 / (1.0 + (off / (3.0 * scale)) ** 2)
+        weight = clear / (1.0 + (off / (3.0 * scale)) ** 2)
         variance = float(weight @ off**2 / weight.sum())
         known[: len(_LOOSE)] = variance / _LOOSE**2
         JW = J * weight[:, None]
@@ -109,7 +111,7 @@ def fitted(picture: Picture, corners: Array, number: int, lens: Intrinsics) -> O
     np.add.at(scores, cells, JW * off[:, None])
     pulls = scores @ back[:, :8]  # on the corners, by each cell
     agree = float(np.trace(np.linalg.solve(back[:8, :8], pulls.T @ pulls))) / 8.0
-    growth = _SPARE * np.sqrt(max(agree, variance) * variance)
+    growth = _SPARE * variance * np.cbrt(max(1.0, agree / variance))
     C = growth * back[:8, :8] + _LEAST**2 * np.eye(8)
     return Outline(corners + p[:8].reshape(4, 2), C)
 
@@ -161,8 +163,8 @@ def _normal(z: Any) -> tuple[Any, Any]:
 _NORMAL = np.array([1.330274429, -1.821255978, 1.781477937, -0.356563782, 0.319381530], np.float32)
 
 
-def _model(p: Array, given: Array, places: Array, number: int) -> tuple[Array, Array, Any]:
-    """Grey levels at some places, their derivatives by the parameters, and the places' cells."""
+def _model(p: Array, given: Array, places: Array, number: int) -> tuple[Array, Array, Any, Any]:
+    """Grey levels of places, their derivatives, cells, and if the paper's edge is far."""
     g, by_corners = _to_tag(given + p[:8].reshape(4, 2))
     x, y, w = _on_tag(g, places)
     D, F, rise, wider, widths = _steps(number), [], [], [], []
@@ -181,7 +183,8 @@ def _model(p: Array, given: Array, places: Array, number: int) -> tuple[Array, A
     across_y, across_x = F[1] @ D.T, F[0] @ D
     rise_x, rise_y = across_y[:, 1:] * dx, across_x[:, 1:] * dy
     both = ((dx @ D[1:, 1:]) * dy).sum(axis=1)
-    m = (F[0] * across_y).sum(axis=1) + p[10] * both
+    bent = p[8] * p[9] * ((wider[0] @ D[1:, 1:]) * wider[1]).sum(axis=1)
+    m = (F[0] * across_y).sum(axis=1) + p[10] * (both + 0.5 * p[10] * bent)  # Mehler's formula
     around = np.column_stack([np.ones(len(x)), places / _FAR])
     white = m + p[11] * m * (1.0 - m)
     contrast = around @ (p[15:] - p[12:15])
@@ -194,11 +197,12 @@ def _model(p: Array, given: Array, places: Array, number: int) -> tuple[Array, A
         by_g @ by_corners,
         k * (wider[0] * across_y[:, 1:]).sum(axis=1),
         k * (wider[1] * across_x[:, 1:]).sum(axis=1),
-        k * both,
+        k * (both + p[10] * bent),
         contrast * m * (1.0 - m),
         around * (1.0 - white)[:, None],
         around * white[:, None],
     ])  # fmt: skip
     seen = (1.0 - white) * (around @ p[12:15]) + white * (around @ p[15:])
     cells = (np.floor(x) + 6).astype(int) * 12 + (np.floor(y) + 6).astype(int)
-    return seen, J, cells
+    edge = np.minimum((0.5 * CELLS + 1.0 - abs(x)) / sx, (0.5 * CELLS + 1.0 - abs(y)) / sy)
+    return seen, J, cells, (edge > _CLEAR) | (np.maximum(abs(x), abs(y)) < 0.5 * CELLS)
