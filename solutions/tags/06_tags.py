@@ -185,8 +185,8 @@ def depth_spread(distance, pictures=12):
 near, far = depth_spread(0.6), depth_spread(1.2)
 print(f"the depth spreads by {1e3 * near:.2f} mm at 0.6 m and by {1e3 * far:.2f} mm at 1.2 m")
 print("Twelve pictures tell a spread to a fifth, so their ratio is uncertain by 30 %. From 300 pictures")
-print("at each distance it is about 5: the square of the distance gives 4, and the corners of a smaller")
-print("square are found a little less well.")
+print("at each distance it is about 3: the square of the distance gives 4, but the detector looks at no")
+print("more than 1,500 pixels, which are a smaller share of a near tag.")
 
 # %% [markdown]
 # The position along the line of sight is measured worst, because a tag that comes nearer changes the picture

@@ -126,7 +126,7 @@ def test_seen_from_the_front_the_tilt_is_a_guess():
         shots = [clean + random.normal(0.0, 10.0, clean.shape) for _ in range(9)]
         seen = [lk.detect_tags(np.clip(x, 0, 255).astype(np.uint8), LENS, 0.1)[0] for x in shots]
         ratios[tilt] = np.median([one.ratio for one in seen])
-    assert 1.0 <= ratios[0.02] < 2.0 < ratios[0.8]
+    assert 1.0 <= ratios[0.02] < 4.0 < ratios[0.8]
 
 
 def test_the_covariance_is_what_noise_on_the_corners_does():
