@@ -57,7 +57,7 @@ def unpacked(released, tmp_path_factory):
 
 
 @pytest.mark.parametrize(
-    "words", [["student-bundle", "01_paths"], ["export", "01_paths", "--layout", "gradescope"]]
+    "words", [["student-bundle", "01_curves"], ["export", "01_curves", "--layout", "gradescope"]]
 )
 def test_a_course_without_labkits_source_is_a_sentence(course, words, tmp_path, capsys):
     """Both hand out labkit itself; the sentence says what to name, and no file is begun."""
@@ -115,7 +115,7 @@ def test_the_zip_holds_what_a_student_needs_and_no_more(unpacked):
             "binder/postBuild",
             "binder/runtime.txt",
         ),
-        *("assignments/01_paths/01_paths.ipynb", "assignments/01_paths/checks.json"),
+        *("assignments/01_curves/01_curves.ipynb", "assignments/01_curves/checks.json"),
         "assignments/START_HERE.ipynb",
     }
 
@@ -138,8 +138,8 @@ def test_the_first_notebook_has_a_picture_the_order_and_the_book_and_runs(unpack
     notebook = json.loads((folder / "START_HERE.ipynb").read_text())
     text = "\n".join("".join(cell["source"]) for cell in notebook["cells"])
     links = re.findall(r"\]\(([^)]*)\)", text)
-    first = "01_paths/01_paths.ipynb"
-    assert links == ["attachment:baxter.png", first, first, "book.org"]
+    first = "01_curves/01_curves.ipynb"
+    assert links == ["attachment:baxter.png", first, "book.org"]
     assert notebook["cells"][0]["attachments"]["baxter.png"]["image/png"]
     assert (folder / links[1]).exists()
     names = {}
