@@ -77,16 +77,13 @@ def feedback(
 @of_assignment
 @click.option("--names", is_flag=True, help="Show real names; for your eyes only.")
 @to_file
-@click.option("--jplag", type=PATH, metavar="DIR", help="Also write the answers to DIR, for JPlag.")
-def class_report(
-    course: Course, assignment: str, names: bool, to: Path | None, jplag: Path | None
-) -> int:
+def class_report(course: Course, assignment: str, names: bool, to: Path | None) -> int:
     """Report what the class got right and wrong.
 
     The report counts mistakes by their names. Students have pseudonyms unless you add --names.
     """
     from ...course.authoring.bundle import Bundle
-    from ..feedback.class_report import FEWEST, report, write_for_jplag
+    from ..feedback.class_report import FEWEST, report
     from ..marks.table import marks_of
     from ..pseudonyms import pseudonyms
 
@@ -97,14 +94,10 @@ def class_report(
         out = [mark for mark in marks if mark.missing and not mark.lines]
         failures.add("left out", [Failure(mark.student, mark.missing) for mark in out])
         problems = {p.name: p for p in course.problems(assignment)}
-        pseudonym = pseudonyms(course)
-        called, fewest = str if names else pseudonym, 1 if names else FEWEST
+        called, fewest = (str, 1) if names else (pseudonyms(course), FEWEST)
         asked = Bundle.of(course, assignment).questions
         truths = {p.name: p.truth for p in course.predictions(assignment)}
         write(report(assignment, marks, problems, called, fewest, asked, truths), to)
-        if jplag:
-            written = write_for_jplag([m.result for m in marks if m.result], jplag, pseudonym)
-            print(f"{written} answers in {jplag}", file=sys.stderr)
     return failures.code
 
 

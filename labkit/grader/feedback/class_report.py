@@ -1,4 +1,4 @@
-"""Report what a class understood: marks, success rates, misconceptions, identical answers."""
+"""Report what a class understood: marks, success rates, misconceptions."""
 
 from __future__ import annotations
 
@@ -6,7 +6,6 @@ import ast
 import re
 from collections import Counter, defaultdict
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from pathlib import Path
 from statistics import mean, median
 from typing import Any, NamedTuple
 
@@ -22,7 +21,6 @@ from ..grading.batch import common_failures
 from ..grading.results import Result
 from ..marks.mark import Mark
 from ..pages import render
-from .alike import same_text
 
 SLOW = 30.0
 FEWEST = 5
@@ -89,22 +87,8 @@ def report(
         doubtful=list(common_failures(graded, fewest)),
         slow_limit=f"{SLOW:g}",
         slow=[f"{name}: {seconds:.0f} s" for seconds, name in times if seconds > SLOW],
-        same_text=list(same_text(graded, who)),
     )
     return text.rstrip() + "\n"
-
-
-def write_for_jplag(results: Sequence[Result], folder: Path, called: Callable[[str], str]) -> int:
-    """Write answers for JPlag, in one folder for each student; return how many there are."""
-    count = 0
-    for result in results:
-        for question in result.questions:
-            if question.source and question.verdict.outcome is not Outcome.NOT_ATTEMPTED:
-                path = folder / called(result.student) / f"{question.verdict.name}.py"
-                path.parent.mkdir(parents=True, exist_ok=True)
-                path.write_text(question.source, encoding="utf-8", errors="replace")
-                count += 1
-    return count
 
 
 class _QuestionRow(NamedTuple):
