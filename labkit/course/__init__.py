@@ -10,7 +10,7 @@ from .equivalence import AtTip, Response, TipTorque
 from .forms import Choose, Curve, Measured, Number
 from .handin import hand_in
 from .identification import Identification
-from .judges import AtMost, Close, Gains, Within
+from .judges import AtMost, Close, Gains
 from .marking import fingerprint, mark
 from .own_arm import my_arm, my_bug
 from .predictions import Prediction
@@ -47,7 +47,6 @@ __all__ = [
     "TipTorque",
     "Tuned",
     "Verdict",
-    "Within",
     "case",
     "check",
     "fingerprint",

@@ -74,8 +74,6 @@ def words(d: Difference) -> tuple[str, str, str, str]:
     of = f"{_quoted(d.part)}: " if d.part else ""
     text = ""
     match d.kind:
-        case Kind.NUMBERS if d.expected is None:
-            text = f"it gives {_brief(d.found)}, which is not one of the right values"
         case Kind.NUMBERS:
             at = f"at {_index(d.at)} " if d.at else ""
             also = ", or any that moves the tip in the same way" if d.several else ""

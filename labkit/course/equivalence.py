@@ -12,7 +12,7 @@ from ..errors import OutOfRange
 from ..shapes import Array
 from .bugs import Found
 from .forms import Form, Measured
-from .judges import Close, Gains, Within, value
+from .judges import Close, Gains, value
 from .verdict import Difference, Kind, Value
 
 MOST_COEFFICIENTS = 50
@@ -145,7 +145,7 @@ def as_expected(known: Any, expected: Any) -> Any:
     return known
 
 
-Judge = Close | Within | Response | Gains | AtTip | Form | Measured | Found
+Judge = Close | Response | Gains | AtTip | Form | Measured | Found
 
 
 def accepts(judge: Judge, answer: Any, expected: Any) -> bool:

@@ -132,30 +132,6 @@ class Close:
 
 
 @dataclass(frozen=True)
-class Within:
-    """The judge of a number that must be in one of the expected intervals."""
-
-    def __call__(self, answer: Any, expected: Any) -> Difference | None:
-        """None if the number is in an interval, else the number."""
-        try:
-            x = float(as_array(answer, (), "the answer"))
-        except LabkitError as error:
-            return _refused(error)
-        if self.distance(x, expected) <= 1.0:
-            return None
-        return Difference(Kind.NUMBERS, found=x, several=True)
-
-    def same(self, answer: Any, other: Any) -> bool:
-        """Whether two answers, right or wrong, are the same number."""
-        return Close().same(answer, other)
-
-    def distance(self, answer: Any, expected: Any) -> float:
-        """Below 1 inside an interval, above 1 outside, growing with the distance."""
-        x = float(answer)
-        return min(float(abs(x - (a + b) / 2) / ((b - a) / 2)) for a, b in expected)
-
-
-@dataclass(frozen=True)
 class AtMost:
     """The judge of a run, each measure of which has an upper limit."""
 

@@ -72,8 +72,3 @@ def segment_at(durations: Sequence[float], t: float) -> tuple[int, float]:
         starts.append(starts[-1] + duration)
     index = max(0, bisect_right(starts, t) - 1)
     return index, t - starts[index]
-
-
-def witness(theta: float, duration: float) -> float:
-    """A time at which the report's equation 8 breaks its own law: the angle jumps in the middle."""
-    return duration / 2.0

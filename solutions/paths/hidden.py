@@ -167,9 +167,3 @@ def segment_all(random: Random) -> Iterator[Call]:
     durations = [0.25 * int(n) for n in random.integers(1, 8, 5)]
     for t in np.arange(-0.5, sum(durations) + 1.0, 0.25):
         yield call(durations, float(t))
-
-
-def witness_others(random: Random) -> Iterator[Call]:
-    """Other angles and durations."""
-    for _ in range(4):
-        yield call(random.uniform(0.2, 3.0), random.uniform(1.0, 9.0))

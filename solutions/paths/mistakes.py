@@ -131,16 +131,6 @@ def time_for_s(path: Path, scaling: Scaling, t: float) -> lk.Sample:
     return lk.Sample(x, dx * ds, ddx * ds**2 + dx * dds)
 
 
-def an_end_point(theta: float, duration: float) -> float:
-    """The end of the motion, where the angle is wrong but does not jump."""
-    return duration
-
-
-def a_late_time(theta: float, duration: float) -> float:
-    """A time in the second half: the value is shifted there, but nothing breaks."""
-    return 0.75 * duration
-
-
 def still_but_accelerated(t: float, duration: float) -> tuple[float, float, float]:
     """Holds t at the ends, and asks the formulas there: the acceleration stays on."""
     a = 4.0 / duration**2
@@ -314,18 +304,3 @@ class Segments:
             if t < begun + d or (self.joint and t <= begun + d) or k == last:
                 return k + self.first, self.local(t, begun, d)
             begun += d
-
-
-def the_start(theta: float, duration: float) -> float:
-    """The start, where the printed formula is right."""
-    return 0.0
-
-
-def an_angle(theta: float, duration: float) -> float:
-    """The angle, where a time is asked for."""
-    return theta
-
-
-def a_time_in_the_first_half(theta: float, duration: float) -> float:
-    """A time in the first half, where the formula is right."""
-    return 0.25 * duration

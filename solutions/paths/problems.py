@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 import labkit as lk
-from labkit.course import Close, Within
+from labkit.course import Close
 from labkit.course.authoring.problem import Problem, Trial, Wrong, call
 
 from . import answers, hidden, mistakes, variants
@@ -583,71 +583,6 @@ SEGMENT_AT = Problem(
     variants=(variants.segment_by_searchsorted, variants.segment_by_walking),
 )
 
-WITNESS = Problem(
-    name="witness",
-    points=2,
-    core=False,
-    outcomes=("motion",),
-    asks="The report's equation 8 for the angle of a circle adds the start angle `theta` in the "
-    "first half of the motion and adds it once more in the second half. Return one time at "
-    "which the angle by this equation does what no arm's joints can do. Any such time is "
-    "accepted.",
-    answer=answers.witness,
-    expected=lambda theta, duration: [[0.499 * duration, 0.501 * duration]],
-    judge=Within(),
-    trials=(
-        Trial(
-            "the angle jumps there",
-            (call(0.7, 2.0), call(1.1, 5.0)),
-            hidden.witness_others,
-            "other angles and durations",
-        ),
-    ),
-    hints=(
-        "An arm cannot jump. At which time could a motion that consists of two formulas jump?",
-        "Evaluate both formulas at a time just before and just after the change from one to the "
-        "other, and subtract.",
-        "One formula replaces the other where speeding up ends and braking begins.",
-    ),
-    wrong=(
-        Wrong(
-            "a time at the end of the motion",
-            "At its end, the printed motion stands still at a wrong angle, but it does not jump "
-            "there. Look for the time of the jump.",
-            mistakes.an_end_point,
-            "A witness is a time at which the rule is broken, not one at which the number looks "
-            "odd.",
-        ),
-        Wrong(
-            "a time in the second half",
-            "The whole second half is shifted, but it moves smoothly. Look for the jump at the "
-            "time where the shift begins.",
-            mistakes.a_late_time,
-            "A shifted motion can still be smooth: look where one formula replaces the other.",
-        ),
-        Wrong(
-            "the start",
-            "At the start, the printed formula is right: the angle is theta, as it should be. "
-            "Look for the time at which the second formula replaces the first.",
-            mistakes.the_start,
-            "A counterexample is a case in which the formula is wrong.",
-        ),
-        Wrong(
-            "an angle",
-            "The question asks for a time in seconds, and you returned the angle.",
-            mistakes.an_angle,
-            "Units: rad is not s.",
-        ),
-        Wrong(
-            "a time in the first half",
-            "In the first half, the printed formula is right. Look at the time at which the "
-            "second formula begins.",
-            mistakes.a_time_in_the_first_half,
-            "A counterexample is a case in which the formula is wrong.",
-        ),
-    ),
-    variants=(variants.Witness(),),
-)
 
 PROBLEMS = (
     BANG_BANG,
@@ -655,5 +590,4 @@ PROBLEMS = (
     CIRCLE,
     COMPOSE,
     SEGMENT_AT,
-    WITNESS,
 )

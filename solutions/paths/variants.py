@@ -90,11 +90,3 @@ def segment_by_walking(durations: Sequence[float], t: float) -> Any:
             return k, t - begun
         begun += duration
     raise AssertionError
-
-
-class Witness:
-    """A callable object that returns a time just after the middle."""
-
-    def __call__(self, theta: float, duration: float) -> float:
-        """A little more than half of the duration."""
-        return 0.5 * duration * (1 + 1e-9)

@@ -20,7 +20,7 @@ from ...errors import LabkitError
 from ..equivalence import Judge, TipTorque
 from ..forms import Measured
 from ..identification import Identification
-from ..judges import Within, numbers
+from ..judges import numbers
 from ..marking import fingerprint, mark, recognise
 from ..notebook import Notebook
 from ..own_arm import RANGES
@@ -154,7 +154,7 @@ def _right(judge: Judge, expected: Any) -> Any:
     """A right answer, made from the expected one."""
     if isinstance(expected, TipTorque):
         return JointTorque(expected.value)
-    return sum(expected[0]) / 2.0 if isinstance(judge, Within) else expected
+    return expected
 
 
 def _key(args: tuple[Any, ...], kwargs: Mapping[str, Any]) -> str:
