@@ -1,7 +1,7 @@
 """Observed causes of wrong answers that no known mistake explains.
 
 Each sentence states what holds in all public calls: every number has the other sign, an argument is
-a factor too many, two arguments are exchanged, or the same gains are chosen for arms that differ.
+a factor too many, or two arguments are exchanged.
 This is true only of a function that answers the same call alike, so a call is repeated first.
 """
 
@@ -20,7 +20,7 @@ from ..shapes import Array
 from .equivalence import accepts
 from .judges import factor, numbers
 from .marking import Function, PublicResult, ask
-from .question import Call, Case, Choice, Question, Raised
+from .question import Call, Case, Question, Raised
 from .verdict import Kind, Misconception, Outcome, Verdict
 
 LONGEST = 3.0
@@ -93,8 +93,6 @@ def _varies(question: Question, answers: Mapping[Case, Any], function: Function)
 
 def cause(question: Question, answers: Mapping[Case, Any], function: Function) -> str:
     """A sentence about what is observed of a wrong answer; "" if nothing explains it."""
-    if same := _same_gains(question, answers):
-        return same
     calls = [call for call in question.calls if isinstance(call, Call) and call in answers]
     if not calls or len(calls) < len(question.calls) or not question.arguments:
         return ""
@@ -105,27 +103,6 @@ def cause(question: Question, answers: Mapping[Case, Any], function: Function) -
     alike = all(map(same_form, given, expected))
     found = related(question, calls, given, expected) if alike else ""
     return found or _exchanged(question, calls, function)
-
-
-def _same_gains(question: Question, answers: Mapping[Case, Any]) -> str:
-    """That the gains which were chosen for arms that differ are the same; else ""."""
-    choices = [case for case in question.calls if isinstance(case, Choice)]
-    alike = all(case.trials == choices[0].trials for case in choices)
-    if alike or len(choices) < len(question.calls):
-        return ""
-    try:
-        for case in choices:
-            case.measured(answers[case])  # gains that cannot be tried have a message of their own
-        pairs = {tuple(map(float, answers[case])) for case in choices}
-    except Exception:  # an odd answer may raise anything
-        return ""
-    if len(pairs) > 1:
-        return ""
-    Kp, Kd = pairs.pop()
-    return (
-        f"Your function returns the same gains, ({Kp:g}, {Kd:g}), for arms that differ. Let it "
-        "find the gains of each arm with the runner that it is given."
-    )
 
 
 def _exchanged(question: Question, calls: Sequence[Call], function: Function) -> str:

@@ -5,16 +5,13 @@ import pytest
 from questions import DOUBLE
 
 import labkit as lk
-from labkit import recordings
-from labkit.course import Choice, mark
+from labkit.course import mark
 from labkit.course.authoring.problem import Problem, Trial, call
-from labkit.course.judges import AtMost, Close
+from labkit.course.judges import Close
 from labkit.course.marking import try_public
 from labkit.course.observed import VARIES, diagnosed
 from labkit.course.student import Desk
 from labkit.course.verdict import Misconception
-from labkit.recordings import read_trials
-from solutions.comparison.hidden import stiffer
 
 
 def law(state, target, *, kp, kd):
@@ -124,36 +121,6 @@ def test_nothing_is_said_of_what_is_not_seen():
     """Of an answer without any relation to the right one nothing is said, nor of a right one."""
     assert seen(SCALED, lambda x, d: np.array([np.cos(x + d), 1.3])) == ""
     assert seen(SCALED, lambda x, d: np.array([x, x * x]) / d) == ""
-
-
-LINE = read_trials(recordings.LINE)
-SLOWER = stiffer(LINE, 4.0)
-
-
-def gains_for(*arms):
-    """A question whose function chooses gains on each arm, with at most 3 mm on its worst seed."""
-    cases = tuple(Choice(trials, {"worst_mm": 3.0}) for trials in arms)
-    return Problem("gains", 1, "Choose.", two_answers, (Trial("two", cases),), judge=AtMost())
-
-
-def two_answers(runner):
-    """Other gains where the runner returns infinity."""
-    return (9.0 if runner(30.0, 0.0) == np.inf else 30.0), 0.0
-
-
-def test_the_same_gains_for_arms_that_differ_are_named():
-    """The pair is in the sentence, whether it was typed or found; one arm shows nothing."""
-    says = "Your function returns the same gains, (30, 0), for arms that differ."
-    assert seen(gains_for(LINE, SLOWER), lambda runner: (30, np.float64(0.0))).startswith(says)
-    assert seen(gains_for(SLOWER, SLOWER), lambda runner: (30.0, 0.0)) == ""
-
-
-def test_other_gains_and_those_that_cannot_be_tried_are_not_called_the_same():
-    """Two pairs are two; beyond the record, below 0 or without two numbers, the judge says more."""
-    both = gains_for(LINE, SLOWER)
-    assert seen(both, lambda runner: (two_answers(runner)[0] / 4.0, 0.0)) == ""
-    for given in ((200.0, 0.0), (-1.0, 0.0), (30.0,), None, "30", iter((30.0, 0.0))):
-        assert seen(both, lambda runner, given=given: given) == ""
 
 
 def test_the_numbers_of_another_command_tell_nothing():
