@@ -214,25 +214,6 @@ def test_the_table_of_questions_says_that_it_leaves_out_extra_credit(released):
     assert f"\n| {lines[0].name} | 1 | 0 | 0 | 0 | 0 | 100% |" in text
 
 
-def test_the_same_text_of_three_is_listed_and_accuses_nobody(released):
-    """Of answers of some lines, and of two or more, also where a fourth shares one of them."""
-    long = "def f(t):\n" + "".join(f"    x{k} = {k} * t\n" for k in range(2))
-    results = [result_of(released, who) for who in ("ada", "bob", "eve", "zoe")]
-    for where in (0, 1):
-        results[:3] = [
-            changed(result, where, source=f"{long}    # {where}") for result in results[:3]
-        ]
-    results[3] = changed(results[3], 0, source=f"{long}    # 0")
-    results[:] = [changed(result, 2, source="def g(t):\n    return t") for result in results]
-    text = report(NAME, list(map(mark_of, results)), {}, str)
-    (said,) = [line for line in text.splitlines() if "handed in the same text" in line]
-    first, second = (q.verdict.name for q in results[0].questions[:2])
-    assert said == (
-        "- ada, bob, eve handed in the same text in 2 answers; this proves nothing, so ask each of "
-        f"them how they came to `{first}` and `{second}`"
-    )
-
-
 def test_a_prediction_in_the_class_report_has_its_text_and_its_truth(course, capsys):
     """A lecturer reads what was asked, what is true, and how many chose it."""
     results = [result_of(course, f"s{number}") for number in range(11)]

@@ -206,14 +206,6 @@ def test_pseudonyms_last_a_term_and_are_nobody_elses(course):
     assert pseudonyms(course)("ada") != first
 
 
-def test_the_same_text_has_a_section_of_its_own(term):
-    """Three who handed in the same work are listed together, with what to ask."""
-    one, *_ = (r for r in Results(term, NAME) if r.score > 10.0)
-    three = [mark_of(replace(one, student=name)) for name in ("xx", "yy", "zz")]
-    text = report(NAME, three, {}, str)
-    assert "## The same text\n\n- xx, yy, zz handed in the same text in" in text
-
-
 def test_canvas_layout():
     """Canvas' five columns in its order, full marks below, students by Canvas' own number."""
     canvas = row("hoppergrace-7", lms="7")
