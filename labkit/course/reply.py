@@ -209,7 +209,9 @@ def _as_data(given: Any) -> Any:
     """An answer as JSON data; what behaves like an array, number or sequence is taken for one."""
     try:
         return encode(given)
-    except TypeMismatch:
-        if not hasattr(given, "__iter__"):
-            raise
-        return encode(list(islice(given, MOST_ITEMS)))
+    except TypeMismatch as error:
+        try:
+            items = list(islice(given, MOST_ITEMS))
+        except TypeError:  # such as a single Rotation, or a class
+            raise error from None
+        return encode(items)

@@ -50,6 +50,7 @@ def _full_names(chains: Iterable[str], means: Mapping[str, str]) -> Iterator[set
 def _is_used(tool: str, used: Iterable[set[str]], attributes: Iterable[str]) -> bool:
     """Whether a tool is meant by its own name or by that of the module that defines it."""
     first, *rest = tool.split(".")
-    if rest[1:] and rest[0][0].isupper():
-        return rest[-1] in attributes
+    if rest[1:] and rest[0][0].isupper():  # a function of the library may share a method's name
+        functions = (p for p in used if {first, rest[-1]} <= p and rest[0] not in p)
+        return rest[-1] in attributes and not any(functions)
     return any({first, *rest[-1:]} <= parts for parts in used)

@@ -59,6 +59,8 @@ class Optics:
         for name in ("shade", "exposure", "blur", "vignette", "noise"):
             as_number(getattr(self, name), name, least=0.0)
         as_number(self.gamma, "gamma", above=0.0)
+        if max(self.shade, self.vignette) > 1.0:
+            raise OutOfRange(f"shade is {self.shade}, vignette {self.vignette}; give at most 1")
         for name, least, most in (("samples", 1, 16), ("jpeg", 0, 100)):
             n = getattr(self, name)
             if not isinstance(n, int) or not least <= n <= most:
@@ -173,7 +175,7 @@ class Camera:
         """Take a quick picture of only the tags and of what hides them; the rest stays blank.
 
         Returns:
-            As for `image`; without noise, both are the same within a tag's paper.
+            As for `image`; without noise, blur or JPEG, both are the same within a tag's paper.
 
         Raises:
             Closed: The world is closed.

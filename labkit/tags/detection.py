@@ -78,6 +78,8 @@ def detect_tags(
 ) -> tuple[Detection, ...]:
     """Find the tags in a picture.
 
+    A closer look, for small tags, is taken while a tag of ``size`` is missing or none is found.
+
     Args:
         image: Grey levels (height, width) or RGB (height, width, 3), uint8.
         camera: The camera that took it, or its intrinsics.

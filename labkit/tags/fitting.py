@@ -94,6 +94,8 @@ def fitted(picture: Picture, corners: Array, number: int, lens: Intrinsics) -> O
         variance = float(weight @ off**2 / weight.sum())
         known[: len(_LOOSE)] = variance / _LOOSE**2
         JW = J * weight[:, None]
+        if not np.isfinite(variance + JW.sum()):
+            return None
         N = JW.T @ J + np.diag(known)
         step = np.linalg.lstsq(N, JW.T @ off + known * (first - p), rcond=1e-12)[0]
         p = p + np.clip(step, -_LIMIT, _LIMIT)

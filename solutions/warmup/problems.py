@@ -230,7 +230,7 @@ ORIENTATION_ERROR = Problem(
             weight=2.0,
         ),
     ),
-    withheld=("labkit.se3.orientation_error", "labkit.Model.pose_error"),
+    withheld=("labkit.se3.orientation_error", "labkit.se3.pose_error", "labkit.Model.pose_error"),
     hints=(
         "For numbers, the error is target minus actual. For rotations, a product replaces the "
         "subtraction: undo the actual rotation, then apply the desired one. Which product of "

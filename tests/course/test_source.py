@@ -68,6 +68,7 @@ def test_tools_are_found(cells, tools):
         ["def f(s): return Schedule()(s)"],  # a cell may hold more than what an answer needs of it
         ["def f(s): return g(s)", "ring = lk.Circle(0)", "def g(s, ring=2): return s * ring"],
         ["def f(T): return T.inverse()"],
+        ["def f(q): return lk.se3.gravity(q)"],  # a function with the name of a method
         ["class Circle: pass", "def f(s): return Circle()(s)"],
         ["def f(s): return s", "def f(s): raise NotImplementedError"],
         ["def f(s: return lk.Circle(s)"],
