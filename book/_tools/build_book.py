@@ -47,9 +47,9 @@ def main(arguments: list[str] | None = None) -> int:
         for folder in (BOOK / "_build", CACHE):
             shutil.rmtree(folder, ignore_errors=True)
     prepare()
+    compare(_progress)
     if chosen.sample:
         return build(SAMPLE)
-    compare(_progress)
     if code := build():
         return code
     size = sum(p.stat().st_size for p in HTML.rglob("*") if p.is_file()) / 1e6
