@@ -192,7 +192,9 @@ def outcomes() -> HTML:
     """A table of the skills of a student after the course, with the evidence for each."""
     evidence: dict[str, list[str]] = {name: [] for name in OUTCOMES}
     for notebook in NOTEBOOKS:
-        for outcome in {name for one in COURSE.problems(notebook) for name in one.outcomes}:
+        found = [x for x in COURSE.predictions(notebook) if isinstance(x, Identification)]
+        asked = [*COURSE.problems(notebook), *found]
+        for outcome in {name for one in asked for name in one.outcomes}:
             evidence[outcome].append(notebook[:2])
     holds(all(evidence.values()), "every outcome has its evidence")
     rows = [(sentence, ", ".join(evidence[name])) for name, sentence in OUTCOMES.items()]
