@@ -18,7 +18,7 @@ RUN apt-get update && apt-get install -y --no-install-recommends \
       make bubblewrap chromium nodejs libatomic1 && rm -rf /var/lib/apt/lists/*
 WORKDIR /lab
 COPY . .
-RUN make .venv/.course && .venv/bin/labkit student-bundle && .venv/bin/python -m zipfile -e dist/baxter-lab.zip /handout
+RUN make .venv/.course && .venv/bin/labkit student-zip && .venv/bin/python -m zipfile -e dist/baxter-lab.zip /handout
 ENV PATH="/lab/.venv/bin:$PATH"
 EXPOSE 8888
 CMD ["jupyter", "lab", "--ip=0.0.0.0", "--no-browser", "--allow-root", "--notebook-dir=assignments"]

@@ -24,7 +24,7 @@ examples:
 """
 EXAMPLES_FOR_INSTRUCTORS = """\
   labkit release                        make all assignments, for students and graders
-  labkit student-bundle                 a zip for students, with a start page
+  labkit student-zip                 a zip for students, with a start page
   labkit grade 01_paths                 grade everything under submitted/
   labkit report-card                    measure how well checks tell right from wrong
 """

@@ -16,7 +16,7 @@ from labkit.course.notebook import check_id, grade_id
 from labkit.course.serialize import question_data
 from labkit.grader.nbgrader.gradebook import quiet_database
 from labkit.grader.nbgrader_api import nbgrader_api
-from labkit.grader.terms.release import generate
+from labkit.grader.release import generate
 
 HIDDEN = """### BEGIN HIDDEN TESTS
 import base64, json, zlib

@@ -128,8 +128,8 @@ def autograder(course: Course, assignment: str, to: Path) -> list[str]:
             the wheel could not be built.
     """
     from .pages import TEMPLATES  # the container has no package of instructors
-    from .students.roster import read_roster
-    from .terms.student_bundle import check_repository, wheel
+    from .roster import read_roster
+    from .student_zip import check_repository, wheel
 
     check_repository(course.root)
     bundle = Bundle.of(course, assignment)

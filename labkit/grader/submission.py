@@ -7,6 +7,7 @@ import os
 import stat
 from collections.abc import Iterable
 from dataclasses import dataclass
+from datetime import UTC, datetime, tzinfo
 from difflib import get_close_matches
 from pathlib import Path
 
@@ -15,6 +16,8 @@ from ..errors import LabkitError
 from .clean import clean_line, few
 from .each import Failure
 
+TIMESTAMP = "timestamp.txt"
+"""The name of the file with the time of a hand-in, which nbgrader's exchange writes."""
 NOTEBOOK = 200
 """The largest notebook that is read, in [MiB]; pictures in it are not read."""
 
@@ -149,3 +152,25 @@ def check_size(size: int, most: int) -> None:
     """Refuse a file that is larger than ``most``, in [MiB]."""
     if size > most * 2**20:
         raise LabkitError(f"the file has {size / 2**20:.0f} MiB, the limit is {most} MiB")
+
+
+def read_stamp(folder: Path) -> str:
+    """The text of the time file beside a submission; empty if there is none."""
+    path = folder / TIMESTAMP
+    if path.is_symlink() or not path.is_file():
+        return ""
+    with path.open(encoding="utf-8", errors="replace") as file:
+        return file.read(200).strip()
+
+
+def read_time(text: str, zone: tzinfo = UTC) -> datetime | None:
+    """The time in a text, in ``zone`` if the text names none; None if it is not clear.
+
+    It is ISO 8601 or nbgrader's own form, ``2026-11-06 10:00:00.000000 UTC``.
+    """
+    try:
+        when = datetime.fromisoformat(text.removesuffix(" UTC") + "Z" * text.endswith(" UTC"))
+        when = (when if when.tzinfo else when.replace(tzinfo=zone)).astimezone(UTC)
+    except (ValueError, OverflowError):
+        return None
+    return when if 2000 <= when.year < 2100 else None

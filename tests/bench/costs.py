@@ -6,8 +6,8 @@ import time
 from contextlib import contextmanager
 
 from labkit.grader.grading.batch import GradeOptions, grade_class
+from labkit.grader.release import release
 from labkit.grader.submission import students
-from labkit.grader.terms.release import release
 
 from .courses import fresh_course
 

@@ -5,8 +5,8 @@ import shutil
 import time
 
 from labkit.grader.grading.batch import GradeOptions, grade_class
+from labkit.grader.release import release
 from labkit.grader.submission import students
-from labkit.grader.terms.release import release
 
 from ..plain_nbgrader import grade_with_nbgrader, pack_hidden
 from .courses import fresh_course

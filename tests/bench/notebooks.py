@@ -4,7 +4,7 @@ import tempfile
 
 import nbformat
 
-from labkit.grader.terms.release import release
+from labkit.grader.release import release
 
 from .courses import fresh_course
 

@@ -16,7 +16,7 @@ from handmade import put
 from labkit.course.authoring.layout import Course
 from labkit.grader.nbgrader.gradebook import open_gradebook
 from labkit.grader.rules import FILE, read_rules
-from labkit.grader.terms.term import PERSONAL_FILES
+from labkit.grader.term import PERSONAL_FILES
 from solutions.paths import answers
 from tests.synthetic.inline import inline
 
@@ -75,7 +75,7 @@ def test_every_command_of_the_instructors_guide_works(tmp_path):
     commands = shown("instructor_guide")
     assert {words[0] for words in commands} == {"labkit", "python", BY_HAND}
     verbs = {words[1] for words in commands if words != [BY_HAND]}
-    assert verbs >= {"doctor", "term", "release", "student-bundle", "-m", "roster", "collect",
+    assert verbs >= {"doctor", "term", "release", "student-zip", "-m", "roster", "collect",
                      "grade", "explain", "defence", "feedback", "export",
                      "class-report"}  # fmt: skip
     for words in commands:

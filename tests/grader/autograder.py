@@ -45,7 +45,7 @@ class Ended(NamedTuple):
 def packed(course, assignment, to, monkeypatch):
     """The zip of an assignment, which does not contain labkit."""
     shutil.copy(ROOT / "constraints.txt", course.root)
-    monkeypatch.setattr("labkit.grader.terms.student_bundle.wheel", lambda root, to: None)
+    monkeypatch.setattr("labkit.grader.student_zip.wheel", lambda root, to: None)
     gradescope.autograder(course, assignment, to)
     return to
 

@@ -14,8 +14,8 @@ from handmade import NAME
 
 from labkit.course.authoring.bundle import Bundle
 from labkit.course.authoring.layout import Course
+from labkit.grader.release import release
 from labkit.grader.sandbox.launch import Sandbox
-from labkit.grader.terms.release import release
 
 SEED = 7
 

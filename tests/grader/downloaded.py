@@ -9,8 +9,8 @@ import zipfile
 from courses import synthetic
 from handmade import NAME
 
-from labkit.grader.students.collect import collect
-from labkit.grader.students.roster import Roster, Student, save_roster
+from labkit.grader.collect import collect
+from labkit.grader.roster import Roster, Student, save_roster
 
 MOODLE = "{}_{}_assignsubmission_file"
 CLASS = (

@@ -14,8 +14,8 @@ from labkit.course.authoring.bundle import Bundle
 from labkit.course.own_arm import FILE, HANDLES, Arms
 from labkit.errors import LabkitError
 from labkit.grader.feedback.explain import explain
-from labkit.grader.terms.release import release
-from labkit.grader.terms.student_bundle import remarks
+from labkit.grader.release import release
+from labkit.grader.student_zip import remarks
 
 NAME = "02_essays"
 CLASS = "Login,First name,Last name,Team\nada,Ada,L,one\nbob,Bob,M,one\neve,Eve,N,\n"

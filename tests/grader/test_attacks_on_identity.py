@@ -13,7 +13,7 @@ import pytest
 from downloaded import NAME, bare_course, counting, kept, zipped
 
 from labkit.__main__ import main
-from labkit.grader.students.collect import participants
+from labkit.grader.collect import participants
 
 M = "_assignsubmission_file_"
 FIRST = {

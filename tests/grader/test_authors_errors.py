@@ -12,7 +12,7 @@ from handmade import NAME
 from labkit.course.authoring.layout import Course
 from labkit.course.authoring.problem import Problem, Trial, call
 from labkit.errors import LabkitError
-from labkit.grader.terms import release
+from labkit.grader import release
 
 
 def double(x):

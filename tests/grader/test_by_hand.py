@@ -26,8 +26,8 @@ from labkit.grader.grading.results import Results
 from labkit.grader.marks.mark import MarkLine
 from labkit.grader.nbgrader import gradebook
 from labkit.grader.nbgrader.gradebook import open_gradebook, record
+from labkit.grader.release import release
 from labkit.grader.sandbox.parse import read
-from labkit.grader.terms.release import release
 
 
 @pytest.fixture(scope="module")

@@ -30,8 +30,8 @@ from labkit.grader.grading.results import Results
 from labkit.grader.marks.table import marks_of
 from labkit.grader.nbgrader import gradebook
 from labkit.grader.nbgrader.gradebook import open_gradebook, record
+from labkit.grader.release import release
 from labkit.grader.submission import students
-from labkit.grader.terms.release import release
 from tests.synthetic import differences, make_class
 
 pytestmark = pytest.mark.slow  # whole classes are graded

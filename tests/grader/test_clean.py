@@ -8,7 +8,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from labkit.grader.clean import clean_line, clean_text, how_many
-from labkit.grader.timestamp import read_time
+from labkit.grader.submission import read_time
 
 ANYTHING = st.text(alphabet=st.characters(exclude_categories=()))  # lone surrogates too
 

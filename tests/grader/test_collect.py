@@ -29,9 +29,8 @@ from hypothesis import strategies as st
 
 from labkit.__main__ import main
 from labkit.errors import LabkitError
-from labkit.grader.students.collect import participants, reading
-from labkit.grader.students.exchange import SECRET
-from labkit.grader.students.roster import FILE, Roster, Student, save_roster
+from labkit.grader.collect import SECRET, participants, reading
+from labkit.grader.roster import FILE, Roster, Student, save_roster
 from labkit.grader.submission import read_file
 
 NOBODY = 64990
@@ -278,7 +277,7 @@ def test_no_path_leads_out_of_the_course(bare, tmp_path, entry):
 
 def test_a_file_too_large_or_damaged_costs_its_owner_alone(bare, tmp_path, monkeypatch):
     """Whatever size the zip states."""
-    monkeypatch.setattr("labkit.grader.students.collect.NOTEBOOK", 1)
+    monkeypatch.setattr("labkit.grader.collect.NOTEBOOK", 1)
     source = from_moodle(tmp_path / "1.zip", [(EVE, "x.ipynb", "e" * 2**21), (ADA, "x.ipynb", "a")])
     data = bytearray(source.read_bytes())
     at = data.index(b"PK\x01\x02") + 24

@@ -24,7 +24,7 @@ from labkit.grader.marks.export import of_term, remarks
 from labkit.grader.marks.mark import Mark
 from labkit.grader.marks.table import marks_of
 from labkit.grader.nbgrader.gradebook import record
-from labkit.grader.students.roster import Roster, Student, save_roster
+from labkit.grader.roster import Roster, Student, save_roster
 
 
 def accepted(course, student, notebook):

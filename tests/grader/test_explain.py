@@ -11,7 +11,7 @@ from labkit.__main__ import main
 from labkit.course.authoring.bundle import Bundle
 from labkit.errors import LabkitError, UnknownName
 from labkit.grader.feedback.explain import explain
-from labkit.grader.terms.release import release
+from labkit.grader.release import release
 
 NAME = "01_curves"
 SLIGHTLY_WRONG = """def bang_bang(t, duration):

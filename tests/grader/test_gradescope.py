@@ -25,11 +25,11 @@ from labkit.grader import gradescope
 from labkit.grader.gradescope import gradescope_results
 from labkit.grader.grading.grade import grade
 from labkit.grader.grading.results import OTHER_NOTEBOOK
+from labkit.grader.roster import Roster, Student, save_roster
 from labkit.grader.sandbox.isolation import processes_of
 from labkit.grader.sandbox.launch import Sandbox
 from labkit.grader.sandbox.limits import Limits
 from labkit.grader.sandbox.mounts import Isolation, NoIsolation
-from labkit.grader.students.roster import Roster, Student, save_roster
 
 DAEMON = """
 import os, signal
@@ -155,7 +155,7 @@ def test_the_zip_knows_whose_arm_it_is_by_the_address(course, tmp_path, monkeypa
     people = Roster((Student("ada", email="Ada@example.org"), Student("bob"), Student("eve")))
     monkeypatch.setattr(gradescope.Bundle, "of", lambda *_: own)
     save_roster(course, people)
-    monkeypatch.setattr("labkit.grader.terms.student_bundle.wheel", lambda root, to: None)
+    monkeypatch.setattr("labkit.grader.student_zip.wheel", lambda root, to: None)
     (course.root / "constraints.txt").touch()
     unknown = gradescope.autograder(course, NAME, tmp_path / "a.zip")
     assert unknown == ["bob"]

@@ -23,7 +23,7 @@ from labkit.grader.marks.mark import MarkLine
 from labkit.grader.marks.table import mark_of
 from labkit.grader.nbgrader.gradebook import record
 from labkit.grader.nbgrader.markup import clean
-from labkit.grader.students.roster import Student
+from labkit.grader.roster import Student
 
 MARKDOWN = [
     "<script>alert(1)</script>",

@@ -11,7 +11,7 @@ from plain_nbgrader import grade_with_nbgrader, pack_hidden
 
 from labkit.course.authoring.layout import Course
 from labkit.course.authoring.solved import inlined
-from labkit.grader.terms.release import release
+from labkit.grader.release import release
 
 pytestmark = pytest.mark.xdist_group("nbgrader marks")
 

@@ -13,11 +13,10 @@ from labkit.course.authoring.bundle import Bundle
 from labkit.course.authoring.layout import Course
 from labkit.course.seed import PUBLIC_SEED
 from labkit.errors import UnknownName
-from labkit.grader import seeds
+from labkit.grader import seeds, term
 from labkit.grader.nbgrader.gradebook import open_gradebook
-from labkit.grader.students.roster import Roster, Student, save_roster
-from labkit.grader.terms import term
-from labkit.grader.terms.release import prepared, release
+from labkit.grader.release import prepared, release
+from labkit.grader.roster import Roster, Student, save_roster
 
 PURPOSES = ("hidden cases", "arms", "the whys", "defence")
 ROOT = Path(__file__).resolve().parents[2]
@@ -160,7 +159,7 @@ def test_a_release_with_other_questions_waits_for_the_next_term(course, monkeypa
     release(course, "00_warmup", seeds.seed_of(course))
     made = prepared(course, "00_warmup", seeds.seed_of(course))
     made.source.cells = [x for x in made.source.cells if "joint_error" not in str(x.metadata)]
-    monkeypatch.setattr("labkit.grader.terms.release.prepared", lambda *_: made)
+    monkeypatch.setattr("labkit.grader.release.prepared", lambda *_: made)
     with pytest.raises(LabkitError, match="takes no other questions now"):
         release(course, "00_warmup", seeds.seed_of(course))
     assert (course.bundle / "00_warmup.json").read_bytes() == before

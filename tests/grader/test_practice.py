@@ -14,9 +14,9 @@ from handmade import ROOT, cell_of, put
 from labkit.__main__ import main
 from labkit.course import Outcome, Verdict, hand_in
 from labkit.course.notebook import verdict_metadata
-from labkit.grader.students.roster import Roster, Student, save_roster
-from labkit.grader.terms.release import release
-from labkit.grader.terms.student_bundle import PICTURE, _start_here
+from labkit.grader.release import release
+from labkit.grader.roster import Roster, Student, save_roster
+from labkit.grader.student_zip import PICTURE, _start_here
 
 NAME = "00_warmup"
 

@@ -21,7 +21,7 @@ from labkit.course.authoring.solved import inlined, solution_notebook
 from labkit.course.brief import brief
 from labkit.course.notebook import source_notebook
 from labkit.errors import LabkitError
-from labkit.grader.terms.release import FORBIDDEN, release
+from labkit.grader.release import FORBIDDEN, release
 
 COURSE = Course(SYNTHETIC.parent)
 REAL = Course.here(Path(__file__))
@@ -153,7 +153,7 @@ def test_a_students_environment_is_told_what_an_instructors_has(monkeypatch, cap
     def missing(*args):
         raise ModuleNotFoundError("No module named 'nbgrader'", name="nbgrader.apps")
 
-    monkeypatch.setattr("labkit.grader.terms.release.release", missing)
+    monkeypatch.setattr("labkit.grader.release.release", missing)
     assert main(["release", "00_warmup", "--course", str(REAL.root)]) == 2
     said = "labkit release: nbgrader is missing; type: pip install 'labkit[grader]'\n"
     assert capsys.readouterr().err == said
@@ -175,7 +175,7 @@ def test_one_refusal_stops_no_other_release(monkeypatch, capsys):
             raise LabkitError("the first cell says 24 points")
         return f"{name} is made"
 
-    monkeypatch.setattr("labkit.grader.terms.release.release", release)
+    monkeypatch.setattr("labkit.grader.release.release", release)
     words = ["00_warmup", "01_paths", "08_report", "--course", str(REAL.root)]
     assert main(["release", *words]) == 1
     said = capsys.readouterr()

@@ -10,8 +10,8 @@ import pytest
 from handmade import hand_in, nbgrader, raw
 
 from labkit.__main__ import main
-from labkit.grader.students.exchange import SECRET
-from labkit.grader.students.roster import Roster, Student, save_roster
+from labkit.grader.collect import SECRET
+from labkit.grader.roster import Roster, Student, save_roster
 
 NAME = "01_curves"
 

@@ -12,7 +12,7 @@ from labkit.course.own_arm import Arms
 from labkit.errors import LabkitError
 from labkit.grader.clean import LONGEST, safe_name
 from labkit.grader.nbgrader.gradebook import open_gradebook
-from labkit.grader.students.roster import (
+from labkit.grader.roster import (
     FILE,
     Roster,
     Student,

@@ -17,6 +17,7 @@ from labkit.__main__ import main
 from labkit.course.authoring.outcomes import OUTCOMES
 from labkit.course.serialize import encode
 from labkit.course.verdict import Outcome
+from labkit.grader.collect import Participant
 from labkit.grader.feedback.class_report import report
 from labkit.grader.feedback.page import page
 from labkit.grader.grading.batch import (
@@ -31,10 +32,9 @@ from labkit.grader.marks.mark import Mark, MarkLine
 from labkit.grader.marks.table import mark_of, marks_of
 from labkit.grader.nbgrader.gradebook import record
 from labkit.grader.pseudonyms import pseudonyms
-from labkit.grader.students.collect import Participant
-from labkit.grader.students.roster import Student
+from labkit.grader.roster import Student
 from labkit.grader.submission import students
-from labkit.grader.terms.term import archive
+from labkit.grader.term import archive
 from tests.synthetic import make_class
 
 pytestmark = [pytest.mark.slow, pytest.mark.xdist_group("term")]  # whole classes are graded

@@ -16,7 +16,7 @@ from labkit.course.authoring.layout import Course
 from labkit.course.authoring.release import same_but_for_rounding
 from labkit.course.notebook import source_notebook
 from labkit.course.serialize import encode
-from labkit.grader.terms.release import FORBIDDEN, release
+from labkit.grader.release import FORBIDDEN, release
 
 pytestmark = pytest.mark.xdist_group("release")
 

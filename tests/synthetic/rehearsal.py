@@ -13,6 +13,7 @@ from labkit.course.authoring.layout import Course
 from labkit.course.seed import PUBLIC_SEED
 from labkit.errors import LabkitError
 from labkit.grader.atomic import write
+from labkit.grader.collect import collect
 from labkit.grader.each import Failure, Failures
 from labkit.grader.feedback.class_report import report
 from labkit.grader.feedback.page import write_feedback
@@ -21,10 +22,9 @@ from labkit.grader.grading.current_results import current_results
 from labkit.grader.marks.export import LAYOUTS, as_csv
 from labkit.grader.marks.table import marks_of
 from labkit.grader.nbgrader.gradebook import record
-from labkit.grader.students.collect import collect
-from labkit.grader.students.roster import Roster, Student, save_roster
+from labkit.grader.release import release
+from labkit.grader.roster import Roster, Student, save_roster
 from labkit.grader.submission import students
-from labkit.grader.terms.release import release
 
 from . import differences, make_class
 

@@ -70,8 +70,8 @@ def release(course: Course, names: tuple[str, ...]) -> int:
     refused, the others are still made; the reasons come at the end, with exit code 1.
     """
     from ..each import Failures
+    from ..release import release
     from ..seeds import public_warning, seed_of
-    from ..terms.release import release
 
     names = names or course.names()
     for name in names:
@@ -106,16 +106,14 @@ def release(course: Course, names: tuple[str, ...]) -> int:
     help="Link to the book at ADDRESS; by default the zip holds the book, if it was built.",
 )
 @of_course
-def student_bundle(
-    course: Course, names: tuple[str, ...], to: Path | None, book: str | None
-) -> int:
+def student_zip(course: Course, names: tuple[str, ...], to: Path | None, book: str | None) -> int:
     """Write the zip that students unpack and start.
 
     Without a NAME the zip holds every assignment that was released.
     """
-    from ..terms.student_bundle import remarks, student_bundle
+    from ..student_zip import remarks, student_zip
 
-    path = student_bundle(course, names, to or course.root / "dist" / "baxter-lab.zip", book)
+    path = student_zip(course, names, to or course.root / "dist" / "baxter-lab.zip", book)
     print(f"{path}: {path.stat().st_size / 1e6:.1f} MB")
     for says in remarks(course, names or course.names()):
         print(says, file=sys.stderr)
@@ -137,7 +135,7 @@ def roster(course: Course, file: Path, teams: str) -> int:
     The list comes from Moodle or Canvas, or is any table with a row for each student. Who has
     another role is left out, and named. A student keeps the folder of the first list.
     """
-    from ..students.roster import import_list
+    from ..roster import import_list
 
     print("\n".join(import_list(course, file, teams)))
     return 0
@@ -179,9 +177,9 @@ def collect(
     Exit code: 0 if everything was taken, 1 if a file was left (named at the end), 2 if nothing
     could be collected.
     """
+    from ..collect import collect
     from ..rules import read_rules
-    from ..students.collect import collect
-    from ..timestamp import read_time
+    from ..submission import read_time
 
     course.notebook_source(assignment)
     zone = ZoneInfo(read_rules(course).zone)
@@ -224,4 +222,4 @@ def doctor() -> int:
     return 1 if bad else 0
 
 
-COMMANDS = (doctor, release, student_bundle, roster, collect)
+COMMANDS = (doctor, release, student_zip, roster, collect)

@@ -61,8 +61,8 @@ def export(
     """
     from ..marks.export import LAYOUTS, as_csv, of_term, remarks, unmatched
     from ..marks.table import marks_of
+    from ..roster import idle_extensions
     from ..rules import read_rules
-    from ..students.roster import idle_extensions
 
     if column and layout not in NAMED:
         raise LabkitError(

@@ -60,7 +60,7 @@ def grade(course: Course, assignment: str, student: str | None, diff: bool, **ho
     from ..grading.batch import GradeOptions, changes, common_failures, grade_class
     from ..grading.results import Results
     from ..nbgrader.gradebook import record
-    from ..students.roster import idle_extensions
+    from ..roster import idle_extensions
 
     options = GradeOptions(**how, tell=partial(print, file=sys.stderr, flush=True))
     with Failures() as failures:

@@ -47,9 +47,9 @@ def feedback(
     the page of one --student waits for the answers of that student alone. With --unmarked no page
     waits.
     """
+    from ..collect import for_exchange
     from ..feedback.page import moodle_zip, write_feedback
     from ..marks.table import marks_of
-    from ..students.exchange import for_exchange
 
     with Failures() as failures:
         everybody = [mark for mark in marks_of(course, assignment) if not mark.absent]

@@ -48,7 +48,7 @@ def term(
     The law may say how long marks must be kept.
     """  # noqa: D301
     from ..rules import FILE
-    from ..terms.term import delete, ended, new_term, of_student, running
+    from ..term import delete, ended, new_term, of_student, running
 
     if action == "new":
         if (there := running(course)) and not yes:

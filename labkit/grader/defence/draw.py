@@ -26,11 +26,11 @@ from ..grading.grade import parse
 from ..grading.plan import imports, plan
 from ..grading.results import Answer, Numbers, Run
 from ..grading.worker import in_sandbox
+from ..roster import read_roster
 from ..sandbox.launch import Sandbox
 from ..sandbox.limits import Limits, slowness
 from ..sandbox.session import RemoteFunction, Session
 from ..seeds import key_of
-from ..students.roster import read_roster
 from ..submission import Submission, did_you_mean, is_name
 from ..whys import rank
 from .edits import Edit, edits

@@ -28,6 +28,7 @@ from ...errors import LabkitError
 from ...metrics import SETTLED
 from ...replay.motion import unpack
 from ..atomic import write
+from ..collect import participants
 from ..each import Failure, for_student
 from ..grading.results import Result
 from ..marks.mark import Mark
@@ -35,7 +36,6 @@ from ..marks.table import mark_of
 from ..nbgrader.markup import markdown
 from ..pages import render_page
 from ..rules import read_rules
-from ..students.collect import participants
 from .drawing import curve, side_by_side
 
 MEASURES = {

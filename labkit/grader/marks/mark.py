@@ -5,9 +5,9 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass
 
+from ..collect import Participant
 from ..grading.results import Result
-from ..students.collect import Participant
-from ..students.roster import Student
+from ..roster import Student
 from ..submission import is_name
 
 

@@ -16,12 +16,12 @@ from ...course.authoring.bundle import Bundle
 from ...course.authoring.layout import DEFENCE, Course
 from ...course.notebook import question_of
 from ..clean import clean_line, clean_text, span
+from ..collect import participants
 from ..each import Failure, for_student
 from ..grading.current_results import current_results, full_marks, how_to_grade
 from ..grading.results import Result
 from ..nbgrader.gradebook import apply_rules, open_gradebook
-from ..students.collect import participants
-from ..students.roster import Student, read_roster
+from ..roster import Student, read_roster
 from ..submission import plain_name, students
 from .mark import Mark, MarkLine
 

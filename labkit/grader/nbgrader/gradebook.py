@@ -26,8 +26,7 @@ from ..each import Failure, for_student
 from ..grading.results import Result, Results
 from ..nbgrader_api import nbgrader_api
 from ..rules import apply_lateness
-from ..submission import Submission, digest
-from ..timestamp import read_stamp, read_time
+from ..submission import Submission, digest, read_stamp, read_time
 from ..whys import credit_whys
 from .autograded_notebook import as_text, in_release_form, release_source, with_verdicts
 

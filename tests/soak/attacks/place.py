@@ -20,7 +20,7 @@ from soak.attacks.others import VICTIM
 
 from labkit.course.authoring.layout import Course
 from labkit.course.notebook import grade_id, kind, nbgrader_info
-from labkit.grader.terms.release import release
+from labkit.grader.release import release
 
 NAME = "01_paths"
 ROOT = Path(__file__).parents[3]

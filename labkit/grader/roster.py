@@ -20,16 +20,17 @@ from functools import cache
 from itertools import chain, count
 from pathlib import Path
 
-from ...course.authoring.layout import Course
-from ...errors import LabkitError
-from ..atomic import write
-from ..clean import clean_line, few, from_no_formula, how_many, no_formula, safe_name
-from ..nbgrader.gradebook import open_gradebook
-from ..rules import FILE as RULES
-from ..rules import read_rules
-from ..seeds import key_of
-from ..submission import check_size
-from .arms import give_arms
+from ..course.authoring.layout import Course
+from ..course.own_arm import DEMO, HANDLES, Arms
+from ..course.own_arm import FILE as ARMS
+from ..errors import LabkitError
+from .atomic import write
+from .clean import clean_line, few, from_no_formula, how_many, no_formula, safe_name
+from .nbgrader.gradebook import open_gradebook
+from .rules import FILE as RULES
+from .rules import read_rules
+from .seeds import key_of
+from .submission import check_size
 
 FILE = "course_private/roster.csv"
 LARGEST = 20
@@ -323,3 +324,45 @@ def tell_gradebook(course: Course, roster: Roster) -> None:
             names = ("first_name", "last_name", "email", "lms_user_id")
             known = {name: value or None for name, value in zip(names, about, strict=True)}
             book.update_or_create_student(one.id, **known)
+
+
+def give_arms(course: Course, roster: Roster, key: str) -> None:
+    """Record which student has which arm, and put the arms beside released notebooks.
+
+    The students of a team share one arm. An arm depends only on the key and the handle, so it
+    stays the same when others join the class.
+
+    Args:
+        course: The course.
+        roster: The students of the course.
+        key: The term's key for arms.
+    """
+    handles = {student.id: student.team or student.id for student in roster.students}
+    write(course.root / HANDLES, Arms(key, handles).text())
+    for name in course.names():
+        lay_arms(course, name)
+
+
+def lay_arms(course: Course, name: str) -> None:
+    """Put the arms beside a released notebook that asks about the student's own arm."""
+    arms, folder = Arms.of(course.root), course.release / name
+    if arms.handles and _asks(course, name) and folder.is_dir():
+        write(folder / ARMS, arms.table())
+        (folder / ARMS).chmod(0o644)
+
+
+def without_arms(course: Course, names: Sequence[str]) -> str:
+    """A warning about notebooks that ask about one's own arm but have only the public arm."""
+    lacking = [x for x in names if _asks(course, x) and not (course.release / x / ARMS).exists()]
+    if not lacking:
+        return ""
+    return (
+        f"{', '.join(lacking)}: every student has the public arm {DEMO!r}; for an arm each, import "
+        "the list of students (labkit roster LIST.csv), then make the zip again"
+    )
+
+
+def _asks(course: Course, name: str) -> bool:
+    """Whether a notebook has a question about one's own arm."""
+    text = course.notebook_source(name).read_text(encoding="utf-8")
+    return bool(re.search(r"\bmy_(arm|bug)\(", text))

@@ -17,19 +17,19 @@ from pathlib import Path
 
 import nbformat
 
-from ...course.authoring.bundle import Bundle
-from ...course.authoring.layout import Course
-from ...course.authoring.outcomes import check_outcomes
-from ...course.authoring.problem import Problem
-from ...course.authoring.release import Prepared, prepare, write
-from ...course.notebook import BLANK, by_hand, grade_id, kind, manifest, nbgrader_info
-from ...course.source import analyse, parsed
-from ...errors import LabkitError
-from ..clean import how_many
-from ..grading.results import Results
-from ..nbgrader.gradebook import open_gradebook
-from ..nbgrader_api import nbgrader_api, reason
-from ..students.arms import lay_arms
+from ..course.authoring.bundle import Bundle
+from ..course.authoring.layout import Course
+from ..course.authoring.outcomes import check_outcomes
+from ..course.authoring.problem import Problem
+from ..course.authoring.release import Prepared, prepare, write
+from ..course.notebook import BLANK, by_hand, grade_id, kind, manifest, nbgrader_info
+from ..course.source import analyse, parsed
+from ..errors import LabkitError
+from .clean import how_many
+from .grading.results import Results
+from .nbgrader.gradebook import open_gradebook
+from .nbgrader_api import nbgrader_api, reason
+from .roster import lay_arms
 
 FORBIDDEN = (
     "BEGIN SOLUTION",

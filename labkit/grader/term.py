@@ -11,18 +11,17 @@ from datetime import UTC, datetime, timedelta
 from pathlib import Path
 from typing import Any
 
-from ...course.authoring.layout import Course
-from ...course.own_arm import FILE as ARMS
-from ...course.own_arm import HANDLES
-from ...errors import LabkitError
-from .. import pseudonyms
-from ..atomic import write
-from ..clean import how_many
-from ..rules import FILE as RULES
-from ..seeds import seed_of
-from ..students import collect, roster
-from ..submission import is_name
+from ..course.authoring.layout import Course
+from ..course.own_arm import FILE as ARMS
+from ..course.own_arm import HANDLES
+from ..errors import LabkitError
+from . import collect, pseudonyms, roster
+from .atomic import write
+from .clean import how_many
 from .release import release
+from .rules import FILE as RULES
+from .seeds import seed_of
+from .submission import is_name
 
 PERSONAL_FILES = (
     *("submitted", "autograded", "feedback", "results", "gradebook.db", "build/course/bundle"),

@@ -19,11 +19,11 @@ from pathlib import Path
 import jupytext
 import nbformat
 
-from ...course.authoring.layout import Course
-from ...errors import LabkitError
-from ..pages import render
-from ..students.arms import without_arms
+from ..course.authoring.layout import Course
+from ..errors import LabkitError
+from .pages import render
 from .release import FORBIDDEN
+from .roster import without_arms
 
 NOT_FOR_STUDENTS = ("labkit/grader", "labkit/course/authoring")
 """The parts of labkit that students do not get."""
@@ -40,7 +40,7 @@ PLACES = {
 """The places of those files of ``STUDENT`` that do not belong at the top."""
 
 
-def student_bundle(course: Course, names: Sequence[str], to: Path, book: str | None = None) -> Path:
+def student_zip(course: Course, names: Sequence[str], to: Path, book: str | None = None) -> Path:
     """Write the zip that students get.
 
     Args:
@@ -80,7 +80,7 @@ def remarks(course: Course, names: Sequence[str]) -> Iterator[str]:
 def student_folder(
     course: Course, names: Sequence[str], top: Path, book: str | None = None
 ) -> None:
-    """Write what students get to the new folder ``top``; see `student_bundle`."""
+    """Write what students get to the new folder ``top``; see `student_zip`."""
     check_repository(course.root)
     names = names or sorted(path.name for path in course.release.iterdir() if path.is_dir())
     for name in names:

@@ -14,7 +14,7 @@ from handmade import ROOT
 
 from labkit.__main__ import main
 from labkit.course.authoring.layout import Course
-from labkit.grader.terms.student_bundle import NOT_FOR_STUDENTS, student_bundle
+from labkit.grader.student_zip import NOT_FOR_STUDENTS, student_zip
 
 pytestmark = pytest.mark.xdist_group("student bundle")
 
@@ -48,7 +48,7 @@ def unpacked(released, tmp_path_factory):
     stale = course.root / "build" / "lib" / "labkit" / "gone.py"
     stale.parent.mkdir(parents=True)
     stale.write_text("what an earlier build left")
-    with zipfile.ZipFile(student_bundle(course, (), folder / "lab.zip", "book.org")) as archive:
+    with zipfile.ZipFile(student_zip(course, (), folder / "lab.zip", "book.org")) as archive:
         archive.extractall(folder)
     (wheel,) = (folder / "baxter-lab").glob("*.whl")
     with zipfile.ZipFile(wheel) as archive:
@@ -57,7 +57,7 @@ def unpacked(released, tmp_path_factory):
 
 
 @pytest.mark.parametrize(
-    "words", [["student-bundle", "01_curves"], ["export", "01_curves", "--layout", "gradescope"]]
+    "words", [["student-zip", "01_curves"], ["export", "01_curves", "--layout", "gradescope"]]
 )
 def test_a_course_without_labkits_source_is_a_sentence(course, words, tmp_path, capsys):
     """Both hand out labkit itself; the sentence says what to name, and no file is begun."""

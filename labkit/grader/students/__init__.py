@@ -1,1 +1,0 @@
-"""The students of the class, what they handed in, and which attempt counts."""

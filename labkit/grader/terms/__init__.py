@@ -1,1 +1,0 @@
-"""A term: how it begins, what is released and handed out, and what is deleted afterwards."""
