@@ -126,7 +126,7 @@ def mark(question: Question, function: Function, tried: PublicResult | None = No
         question.points,
         results,
         complete=question.complete,
-        mistake=known and Misconception(known.name, known.says),
+        mistake=known and Misconception(known.name, known.says, known.cure),
     )
     return replace(verdict, earned=_earned(verdict))
 

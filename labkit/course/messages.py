@@ -111,6 +111,8 @@ def message(
     verdict: Verdict,
     printed: str = "",
     depends_on: Sequence[str] = (),
+    *,
+    cure: bool = True,
 ) -> Message:
     """Everything that a student reads after a check.
 
@@ -119,6 +121,7 @@ def message(
         verdict: The verdict on the answer.
         printed: What the student's code printed while it was tried.
         depends_on: Names of the wrong answers that this one uses.
+        cure: Whether to tell the cure of a known mistake, besides its cause.
     """
     helps, hint = list[str](), ""
     if verdict.outcome is not Outcome.RIGHT:
@@ -140,7 +143,7 @@ def message(
             it = "it" if len(verdict.withheld) == 1 else "them"
             helps.append(f"You may use {it} elsewhere in the notebook; here, write {it} yourself.")
         case _:
-            helps += _helps(verdict)
+            helps += _helps(verdict, cure=cure)
             tests = [test_name(test, verdict) for test in verdict.tests]
             numbers = _numbers(question, verdict)
     return Message(head(verdict), helps, tests, numbers, _printed(printed), hint)
@@ -155,9 +158,10 @@ def summary(verdict: Verdict) -> list[str]:
     return lines
 
 
-def mistake(known: Misconception) -> str:
-    """The name of a known mistake, and the explanation for a student who made it."""
-    return f"{mistake_name(known)} {known.says}".lstrip()
+def mistake(known: Misconception, *, cure: bool = True) -> str:
+    """The name of a known mistake, its cause and, if it may be told, its cure."""
+    parts = (mistake_name(known), known.says, known.cure if cure else "")
+    return " ".join(filter(None, parts))
 
 
 def mistake_name(known: Misconception) -> str:
@@ -170,10 +174,10 @@ def failures(failed: int, of: int) -> str:
     return f"{failed} of {of} test{'s' * (of != 1)} failed"
 
 
-def _helps(verdict: Verdict) -> Iterator[str]:
+def _helps(verdict: Verdict, *, cure: bool) -> Iterator[str]:
     """What helps most: a known mistake, else a difference and its likely cause, if any."""
     if verdict.mistake:
-        yield mistake(verdict.mistake)
+        yield mistake(verdict.mistake, cure=cure)
     elif lead := _lead(verdict):
         test = next(x for x in verdict.tests if x.difference is lead)
         clear = len(test.call) <= 60 and not is_shortened(test.call)

@@ -229,7 +229,7 @@ class Mistake(Misconception):
         answers: Its answer to each public call, in order, or `Raised`.
     """
 
-    answers: tuple[Any, ...]
+    answers: tuple[Any, ...] = ()
 
 
 @dataclass(frozen=True, eq=False)

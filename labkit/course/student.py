@@ -5,13 +5,18 @@ The questions are in a file beside the notebook, see `checks_file`.
 
 from __future__ import annotations
 
+import ast
 import dis
+import hashlib
 import inspect
+import json
 import linecache
 import os
 import sys
+import textwrap
 import time
 from collections.abc import Callable
+from contextlib import suppress
 from dataclasses import replace
 from functools import wraps
 from pathlib import Path
@@ -221,10 +226,45 @@ def check(name: str, function: Callable[..., Any]) -> float:
     handle = shell() and str(shell().user_ns.get("HANDLE"))
     if awaits_marking(verdict) and handle and normalised(handle) == DEMO:
         verdict, *more = on_the_public_arm(question, verdict, function)
-    says = message(question, verdict, printed, desk().wrong_dependencies(name, function))
+    wrong = desk().wrong_dependencies(name, function)
+    says = message(question, verdict, printed, wrong, cure=cure_is_due(verdict, function))
     says = replace(says, helps=[*filter(None, more), *says.helps])
     _say(says, verdict, found if verdict.mistake else None)
     return Points(verdict.earned)
+
+
+TRIES = Path(".tries.json")
+"""The file beside a notebook with the first text that was wrong for each cause.
+
+It outlives the kernel, so running all cells again tells no cure.
+"""
+
+
+def cure_is_due(verdict: Verdict, function: Any) -> bool:
+    """Whether a changed answer is wrong once more for the same cause."""
+    known = verdict.mistake
+    if known is None or not known.cure:
+        return False
+    tries: dict[str, str] = {}
+    with suppress(OSError, ValueError):
+        tries |= json.loads(TRIES.read_text(encoding="utf-8"))
+    cause, now = f"{verdict.name}: {known.name}", _text(function)
+    first = tries.setdefault(cause, now)
+    if first != now:
+        tries[cause] = ""
+    with suppress(OSError):  # a folder that is read only
+        TRIES.write_text(json.dumps(tries, indent=1), encoding="utf-8")
+    return first != now
+
+
+def _text(function: Any) -> str:
+    """A short hash of an answer and of what it calls, without comments and blank space."""
+    texts = []
+    for part in (function, *globals_of(function).values()):
+        with suppress(TypeError, OSError, SyntaxError):
+            if inspect.isroutine(part) or inspect.isclass(part):
+                texts.append(ast.dump(ast.parse(textwrap.dedent(inspect.getsource(part)))))
+    return hashlib.sha256("\0".join(texts).encode()).hexdigest()[:16]
 
 
 def _names() -> str:

@@ -106,11 +106,13 @@ class Misconception:
 
     Attributes:
         name: Its name, in a few words.
-        says: The explanation for a student who made it.
+        says: The cause: what is wrong, without the corrected expression.
+        cure: What to do, which a student reads at the second try of the same cause.
     """
 
     name: str
     says: str
+    cure: str = ""
 
 
 @dataclass(frozen=True)

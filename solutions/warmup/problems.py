@@ -61,10 +61,10 @@ JOINT_ERROR = Problem(
     wrong=(
         Wrong(
             "actual minus target",
-            "The sign is wrong: a gain times this error drives the arm away from its target. "
-            "Subtract the actual angles from the target's.",
+            "The sign is wrong: a gain times this error drives the arm away from its target.",
             mistakes.actual_minus_target,
             "One convention for the whole course: target minus actual.",
+            cure="Subtract the actual angles from the target's.",
         ),
         Wrong(
             "a table of 49 numbers",

@@ -31,5 +31,5 @@ DOUBLE = Question(
     ),
     withheld=("numpy.multiply",),
     hints=("Think of a pair.", "x + x", "return 2 * x"),
-    mistakes=(Mistake("squared", "That is the square.", (4.0, 9.0, 1.0)),),
+    mistakes=(Mistake("squared", "That is the square.", "Add x to x.", (4.0, 9.0, 1.0)),),
 )

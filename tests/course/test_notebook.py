@@ -261,6 +261,21 @@ def test_use_remembers_the_check():
     assert use("double", double, None) is double
 
 
+def test_the_cure_follows_a_changed_answer_with_the_same_cause(desk, capsys):
+    def squared(x):
+        return x * x
+
+    def once_more(x):  # a comment changes nothing
+        return x**2
+
+    told = []
+    for function in (squared, squared, once_more, squared):
+        check("double", function)
+        told.append("Add x to x." in capsys.readouterr().out)
+        notebook._desks.clear()  # as after a restart of the kernel
+    assert told == [False, False, True, True]
+
+
 def test_unknown_questions_are_a_sentence(capsys):
     """A question that is not there is named, beside those that are, without a traceback."""
     assert check("treble", double) == 0.0

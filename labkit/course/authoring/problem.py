@@ -56,15 +56,17 @@ class Wrong:
 
     Attributes:
         name: Its name in a few words, as students read it.
-        says: The explanation for a student who made it.
+        says: The cause: what is wrong, without the corrected expression.
         function: The wrong answer.
         lecture: What to say in the next lecture, for the class report.
+        cure: What to do, which a student reads at the second try of the same cause.
     """
 
     name: str
     says: str
     function: Callable[..., Any]
     lecture: str = ""
+    cure: str = ""
 
 
 @dataclass(frozen=True, eq=False)
@@ -118,7 +120,9 @@ class Problem:
             core=self.core,
             outcomes=self.outcomes,
         )
-        mistakes = (Mistake(w.name, w.says, fingerprint(plain, w.function)) for w in self.wrong)
+        mistakes = (
+            Mistake(w.name, w.says, w.cure, fingerprint(plain, w.function)) for w in self.wrong
+        )
         names = tuple(signature(self.answer).parameters) if callable(self.answer) else ()
         return replace(plain, mistakes=tuple(mistakes), arguments=names)
 
