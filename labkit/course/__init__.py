@@ -14,7 +14,7 @@ from .judges import AtMost, Close, Gains
 from .marking import fingerprint, mark
 from .own_arm import my_arm, my_bug
 from .predictions import Prediction
-from .question import Call, Choice, Loop, Mistake, Question, Raised, Test, Tuned
+from .question import Call, Chase, Choice, Loop, Mistake, Question, Raised, Test, Tuned
 from .reply import NoAnswer
 from .reveal import predict
 from .serialize import question_data, read_question
@@ -25,6 +25,7 @@ __all__ = [
     "AtMost",
     "AtTip",
     "Call",
+    "Chase",
     "Choice",
     "Choose",
     "Close",

@@ -23,6 +23,10 @@ _MEASURES = {
     "max_deg": ("the largest error of the tip's orientation", " degrees"),
     "rms_velocity_mm_s": ("the RMS error of the tip's velocity", " mm/s"),
     "worst_mm": ("the worst error", " mm"),
+    "end_mm": ("the error at the end", " mm"),
+    "place_step_mm": ("the largest jump of the reference", " mm"),
+    "speed_step": ("the largest jump of the reference's speed", " m/s"),
+    "lines": ("the number of new lines", ""),
 }
 """The measures of a run in words, and their units."""
 

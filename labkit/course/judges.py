@@ -14,6 +14,7 @@ import numpy as np
 from ..baxter import robot
 from ..control import COMMANDS
 from ..errors import LabkitError
+from ..servo import Memory, Motion
 from ..shapes import Array, as_array, as_gains
 from ..trajectory import PoseSample, Sample
 from .forms import RightOrWrong
@@ -74,7 +75,9 @@ class Close:
             return self._differ(answer.value, expected.value, part)
         if isinstance(expected, dict):
             return self._differ_dict(answer, expected)
-        if isinstance(expected, Sample | PoseSample):
+        if isinstance(expected, Motion):
+            return self._differ_motion(answer, expected)
+        if isinstance(expected, Sample | PoseSample | Memory):
             if isinstance(answer, np.ndarray) and answer.ndim == 1:  # the position alone
                 return Difference(Kind.PARTS, part, found=value(answer), parts=expected._fields)
             return self._differ_each(answer, expected, expected._fields)
@@ -95,6 +98,15 @@ class Close:
                 return Difference(Kind.KEY, key)
             if found := self._differ(answer[key], expected[key], key):
                 return found
+        return None
+
+    def _differ_motion(self, answer: Any, expected: Motion) -> Difference | None:
+        """How two motions differ at six times, the last one after the end."""
+        if not isinstance(answer, Motion):
+            return Difference(Kind.TYPE, "line", expected="motion", found=value(answer))
+        for t in np.linspace(0.0, 1.25 * expected.duration, 6):
+            if found := self._differ(answer(t), expected(t), ""):
+                return replace(found, part=f"{found.part} of the line at {t:.2g} s")
         return None
 
     def _differ_each(

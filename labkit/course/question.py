@@ -21,6 +21,7 @@ from ..metrics import since, summary
 from ..plant import IDEAL, Plant
 from ..recordings import Runner, Trials
 from ..run import run
+from ..servo import Conveyor, Followed
 from ..shapes import Array
 from ..world import Thing, World
 from .equivalence import Judge
@@ -186,7 +187,41 @@ class Tuned:
         return f"a run of the {self.loop.side} arm ({plant.name}{carries}) with the gains of {name}"
 
 
-Case = Call | Loop | Choice | Tuned
+@dataclass(frozen=True, eq=False)
+class Chase:
+    """One run of a hand that follows a tag, with the student's function as its servo.
+
+    Attributes:
+        conveyor: How the tag moves, and how it is seen.
+        kwargs: What the servo is given besides time, memory, sightings and hand.
+        last: How many sightings it is given; see `Conveyor.follow`.
+        expected: Upper limits of measures of the run; see `Followed.measured`.
+        hidden: Whether it is kept from students.
+    """
+
+    conveyor: Conveyor
+    kwargs: Mapping[str, Any]
+    last: int = 0
+    expected: Any = field(default_factory=dict)
+    hidden: bool = False
+
+    def ask(self, function: Callable[..., Any]) -> Followed:
+        """The run with the function as its servo."""
+        return self.conveyor.follow(function, last=self.last, **self.kwargs)
+
+    def measured(self, answer: Followed) -> dict[str, float]:
+        """The measures of a run."""
+        return answer.measured()
+
+    def shown(self, name: str) -> str:
+        """The run in words."""
+        tag = self.conveyor
+        moves = f"jumps by {tag.jump:g} m" if tag.jump else f"moves at {tag.speed:g} m/s"
+        blind = ", with a blind second" if tag.blind[1] > tag.blind[0] else ""
+        return f"a run in which the tag {moves} and is seen {tag.age:g} s late{blind}"
+
+
+Case = Call | Loop | Choice | Tuned | Chase
 
 
 @dataclass(frozen=True, eq=False)

@@ -17,7 +17,7 @@ from typing import Any, TypeVar, get_args
 import msgspec
 import numpy as np
 
-from .. import control, paths, plant, scene, trajectory
+from .. import control, paths, plant, scene, servo, trajectory
 from ..baxter import robot
 from ..errors import LabkitError, TypeMismatch
 from ..log import Log
@@ -34,20 +34,22 @@ DATA = (
     control.JointPosition,
     control.JointVelocity,
     control.JointTorque,
+    paths.Line,
+    paths.BangBang,
+    trajectory.Trajectory,
+    servo.Memory,
+    servo.Bend,
     Ratio,
 )
 """What a student's function may return, besides numbers, arrays, texts, lists and dicts."""
 
 GIVEN = (
-    paths.Line,
     paths.Circle,
     paths.Polyline,
-    paths.BangBang,
     paths.Cubic,
     paths.Quintic,
     paths.Trapezoid,
     paths.Spline,
-    trajectory.Trajectory,
     trajectory.PosePath,
     trajectory.Chain,
     trajectory.Hold,
@@ -60,6 +62,8 @@ GIVEN = (
     Log,
     Trials,
     Runner,
+    servo.Hand,
+    servo.Conveyor,
 )
 """What a student's function may also be given; each is sent as the arguments that make it."""
 
