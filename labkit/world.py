@@ -49,7 +49,7 @@ class Shown(Protocol):
     """Something that is visible to cameras but has no part in the physics."""
 
     def surface(self) -> Any:
-        """Its triangles at its present pose, a `labkit.tags.surface.Surface`."""
+        """Its triangles at its present pose, a `labkit.tags.drawing.Surface`."""
 
 
 class World:

@@ -4,7 +4,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from labkit.tags.surface import box
+from labkit.tags.drawing import box
 
 
 @dataclass(frozen=True, eq=False)

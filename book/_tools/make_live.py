@@ -22,7 +22,7 @@ HEAD = "// Made by book/_tools/make_live.py from labkit and solutions; do not ed
 import labkit as lk  # noqa: E402
 from labkit import joints, motors, scene  # noqa: E402
 from labkit.run import RUNAWAY  # noqa: E402
-from labkit.tags.intrinsics import Intrinsics  # noqa: E402
+from labkit.tags.drawing import Intrinsics  # noqa: E402
 from labkit.tags.tag import Tag  # noqa: E402
 from solutions.study import gains, tag_task, tasks  # noqa: E402
 from solutions.study.baseline import server  # noqa: E402

@@ -23,7 +23,7 @@ from labkit import Arm, Log, Plant, Table, World, metrics, plotting
 from labkit.replay import Motion, motion_of
 from labkit.replay.player import motion_still
 from labkit.tags.camera import Camera, looking_at
-from labkit.tags.intrinsics import Intrinsics
+from labkit.tags.drawing import Intrinsics
 
 from .claims import holds
 from .embed import motion_html

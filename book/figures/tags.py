@@ -13,7 +13,6 @@ from IPython.display import HTML
 import labkit as lk
 from labkit.replay import motion_of
 from labkit.tags.detection import detect_tags, find_tag
-from labkit.tags.intrinsics import Intrinsics
 from solutions.study.gains import course_controllers
 from solutions.study.sensing import Setup, consistency
 from solutions.study.tag_scenes import circling_board
@@ -266,7 +265,6 @@ def following() -> HTML:
 
 
 PICTURES = 40
-LENS = Intrinsics(distortion=(-0.2, 0.05, 0.0, 0.0, 0.0))
 SETUPS = {
     "sharp": Setup(tilt=TILT),
     "noise 10": Setup(tilt=TILT, optics={"noise": 10.0}),
@@ -275,7 +273,6 @@ SETUPS = {
     "blur 2 px": Setup(tilt=TILT, optics={"noise": 2.0, "blur": 2.0}),
     "smear 6 px": Setup(tilt=TILT, optics={"noise": 2.0}, smear=6.0),
     "JPEG 60": Setup(tilt=TILT, optics={"noise": 2.0, "jpeg": 60}),
-    "lens": Setup(tilt=TILT, optics={"noise": 2.0}, intrinsics=LENS),
     "corner 10 %": Setup(tilt=TILT, cover=0.1),
     "2 m, noise 2": Setup(tilt=TILT, optics={"noise": 2.0}, distance=2.0),
 }

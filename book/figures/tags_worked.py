@@ -11,9 +11,8 @@ from IPython.display import HTML
 
 import labkit as lk
 from labkit.tags.detection import pose_covariance, tag_pose
-from labkit.tags.estimation import Estimate, first_estimate, update
-from labkit.tags.intrinsics import Intrinsics
-from labkit.tags.stream import TagStream
+from labkit.tags.drawing import Intrinsics
+from labkit.tags.stream import Estimate, TagStream, first_estimate, update
 from solutions.study.tag_task import LAP, OFFSET, RADIUS
 from solutions.tags.following import TagFollower, blend, carry_forward, turn_on
 

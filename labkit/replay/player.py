@@ -145,7 +145,7 @@ def still(
     from PIL import Image, ImageDraw
 
     from ..tags import Intrinsics, looking_at
-    from ..tags.rendering import FAR, Window, draw
+    from ..tags.drawing import FAR, Window, draw
 
     tip = Model(robot).pose(q)[:3, 3]
     points = np.vstack([tip, *paths[:2], *([] if around is None else [around])])
@@ -186,7 +186,7 @@ def still(
 
 def body(robot: Robot, q: Array, alone: bool) -> Any:
     """The surface of a robot whose arm is at q, shape (n,) in [rad], or of this arm alone."""
-    from ..tags.visuals import RobotVisuals
+    from ..tags.drawing import RobotVisuals
 
     seen = RobotVisuals([(robot, q)])
     return seen.surface([not alone or x.parent in robot.joint_names for x in seen.pieces])
@@ -218,7 +218,7 @@ def show(motion: Motion) -> Replay:
 
 def motion_still(motion: Motion) -> bytes:
     """Draw a motion half way, or at its largest force, as the viewer would, as a PNG file."""
-    from ..tags.surface import in_colour
+    from ..tags.drawing import in_colour
 
     force = np.zeros((len(motion.q), 3)) if motion.force is None else motion.force
     model, size = Model(motion.robot), np.linalg.norm(force, axis=1)

@@ -171,7 +171,7 @@ def outline(drawn: Mapping[str, Any], tips: Array) -> Array:
 
 def faces(things: Mapping[str, Any]) -> list[tuple[Any, float]]:
     """Walls and tables as surfaces, each with its opacity as in the viewer."""
-    from ..tags.surface import in_colour
+    from ..tags.drawing import in_colour
 
     drawn = [x for x in things.values() if x["kind"] == "face"]
     halves = [outline(x, np.empty(0))[[[0, 1, 2], [2, 3, 0]]] for x in drawn]

@@ -5,7 +5,7 @@ from __future__ import annotations
 from .board import Board
 from .camera import Camera, looking_at
 from .detection import detect_tags, find_tag
-from .intrinsics import Intrinsics
+from .drawing import Intrinsics
 from .stream import TagStream, TagTarget
 from .tag import Tag
 

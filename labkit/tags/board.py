@@ -10,11 +10,11 @@ from typing import Any
 import numpy as np
 
 from .. import se3
-from ..errors import Closed, TypeMismatch
+from ..errors import TypeMismatch
 from ..shapes import Array, as_array, locked, shown
 from ..trajectory import PoseSample, Sample, Target
 from ..world import World
-from .surface import Surface, box
+from .drawing import Surface, box
 from .tag import Tag
 
 _THICKNESS = 0.003  # of the plate behind the paper, in [m]
@@ -39,15 +39,12 @@ class Board:
 
         Raises:
             TypeMismatch: ``world`` is not a world, or ``tag`` is not a tag.
-            Closed: The world is closed.
         """
         if not isinstance(world, World) or not isinstance(tag, Tag):
             raise TypeMismatch(
                 f"a board takes a World (an arm's is arm.world) and a Tag, not {shown(world)} and "
                 f"{shown(tag)}"
             )
-        if world.closed:
-            raise Closed("this world was closed; make a new World")
         self.tag, self.world = tag, world
         self.place(T_wm)
         world.show(self)
@@ -70,20 +67,16 @@ class Board:
                 points for the tag's middle, which then keeps its present orientation.
 
         Raises:
-            TypeMismatch: ``motion`` is not a function, or its samples are neither poses nor points.
+            TypeMismatch: ``motion`` is no such function.
         """
-        if not callable(motion):
+        first = motion(0.0) if callable(motion) else motion
+        if not isinstance(first, Sample | PoseSample):
             raise TypeMismatch(
-                f"motion is {shown(motion)}, expected a function of time; board.place(T_wm) puts "
-                "the board somewhere"
+                f"a board's motion is a function of time that returns lk.PoseSample or lk.Sample, "
+                f"not {shown(first)}; board.place(T_wm) puts it somewhere"
             )
-        first = motion(0.0)
-        is_point = isinstance(first, Sample) and first.position.shape == (3,)
-        if not is_point and not isinstance(first, PoseSample):
-            raise TypeMismatch(
-                f"the board's motion returned {str(first)[:80]}; it must return lk.PoseSample, or "
-                "lk.Sample of points, shape (3,)"
-            )
+        if isinstance(first, Sample):
+            as_array(first.position, (3,), "the board's position")
         self._home, self._motion, self._since = self.T_wm, motion, self.world.t
 
     @property

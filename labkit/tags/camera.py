@@ -1,25 +1,36 @@
-"""A camera in the world: fixed somewhere, or in the robot's hand."""
+"""A camera in the world, and what it does to a picture.
+
+A renderer samples one point of each pixel, which would move the edges of a tag's pattern by up to
+half a pixel.  The pattern is known exactly, so pixels on an edge are sampled at many points.
+"""
 
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any, cast
+from functools import cache
+from typing import Any
 
 import cv2
 import numpy as np
 
 from .. import se3
-from ..arm import Arm
-from ..errors import Closed, LabkitError, OutOfRange, TypeMismatch
+from ..errors import Closed, OutOfRange, TypeMismatch
 from ..shapes import Array, as_number, as_random, as_vector, locked, shown
 from ..world import World
 from .board import Board
-from .intrinsics import Intrinsics, without_distortion
-from .paper import paper
-from .rendering import FAR, NEAR, Window, brightness, draw
-from .surface import Surface, joined
-from .tag import Picture
-from .visuals import RobotVisuals, scenery
+from .drawing import (
+    FAR,
+    NEAR,
+    Intrinsics,
+    RobotVisuals,
+    Surface,
+    Window,
+    brightness,
+    draw,
+    joined,
+    scenery,
+)
+from .tag import Picture, Tag
 
 BACKGROUND = 255
 """Grey level of the empty background."""
@@ -27,6 +38,7 @@ BACKGROUND = 255
 _MARGIN = 4  # pixels that are drawn around a tag's paper
 _INSTANTS = 9  # that are drawn during an exposure
 _FINE = 4  # samples of a pixel along each side where something may hide a tag
+_OUTSIDE = -1.0  # whiteness beside the paper
 
 
 @dataclass(frozen=True)
@@ -59,12 +71,11 @@ class Optics:
         for name in ("shade", "exposure", "blur", "vignette", "noise"):
             as_number(getattr(self, name), name, least=0.0)
         as_number(self.gamma, "gamma", above=0.0)
-        if max(self.shade, self.vignette) > 1.0:
-            raise OutOfRange(f"shade is {self.shade}, vignette {self.vignette}; give at most 1")
-        for name, least, most in (("samples", 1, 16), ("jpeg", 0, 100)):
-            n = getattr(self, name)
-            if not isinstance(n, int) or not least <= n <= most:
-                raise OutOfRange(f"{name} is {n!r}; give a whole number from {least} to {most}")
+        for name, least, most in (
+            ("samples", 1, 16), ("jpeg", 0, 100), ("shade", 0, 1), ("vignette", 0, 1)
+        ):  # fmt: skip
+            if not least <= (x := getattr(self, name)) <= most:
+                raise OutOfRange(f"{name} is {x}; give a number from {least} to {most}")
 
 
 class Camera:
@@ -74,6 +85,7 @@ class Camera:
         world: The world that it sees.
         intrinsics: Its lens and sensor.
         optics: What it does to a picture.
+        T_wc: Pose of the camera in the world, shape (4, 4).
     """
 
     def __init__(
@@ -107,54 +119,12 @@ class Camera:
         if not isinstance(self.intrinsics, Intrinsics):
             raise TypeMismatch(f"intrinsics is {shown(intrinsics)}, expected lk.Intrinsics(...)")
         self.optics = Optics(**optics)
-        self._wide, self._seen_at = without_distortion(self.intrinsics)
         self._random = as_random(seed)
-        self._hand: Arm | None = None
         self.place(T_wc)
 
-    @classmethod
-    def in_hand(cls, arm: Arm, intrinsics: Intrinsics | None = None, **options: Any) -> Camera:
-        """Put a camera into a hand, as on Baxter, so that it moves with the arm.
-
-        Args:
-            arm: The arm with the hand.
-            intrinsics: As for a fixed camera.
-            **options: The other arguments of a fixed camera.
-
-        Raises:
-            LabkitError: The hand has no camera.
-        """
-        if arm.robot.T_hand_camera is None:
-            raise LabkitError(
-                f"{arm.robot.name} has no camera in its hand; dataclasses.replace(robot, "
-                "T_hand_camera=...) gives it one, or use a fixed camera: looking_at(eye, at)"
-            )
-        camera = cls(arm.world, np.eye(4), intrinsics, **options)
-        camera._hand = arm
-        return camera
-
     def place(self, T_wc: Any) -> None:
-        """Fix the camera at a pose, even if it was in a hand.
-
-        Args:
-            T_wc: Pose of the camera in the world, shape (4, 4).
-        """
-        self._fixed: Array = locked(np.array(se3.as_pose(T_wc, "T_wc")))
-        self._hand = None
-
-    @property
-    def T_wc(self) -> Array:
-        """True present pose of the camera, shape (4, 4)."""
-        return self._fixed if self._hand is None else _held(self._hand, self._hand.truth().q)
-
-    @property
-    def reported_T_wc(self) -> Array:
-        """Pose of the camera as the robot knows it, from the reported joint angles if in a hand.
-
-        Returns:
-            Shape (4, 4).
-        """
-        return self._fixed if self._hand is None else _held(self._hand, self._hand.state().q)
+        """Put the camera at a pose in the world, shape (4, 4)."""
+        self.T_wc: Array = locked(np.array(se3.as_pose(T_wc, "T_wc")))
 
     def image(self) -> Picture:
         """Take a picture.
@@ -165,11 +135,11 @@ class Camera:
         Raises:
             Closed: The world is closed.
         """
-        robot, T_wc = self._focus()
-        size = Window(0, 0, self._wide.width, self._wide.height)
-        seen = joined([self._robot_in(robot, T_wc, size, FAR), scenery(self.world)])
-        picture = 255.0 * draw(seen, self._wide, T_wc, size)[0]
-        return self._developed(self._exposed(picture, robot, T_wc)[0], [size])
+        robot = self._robots()
+        size = Window(0, 0, self.intrinsics.width, self.intrinsics.height)
+        seen = joined([self._robot_in(robot, size, FAR), scenery(self.world)])
+        picture = 255.0 * draw(seen, self.intrinsics, self.T_wc, size)[0]
+        return self._developed(self._exposed(picture, robot)[0], [size])
 
     def tag_image(self) -> Picture:
         """Take a quick picture of only the tags and of what hides them; the rest stays blank.
@@ -180,78 +150,69 @@ class Camera:
         Raises:
             Closed: The world is closed.
         """
-        robot, T_wc = self._focus()
-        picture = np.full((self._wide.height, self._wide.width, 3), BACKGROUND, np.float32)
-        return self._developed(*self._exposed(picture, robot, T_wc))
+        lens = self.intrinsics
+        picture = np.full((lens.height, lens.width, 3), BACKGROUND, np.float32)
+        return self._developed(*self._exposed(picture, self._robots()))
 
-    def _exposed(self, picture: Any, robot: RobotVisuals, T_wc: Array) -> tuple[Any, list[Window]]:
+    def _exposed(self, picture: Any, robot: RobotVisuals) -> tuple[Any, list[Window]]:
         """The picture with the tags printed on it, averaged over the exposure; their windows."""
         if not self.optics.exposure:
-            return picture, self._print(picture, robot, T_wc, self.world.t)
+            return picture, self._print(picture, robot, self.world.t)
         total, windows = np.zeros_like(picture), []
         for share in (np.arange(_INSTANTS) + 0.5) / _INSTANTS - 0.5:
             one = picture.copy()
-            windows += self._print(one, robot, T_wc, self.world.t + share * self.optics.exposure)
+            windows += self._print(one, robot, self.world.t + share * self.optics.exposure)
             total += one / _INSTANTS
         return total, windows
 
-    def _focus(self) -> tuple[RobotVisuals, Array]:
-        """The robot in its present posture, and the pose of the camera."""
+    def _robots(self) -> RobotVisuals:
+        """The robots in their present postures."""
         if self.world.closed:
             raise Closed("this camera's world was closed; make a new World, and a Camera in it")
-        return RobotVisuals([(arm.robot, arm.truth().q) for arm in self.world.arms]), self.T_wc
+        return RobotVisuals([(arm.robot, arm.truth().q) for arm in self.world.arms])
 
-    def _robot_in(self, robot: RobotVisuals, T_wc: Array, window: Window, depth: float) -> Surface:
+    def _robot_in(self, robot: RobotVisuals, window: Window, depth: float) -> Surface:
         """The pieces of the robot that reach into a window's cone, up to a depth."""
         centres, radii = robot.balls
-        x, y, z = ((centres - T_wc[:3, 3]) @ T_wc[:3, :3]).T
+        x, y, z = ((centres - self.T_wc[:3, 3]) @ self.T_wc[:3, :3]).T
         outside = (z + radii < NEAR) | (z - radii > depth)
-        for coordinate, rays in zip((x, y), window.rays(self._wide), strict=True):
+        for coordinate, rays in zip((x, y), window.rays(self.intrinsics), strict=True):
             low, high = rays[0], rays[-1]
             outside |= coordinate - low * z < -radii * np.hypot(1.0, low)
             outside |= coordinate - high * z > radii * np.hypot(1.0, high)
         return robot.surface(~outside)
 
-    def _print(self, picture: Any, robot: RobotVisuals, T_wc: Array, t: float) -> list[Window]:
+    def _print(self, picture: Any, robot: RobotVisuals, t: float) -> list[Window]:
         """Print the tags' papers over a picture, then what hides them; returns their windows."""
         boards = [thing for thing in self.world.shown if isinstance(thing, Board)]
-        poses = [se3.inverse(T_wc) @ board.pose_at(t) for board in boards]
+        seen = [(se3.inverse(self.T_wc) @ board.pose_at(t), board) for board in boards]
         windows = []
-        for k in sorted(range(len(boards)), key=lambda k: -float(poses[k][2, 3])):  # nearest last
-            board, T_cm = boards[k], poses[k]
+        for T_cm, board in sorted(seen, key=lambda one: -float(one[0][2, 3])):  # nearest last
             place = self._window(board, T_cm)
             if place is None:
                 continue
             window, depth = place
-            share, white = paper(board.tag, T_cm, self._wide, window, self.optics.samples)
+            share, white = printed(board.tag, T_cm, self.intrinsics, window, self.optics.samples)
             light = 255.0 * float(brightness(board.T_wm[:3, 2]))
             shade = light * np.linspace(1.0, 1.0 - self.optics.shade, window.width)
-            part = picture[window.rows, window.columns]
+            part = picture[window.place]
             part += share[..., None] * ((shade * white)[..., None] - part)
-            self._hide(part, board, robot, T_wc, window, depth)
+            near = joined([self._robot_in(robot, window, depth), scenery(self.world)])
+            self._hide(part, board.T_wm, near, window)
             windows.append(window)
         return windows
 
-    def _hide(
-        self,
-        part: Any,
-        board: Board,
-        robot: RobotVisuals,
-        T_wc: Array,
-        window: Window,
-        depth: float,
-    ) -> None:
+    def _hide(self, part: Any, T_wm: Array, near: Surface, window: Window) -> None:
         """Draw what is in front of a board over its part of the picture."""
-        T_wm = board.T_wm
-        near = joined([self._robot_in(robot, T_wc, window, depth), scenery(self.world)])
         height = (near.corners - T_wm[:3, 3]) @ T_wm[:3, 2]
         near = near.only((height > 1e-6).any(axis=1))
         if not len(near.corners):
             return
         n = _FINE
-        colours, z = draw(near, self._wide, T_wc, window, n)
-        right, down = window.rays(self._wide, n)
-        normal, middle = T_wc[:3, :3].T @ T_wm[:3, 2], T_wc[:3, :3].T @ (T_wm[:3, 3] - T_wc[:3, 3])
+        colours, z = draw(near, self.intrinsics, self.T_wc, window, n)
+        right, down = window.rays(self.intrinsics, n)
+        T_cm = se3.inverse(self.T_wc) @ T_wm
+        normal, middle = T_cm[:3, 2], T_cm[:3, 3]
         plane = (normal @ middle) / (normal[0] * right + (normal[1] * down + normal[2])[:, None])
         before = ((z < plane) | (plane <= 0.0)) & (z < 0.99 * FAR)
         tiles = (window.height, n, window.width, n)
@@ -264,7 +225,7 @@ class Camera:
         corners = board.outline @ T_cm[:3, :3].T + T_cm[:3, 3]
         if corners[:, 2].min() < NEAR or T_cm[:3, 2] @ T_cm[:3, 3] >= 0.0:
             return None  # too near to be seen whole, or seen from behind
-        pixels, lens = self._wide.project(corners), self._wide
+        pixels, lens = self.intrinsics.project(corners), self.intrinsics
         low = np.maximum(np.floor(pixels.min(axis=0)).astype(int) - _MARGIN, 0)
         high = np.ceil(pixels.max(axis=0)).astype(int) + _MARGIN + 1
         wide, tall = np.minimum(high, (lens.width, lens.height)) - low
@@ -273,17 +234,10 @@ class Camera:
         return Window(int(low[0]), int(low[1]), int(wide), int(tall)), float(corners[:, 2].max())
 
     def _developed(self, picture: Any, windows: list[Window]) -> Picture:
-        """Apply lens and optics, with noise where something was drawn; the result is read-only."""
+        """Apply the optics, with noise where something was drawn; the result is read-only."""
         drawn = np.zeros(picture.shape[:2], np.uint8)
         for window in windows:
-            drawn[window.rows, window.columns] = 1
-        if self._seen_at is not None:
-            at, nothing = self._seen_at, cast(Any, None)  # the first map holds both coordinates
-            size = (self.intrinsics.width, self.intrinsics.height)
-            # Linear: OpenCV's cubic kernel (a = -0.75) shifts an edge by up to 0.047 pixels.
-            picture = cv2.remap(picture, at, nothing, cv2.INTER_LINEAR)
-            picture = cv2.resize(picture, size, interpolation=cv2.INTER_AREA)
-            drawn = np.asarray(cv2.remap(drawn, at, nothing, cv2.INTER_NEAREST))[::2, ::2]
+            drawn[window.place] = 1
         dials = self.optics
         if dials.blur:
             picture = cv2.GaussianBlur(picture, (0, 0), dials.blur)
@@ -304,13 +258,6 @@ class Camera:
             levels = np.asarray(cv2.imdecode(packed, cv2.IMREAD_COLOR_BGR), np.uint8)
         levels.setflags(write=False)
         return levels
-
-
-def _held(arm: Arm, q: Array) -> Array:
-    """World pose of the camera in an arm's hand at joint angles ``q``."""
-    T_hc: Any = arm.robot.T_hand_camera
-    T_tc = se3.inverse(arm.robot.T_hand_tip) @ T_hc
-    return locked(arm.model.pose(q) @ T_tc)
 
 
 def looking_at(eye: Any, at: Any, up: Any = (0.0, 0.0, 1.0)) -> Array:
@@ -337,3 +284,60 @@ def looking_at(eye: Any, at: Any, up: Any = (0.0, 0.0, 1.0)) -> Array:
         )
     z, x = z / np.linalg.norm(z), x / np.linalg.norm(x)
     return se3.pose(np.column_stack([x, np.cross(z, x), z]), eye)
+
+
+def printed(
+    tag: Tag, T_cm: Array, lens: Intrinsics, window: Window, samples: int
+) -> tuple[Array, Array]:
+    """Compute which share of each pixel shows a tag's paper, and how white that share is.
+
+    Args:
+        tag: The tag, all of it in front of the camera.
+        T_cm: Its pose in the camera's frame, shape (4, 4).
+        lens: Lens and sensor.
+        window: The part of the picture.
+        samples: Number of points along each side of a pixel on an edge.
+
+    Returns:
+        The share of each pixel that the paper covers, and how white that share is, both from 0 to 1
+        and with the window's shape.
+    """
+    to_tag: Any = np.linalg.inv(lens.matrix @ T_cm[:3, [0, 1, 3]])  # from pixels to the paper
+    u = window.left - 0.5 + np.arange(window.width + 1)
+    v = window.top - 0.5 + np.arange(window.height + 1)
+    level, cell = _levels(tag, to_tag, *np.meshgrid(u, v))
+    low, high = slice(None, -1), slice(1, None)
+    around = [(low, low), (low, high), (high, low), (high, high)]  # a pixel's four corners
+    alike = np.logical_and.reduce([level[place] == level[around[0]] for place in around[1:]])
+    spans = [np.ptp([part[place] for place in around], axis=0) for part in cell]
+    edge = ~alike | (np.maximum(*spans) > 1)
+    share = (level[around[0]] != _OUTSIDE).astype(float)
+    white = np.maximum(level[around[0]], 0.0)
+    i, j = np.nonzero(edge)
+    # No two points share a row or a column, so edges along rows or columns are as exact as others.
+    first, second = (x.ravel() for x in np.indices((samples, samples)))
+    du, dv = (
+        (first + (second + 0.5) / samples) / samples,
+        (second + (first + 0.5) / samples) / samples,
+    )
+    fine, _ = _levels(tag, to_tag, u[j][:, None] + du, v[i][:, None] + dv)
+    on = fine != _OUTSIDE
+    share[edge] = on.mean(axis=1)
+    white[edge] = (fine * on).sum(axis=1) / np.maximum(on.sum(axis=1), 1)
+    return share, white
+
+
+def _levels(tag: Tag, to_tag: Any, u: Any, v: Any) -> tuple[Array, tuple[Any, Any]]:
+    """Whiteness of the paper at points of the picture, -1 beside it, and the points' cells."""
+    x, y, w = (to_tag[i, 0] * u + to_tag[i, 1] * v + to_tag[i, 2] for i in range(3))
+    table = _whiteness(tag)
+    n = len(table) - 2
+    column = np.clip(np.floor((x / (w * tag.paper) + 0.5) * n), -1, n).astype(int)
+    row = np.clip(np.floor((0.5 - y / (w * tag.paper)) * n), -1, n).astype(int)
+    return table[row + 1, column + 1], (column, row)
+
+
+@cache
+def _whiteness(tag: Tag) -> Array:
+    """Whiteness of each cell, 0 or 1, from the upper left, framed by cells of `_OUTSIDE`."""
+    return np.pad(tag.image(1) / 255.0, 1, constant_values=_OUTSIDE)

@@ -1,22 +1,24 @@
-"""Streams of tag readings beside the control loop, with adjustable rate, delay and losses.
+r"""Streams of tag readings beside the control loop, with adjustable rate, delay and losses.
 
 Nothing runs in parallel.  The simulation's clock determines when a picture is taken and when its
 reading arrives, and all randomness comes from a seed, so a run can be repeated to the last bit.
+
+Several noisy readings become a better one by the update of a Kalman filter (Thrun, Burgard & Fox,
+*Probabilistic Robotics*, section 3.2).  The prediction is what students write in notebook 06.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable
+from collections.abc import Callable
 from typing import Any, NamedTuple
 
 import numpy as np
 
-from .. import se3
 from ..errors import OutOfRange
-from ..shapes import Array, as_number, as_random, locked
+from ..shapes import Array, as_array, as_number, as_random, locked
 from ..trajectory import AnySample
 from .camera import Camera
-from .detection import TagNotFound, detect_tags, find_tag
+from .detection import detect_tags, find_tag
 from .tag import Tag
 
 
@@ -52,11 +54,8 @@ class TagStream:
         rate: float = 10.0,
         delay: float = 0.1,
         *,
-        jitter: float = 0.0,
         dropout: float = 0.0,
-        blind: Iterable[tuple[float, float]] = (),
         seed: int = 0,
-        T_wc: Any = None,
     ) -> None:
         """Prepare look-ups; the first `poll` takes the first picture.
 
@@ -65,23 +64,16 @@ class TagStream:
             tag: The tag, with its size.
             rate: Pictures per second, in [Hz].
             delay: Delay from picture to reading, in [s].
-            jitter: Largest additional random delay, in [s].
             dropout: Share of the readings that never arrive, from 0 to 1.
-            blind: Intervals (from, to) in which no picture shows the tag, in [s] since the first.
-            seed: Seed of jitter and dropout.
-            T_wc: Pose at which the robot believes the camera to be, shape (4, 4); None means
-                `Camera.reported_T_wc`.
+            seed: Seed of the dropout.
         """
         self.camera, self.tag, self.unseen = camera, tag, 0
         self._period = 1.0 / as_number(rate, "rate", above=0.0)
         self._delay = as_number(delay, "delay", least=0.0)
-        self._jitter = as_number(jitter, "jitter", least=0.0)
         self._dropout = as_number(dropout, "dropout", least=0.0)
         if self._dropout > 1.0:
             raise OutOfRange(f"dropout is {dropout:g}; it is a share, from 0 to 1")
-        self._blind = tuple((float(a), float(b)) for a, b in blind)
         self._random = as_random(seed)
-        self._believed = None if T_wc is None else locked(np.array(se3.as_pose(T_wc, "T_wc")))
         self._due: float | None = None
         self._under_way: list[tuple[float, Reading | None]] = []
 
@@ -97,54 +89,26 @@ class TagStream:
             DuplicateTag: The tag is in the picture twice.
         """
         now = self.camera.world.t
-        if self._due is None:
-            self._due = self._first = now
+        self._due = now if self._due is None else self._due
         if now >= self._due - 1e-9:
             while self._due <= now + 1e-9:
                 self._due += self._period
-            arrives = now + self._delay + self._jitter * float(self._random.random())
             lost = float(self._random.random()) < self._dropout
-            self._under_way.append((arrives, self._look(now, arrives, lost)))
+            self._under_way.append((now + self._delay, None if lost else self._look(now)))
         here = [reading for arrives, reading in self._under_way if arrives <= now + 1e-9]
         self._under_way = [item for item in self._under_way if item[0] > now + 1e-9]
-        return tuple(sorted((r for r in here if r is not None), key=lambda r: r.stamp))
+        return tuple(reading for reading in here if reading is not None)
 
-    def _look(self, now: float, arrives: float, lost: bool) -> Reading | None:
-        if lost:
+    def _look(self, now: float) -> Reading | None:
+        camera, tag = self.camera, self.tag
+        seen = detect_tags(camera.tag_image(), camera, {int(tag.id): tag.size})
+        if not seen:
+            self.unseen += 1
             return None
-        try:
-            if not any(a <= now - self._first < b for a, b in self._blind):
-                return detect_once(self.camera, self.tag, self._believed, arrives - now)
-        except TagNotFound:
-            pass
-        self.unseen += 1
-        return None
-
-
-def detect_once(camera: Camera, tag: Tag, T_wc: Any = None, age: float = 0.0) -> Reading:
-    """Look up a tag once.
-
-    Args:
-        camera: The camera.
-        tag: The tag, with its size.
-        T_wc: Believed pose of the camera, shape (4, 4); None means `Camera.reported_T_wc`.
-        age: Age of the reading at the time of its use, in [s].
-
-    Raises:
-        TagNotFound: The tag is not in the picture.
-        DuplicateTag: The tag is in the picture more than once.
-    """
-    now = camera.world.t
-    T_wc = camera.reported_T_wc if T_wc is None else se3.as_pose(T_wc, "T_wc")
-    seen = detect_tags(camera.tag_image(), camera, {int(tag.id): tag.size})
-    found = find_tag(seen, tag.id)
-    turn = np.kron(np.eye(2), T_wc[:3, :3])
-    return Reading(
-        stamp=now,
-        arrived=now + age,
-        T_wm=locked(T_wc @ found.T_cm),
-        covariance=locked(turn @ found.covariance @ turn.T),
-    )
+        found, T_wc = find_tag(seen, tag.id), camera.T_wc
+        turn = np.kron(np.eye(2), T_wc[:3, :3])
+        C = locked(turn @ found.covariance @ turn.T)
+        return Reading(now, now + self._delay, locked(T_wc @ found.T_cm), C)
 
 
 class TagTarget:
@@ -172,3 +136,63 @@ class TagTarget:
             for r in self.lookups.poll()
         )
         return self.follower(t, readings)
+
+
+class Estimate(NamedTuple):
+    """An estimate of a position and its motion.
+
+    Attributes:
+        t: Time of the estimate, in [s].
+        mean: Position [m] and velocity [m/s], and acceleration [m/s^2] if it is estimated too,
+            shape (6,) or (9,).
+        covariance: Covariance of the mean, shape (6, 6) or (9, 9).
+    """
+
+    t: float
+    mean: Array
+    covariance: Array
+
+
+def first_estimate(t: float, position: Any, noise: Any, *spread: float) -> Estimate:
+    """The estimate from a single reading of a position, with an unknown velocity.
+
+    Args:
+        t: When the picture was taken, in [s].
+        position: The reading, shape (3,) in [m].
+        noise: Covariance of the reading, shape (3, 3) in [m^2].
+        *spread: Expected standard deviation of the velocity's coordinates, in [m/s], and of the
+            acceleration's, in [m/s^2], if it is to be estimated too.
+    """
+    variances = [as_number(s, "spread", above=0.0) ** 2 for s in spread]
+    covariance: Array = np.kron(np.diag([0.0, *variances]), np.eye(3)).astype(float)
+    covariance[:3, :3] = as_array(noise, (3, 3), "noise")
+    mean = np.concatenate([as_array(position, (3,), "position"), np.zeros(3 * len(spread))])
+    return Estimate(t, locked(mean), locked(covariance))
+
+
+def update(estimate: Estimate, position: Any, noise: Any) -> Estimate:
+    r"""Update an estimate with a reading of the position at the same time.
+
+    .. math::
+
+        K &= P H^T (H P H^T + R)^{-1} \\
+        m' &= m + K (z - H m) \\
+        P' &= (I - KH) P (I - KH)^T + K R K^T
+
+    Args:
+        estimate: The estimate so far, predicted to the time of the picture.
+        position: The reading z, shape (3,) in [m].
+        noise: Covariance R of the reading, shape (3, 3) in [m^2].
+
+    Returns:
+        The improved estimate, for the same time.
+    """
+    z, R = as_array(position, (3,), "position"), as_array(noise, (3, 3), "noise")
+    mean, P = estimate.mean, estimate.covariance
+    K = np.linalg.solve(P[:3, :3] + R, P[:3, :]).T  # (n, 3); H selects the position
+    keep = np.eye(len(mean))
+    keep[:, :3] -= K
+    covariance = keep @ P @ keep.T + K @ R @ K.T
+    return Estimate(
+        estimate.t, locked(mean + K @ (z - mean[:3])), locked(0.5 * (covariance + covariance.T))
+    )

@@ -34,12 +34,10 @@ class Tag:
     Attributes:
         id: Its number among the tags of AprilTag 36h11.
         size: Side of the black square, in [m].
-        border: Width of the white border, in cells of the pattern; a detector needs at least one.
     """
 
     id: int = 0
     size: float = 0.1
-    border: int = 1
 
     def __post_init__(self) -> None:
         count = len(PATTERNS.bytesList)
@@ -48,16 +46,11 @@ class Tag:
                 f"id is {self.id!r}; the tags of AprilTag 36h11 are numbered 0 to {count - 1}"
             )
         as_number(self.size, "size", above=0.0)
-        if not isinstance(self.border, int) or self.border < 1:
-            raise OutOfRange(
-                f"border is {self.border!r}; without at least one white cell around it "
-                "a tag on dark ground is never found"
-            )
 
     @property
     def paper(self) -> float:
-        """Side of the white paper, border included, in [m]."""
-        return self.size * (CELLS + 2 * self.border) / CELLS
+        """Side of the white paper, in [m]: the border has the width of a cell."""
+        return self.size * (CELLS + 2) / CELLS
 
     @property
     def corners(self) -> Array:
@@ -74,7 +67,7 @@ class Tag:
             Grey levels, shape (n, n), 0 or 255.
         """
         bits = cv2.aruco.generateImageMarker(PATTERNS, int(self.id), CELLS)
-        framed: Picture = np.pad(bits, self.border, constant_values=255).astype(np.uint8)
+        framed: Picture = np.pad(bits, 1, constant_values=255).astype(np.uint8)
         return framed.repeat(cell, axis=0).repeat(cell, axis=1)
 
 

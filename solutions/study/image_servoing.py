@@ -20,7 +20,7 @@ import numpy as np
 from labkit import Model, se3
 from labkit.shapes import Array
 from labkit.tags.detection import tag_pose
-from labkit.tags.intrinsics import Intrinsics
+from labkit.tags.drawing import Intrinsics
 from labkit.tags.tag import tag_corners
 
 SIZE = 0.1

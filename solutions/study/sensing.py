@@ -19,7 +19,7 @@ from labkit.shapes import Array, as_number, as_numbers, locked
 from labkit.tags.board import Board
 from labkit.tags.camera import Camera, looking_at
 from labkit.tags.detection import detect_tags
-from labkit.tags.intrinsics import Intrinsics
+from labkit.tags.drawing import Intrinsics
 from labkit.tags.tag import Tag
 from labkit.world import World
 

@@ -38,7 +38,8 @@ import matplotlib.pyplot as plt
 import numpy as np
 
 from labkit import se3
-from labkit.tags import detection, estimation
+from labkit.tags import detection
+from labkit.tags import stream as estimation
 from labkit.tags.board import Board
 
 # %% [markdown]

@@ -23,8 +23,7 @@ import numpy as np
 
 from labkit import PoseSample, Sample, se3
 from labkit.shapes import Array, as_array, as_number, as_vector
-from labkit.tags.estimation import Estimate, first_estimate, update
-from labkit.tags.stream import Reading
+from labkit.tags.stream import Estimate, Reading, first_estimate, update
 
 _ENDS = np.linalg.inv(
     np.array(

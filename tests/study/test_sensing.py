@@ -4,7 +4,6 @@ import numpy as np
 import pytest
 
 from labkit import se3
-from labkit.tags.intrinsics import Intrinsics
 from solutions.study.sensing import Setup, consistency, random_poses, read
 
 
@@ -20,19 +19,15 @@ def test_averaging_helps_against_image_noise_by_the_expected_amount():
     assert 0.1 < np.std(means) / one < 0.45  # 1/4, from ten means
 
 
-LENS = Intrinsics(distortion=(-0.2, 0.05, 0.001, -0.001, 0.0))
-
-
 @pytest.mark.parametrize(
     "dials",
     [
         {"optics": {"noise": 5.0}},
-        {"optics": {"noise": 2.0}, "intrinsics": LENS},
         {"optics": {"noise": 2.0}, "smear": 3.0},
         {"optics": {"noise": 2.0}, "distance": 2.0},
         {"cover": 0.1},
     ],
-    ids=["noise", "a lens that distorts", "a smear", "2 m", "a corner"],
+    ids=["noise", "a smear", "2 m", "a corner"],
 )
 def test_the_errors_are_as_large_as_the_detector_says(dials):
     """The mean of e' P^-1 e over a position's three components is between 1 and 6."""

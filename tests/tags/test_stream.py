@@ -6,7 +6,7 @@ import pytest
 import labkit as lk
 from labkit import se3
 from labkit.errors import ControllerError, OutOfRange
-from labkit.tags.stream import detect_once
+from labkit.tags.stream import Estimate, first_estimate, update
 
 EYE = lk.looking_at((3.0, 3.0, 0.7), (3.0, 3.0, 0.0), up=(1, 0, 0))
 
@@ -29,20 +29,11 @@ def polled(lookups, seconds, every=5):
 def test_a_look_tells_where_the_tag_is_in_the_world(scene):
     """It is true to 2 mm, and its height is three times as uncertain as its x."""
     board, camera = scene
-    reading = detect_once(camera, board.tag)
+    (reading,) = lk.TagStream(camera, board.tag, delay=0.0).poll()
     off = se3.pose_error(board.T_wm, reading.T_wm)
     assert np.linalg.norm(off[:3]) < 2e-3
     spread = np.sqrt(np.diag(reading.covariance))
     assert spread[2] > 3 * spread[0], "the camera looks down, so the height is worst"
-
-
-def test_a_believed_place_of_the_camera_may_be_a_list_and_must_be_a_pose(scene):
-    """A list gives the array's reading; a matrix of ones is refused."""
-    board, camera = scene
-    believed = detect_once(camera, board.tag, EYE.tolist())
-    np.testing.assert_array_equal(believed.T_wm, detect_once(camera, board.tag).T_wm)
-    with pytest.raises(OutOfRange, match="T_wc's last row"):
-        detect_once(camera, board.tag, np.ones((4, 4)))
 
 
 def test_readings_come_at_the_rate_and_as_late_as_stated(scene):
@@ -72,9 +63,7 @@ def test_losses_are_the_stated_share_and_repeat_with_the_seed(scene):
     board, camera = scene
 
     def arrivals(seed):
-        lookups = lk.TagStream(
-            camera, board.tag, rate=50, delay=0.05, jitter=0.03, dropout=0.3, seed=seed
-        )
+        lookups = lk.TagStream(camera, board.tag, rate=50, delay=0.05, dropout=0.3, seed=seed)
         times = [t for t, _ in polled(lookups, 1.2, every=10)]
         return np.round(np.array(times) - times[0], 6)
 
@@ -91,13 +80,6 @@ def test_a_tag_out_of_view_gives_no_reading_and_no_error(scene):
     lookups = lk.TagStream(camera, board.tag)
     assert polled(lookups, 0.5) == []
     assert lookups.unseen == 5
-
-
-def test_a_blind_stretch_is_blind(scene):
-    """Of ten pictures a second the four between 0.25 s and 0.65 s give no reading."""
-    board, camera = scene
-    readings = polled(lk.TagStream(camera, board.tag, delay=0.0, blind=[(0.25, 0.65)]), 1.0)
-    np.testing.assert_allclose([r.stamp for _, r in readings], [0, 0.1, 0.2, 0.7, 0.8, 0.9])
 
 
 def test_two_boards_with_one_number_stop_the_run_with_a_sentence(scene):
@@ -142,3 +124,24 @@ def test_dials_out_of_range_are_refused(scene):
     ):
         with pytest.raises(OutOfRange, match=says):
             lk.TagStream(camera, board.tag, **options)
+
+
+def test_a_reading_moves_the_estimate_as_the_information_says():
+    """P'^-1 = P^-1 + H^T R^-1 H, and the mean is weighed accordingly."""
+    random = np.random.default_rng(2)
+    A, B = random.standard_normal((6, 6)), random.standard_normal((3, 3))
+    P, R = A @ A.T + np.eye(6), B @ B.T + np.eye(3)
+    m, z, H = random.standard_normal(6), random.standard_normal(3), np.eye(3, 6)
+    after = update(Estimate(1.0, m, P), z, R)
+    information = np.linalg.inv(P) + H.T @ np.linalg.inv(R) @ H
+    np.testing.assert_allclose(np.linalg.inv(after.covariance), information, rtol=1e-8)
+    weighed = np.linalg.solve(information, np.linalg.inv(P) @ m + H.T @ np.linalg.inv(R) @ z)
+    np.testing.assert_allclose(after.mean, weighed, rtol=1e-8)
+    assert after.t == 1.0
+
+
+def test_the_first_reading_says_nothing_about_the_speed():
+    """The first speed is zero with the given deviation, and the place is the reading's."""
+    first = first_estimate(2.0, [1.0, 2.0, 3.0], 1e-6 * np.eye(3), 0.2)
+    np.testing.assert_array_equal(first.mean, [1, 2, 3, 0, 0, 0])
+    np.testing.assert_allclose(np.diag(first.covariance), [1e-6] * 3 + [0.04] * 3)

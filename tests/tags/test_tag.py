@@ -6,7 +6,7 @@ import pytest
 
 import labkit as lk
 from labkit import se3
-from labkit.errors import LabkitError, OutOfRange, TypeMismatch
+from labkit.errors import OutOfRange, ShapeError, TypeMismatch
 from labkit.tags.tag import tag_corners
 
 
@@ -20,16 +20,13 @@ def test_the_printed_image_reads_as_its_number():
         assert ids.ravel().tolist() == [number]
 
 
-def test_the_border_is_white_and_as_wide_as_stated():
-    """Two cells of white surround black edges, and the paper is 12/8 of the tag."""
-    tag = lk.Tag(3, border=2)
-    picture = tag.image(cell=10)
-    assert picture.shape == (120, 120)
-    inside = picture[20:-20, 20:-20]
-    outside = picture.astype(int).sum() - inside.astype(int).sum()
-    assert outside == 255 * (picture.size - inside.size)
-    assert (inside[:10] == 0).all() and (inside[:, -10:] == 0).all()
-    assert tag.paper == pytest.approx(0.1 * 12 / 8)
+def test_the_border_is_white_and_a_cell_wide():
+    """One cell of white surrounds black edges, and the paper is 10/8 of the tag."""
+    picture = lk.Tag(3).image(cell=10)
+    inside = picture[10:-10, 10:-10]
+    assert picture.sum(dtype=int) - inside.sum(dtype=int) == 255 * (100**2 - 80**2)
+    assert not inside[:10].any() and not inside[:, -10:].any()
+    assert lk.Tag(3).paper == pytest.approx(0.125)
 
 
 def test_corners_go_clockwise_for_who_looks_at_the_tag():
@@ -41,20 +38,11 @@ def test_corners_go_clockwise_for_who_looks_at_the_tag():
         assert np.cross(a, b)[2] < 0.0
 
 
-@pytest.mark.parametrize(
-    ("make", "error", "says"),
-    [
-        (lambda: lk.Tag(size=0.0), OutOfRange, "size is 0; it must be greater than 0"),
-        (lambda: lk.Tag(587), OutOfRange, "numbered 0 to 586"),
-        (lambda: lk.Tag(border=0), OutOfRange, "never found"),
-        (lambda: tag_corners(-1.0), OutOfRange, "size is -1"),
-    ],
-)
-def test_a_tag_that_cannot_be_is_refused_in_a_sentence(make, error, says):
-    """The error for size 0, number 587 or no border says what is allowed."""
-    with pytest.raises(error, match=says) as caught:
-        make()
-    assert isinstance(caught.value, LabkitError)
+@pytest.mark.parametrize("wrong", [{"size": 0.0}, {"id": 587}])
+def test_a_tag_that_cannot_be_is_refused(wrong):
+    """A size of 0, and a number that the family has not."""
+    with pytest.raises(OutOfRange):
+        lk.Tag(**wrong)
 
 
 def turned(angle, place=(0.7, 0.0, 0.0)):
@@ -103,19 +91,13 @@ def test_several_boards_are_seen_at_once():
             np.testing.assert_allclose(place, [x, 3.0, 0.0], rtol=0, atol=2e-3)
 
 
-def test_a_motion_of_joint_angles_moves_no_board():
-    """The error asks for a PoseSample, and where a pose is given suggests board.place."""
+def test_only_poses_and_points_move_a_board():
+    """Joint angles, a pose itself, and a number for the tag are refused."""
     with lk.World() as world:
         board = lk.tags.Board(world, lk.Tag(), turned(0.0))
-        with pytest.raises(TypeMismatch, match=r"lk\.PoseSample"):
+        with pytest.raises(ShapeError):
             board.move(lk.Hold(np.zeros(7), 1.0))
-        with pytest.raises(TypeMismatch, match=r"expected a function of time; board\.place"):
+        with pytest.raises(TypeMismatch):
             board.move(turned(0.0))
-
-
-def test_a_board_is_a_tag_in_a_world():
-    """A number for the tag, or an arm for the world, is refused, and the error asks for both."""
-    with lk.Arm("left") as arm:
-        for world, tag in ((arm.world, 5), (arm, lk.Tag(5))):
-            with pytest.raises(TypeMismatch, match=r"a World .an arm's is arm.world. and a Tag"):
-                lk.tags.Board(world, tag, turned(0.0))
+        with pytest.raises(TypeMismatch):
+            lk.tags.Board(world, 5, turned(0.0))

@@ -1,5 +1,6 @@
 """The renderer: depths, edges and areas against what geometry says, and one picture everywhere."""
 
+import json
 from pathlib import Path
 
 import cv2
@@ -9,9 +10,8 @@ from sights import Block, resized
 
 import labkit as lk
 from labkit import se3
-from labkit.tags.paper import paper
-from labkit.tags.rendering import FAR, NEAR, Window, draw
-from labkit.tags.surface import Surface, box, joined
+from labkit.tags.camera import printed
+from labkit.tags.drawing import DATA, FAR, NEAR, Surface, Window, box, draw, joined
 
 LENS = lk.Intrinsics(64, 48, 80.0, 90.0, 30.3, 25.1)
 WHOLE = Window(0, 0, LENS.width, LENS.height)
@@ -48,8 +48,8 @@ def test_a_window_is_a_part_of_the_whole_picture():
     whole, depth = draw(block, LENS, np.eye(4), WHOLE)
     part = Window(13, 9, 31, 22)
     colours, near = draw(block, LENS, np.eye(4), part)
-    np.testing.assert_allclose(colours, whole[part.rows, part.columns], rtol=0, atol=1e-6)
-    np.testing.assert_allclose(near, depth[part.rows, part.columns], rtol=1e-4)
+    np.testing.assert_allclose(colours, whole[part.place], rtol=0, atol=1e-6)
+    np.testing.assert_allclose(near, depth[part.place], rtol=1e-4)
 
 
 def test_nearer_surfaces_hide_those_behind_in_any_order():
@@ -74,7 +74,7 @@ def test_the_paper_covers_as_many_pixels_as_its_outline_encloses():
         corners = tag.corners * (tag.paper / tag.size) @ T[:3, :3].T + T[:3, 3]
         outline = lens.project(corners)
         area = cv2.contourArea(outline.astype(np.float32))
-        share, white = paper(tag, T, lens, Window(0, 0, lens.width, lens.height), 8)
+        share, white = printed(tag, T, lens, Window(0, 0, lens.width, lens.height), 8)
         assert share.sum() == pytest.approx(area, rel=2e-3)
         assert share.min() >= 0.0 and share.max() <= 1.0
         brute = _everywhere(tag, T, lens)
@@ -85,7 +85,7 @@ def test_the_paper_covers_as_many_pixels_as_its_outline_encloses():
 def _everywhere(tag, T, lens, n=4):
     """How white each pixel of the picture is, by n^2 points in all of them, on an edge or not."""
     fine = resized(lens, float(n))
-    share, white = paper(tag, T, fine, Window(0, 0, fine.width, fine.height), 1)
+    share, white = printed(tag, T, fine, Window(0, 0, fine.width, fine.height), 1)
     return (share * white).reshape(lens.height, n, lens.width, n).mean(axis=(1, 3))
 
 
@@ -125,3 +125,13 @@ def test_the_picture_is_the_same_on_every_machine():
     known = cv2.cvtColor(cv2.imread(str(KNOWN)), cv2.COLOR_BGR2RGB).astype(int)
     off = np.abs(scene().astype(int) - known).max(axis=2)
     assert np.mean(off > 1) < 1e-3
+
+
+def test_every_piece_has_its_mesh_and_a_parent():
+    """Each parent is a joint or the base; the files are those that are used, and below 6 MB."""
+    table = json.loads((DATA / "baxter_visual.json").read_text())
+    names = {"base"} | {j["name"] for j in table["joints"]}
+    assert {p["parent"] for p in table["pieces"]} <= names
+    used = {p["mesh"] for p in table["pieces"]}
+    assert used == {f"meshes/{p.name}" for p in (DATA / "meshes").iterdir()}
+    assert sum((DATA / name).stat().st_size for name in used) < 6e6
