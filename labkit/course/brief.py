@@ -10,7 +10,7 @@ from .question import Question, in_points
 WORDS, WHY_POINTS = (25, 80), 2.0
 """The smallest and the largest number of words in a why, and its points."""
 RUBRIC = (
-    "- 2 points: the right cause, and how it leads to what you saw. 1 point: the right cause, but "
+    "2 points: the right cause, and how it leads to what you saw. 1 point: the right cause, but "
     "a step is missing or wrong. 0 points: another cause, or only a repetition of what you saw."
 )
 """The rubric by which a person marks a why."""
@@ -33,7 +33,7 @@ def brief_of_why(name: str, points: float, asks: str) -> str:
     """The text above a why, with its rubric."""
     least, most = WORDS
     head = f"**Why? `{name}`** · {in_points(points)} · {least} to {most} words of your own"
-    return f"{head}\n\n{asks}\n\n{RUBRIC}"
+    return f"{head}\n\n{asks}\n\n<details><summary>How it is marked</summary>{RUBRIC}</details>"
 
 
 def heading(does: str, name: str, points: float, core: bool) -> str:
@@ -47,18 +47,7 @@ def where_hints_are(name: str) -> str:
 
 
 def brief(question: Question) -> str:
-    """The text above a stub: the task, the points, how answers are tested, what is withheld."""
+    """The text above a stub: the task, the points, and what the answer may not use."""
     head = heading("Your turn", question.name, question.points, question.core)
-    lines = [head, "", question.asks]
-    also = list(dict.fromkeys(test.also for test in question.tests if test.also))
-    gates = [test.name for test in question.tests if not test.weight]
-    must = f"- To earn any points your function must pass: {'; '.join(gates)}."
-    lines += ["", must] if gates else [""]
-    if also:
-        lines.append(f"- Hidden cases when it is marked: {'; '.join(also)}.")
-    if question.withheld:
-        names = " or ".join(f"`{name.replace('labkit.', 'lk.')}`" for name in question.withheld)
-        lines.append(f"- Write it yourself: the answer may not use {names}.")
-    if question.hints:
-        lines.append(where_hints_are(question.name))
-    return "\n".join(lines)
+    names = " or ".join(f"`{name.replace('labkit.', 'lk.')}`" for name in question.withheld)
+    return f"{head}\n\n{question.asks}" + (f" Do not use {names}." if names else "")

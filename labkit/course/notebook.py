@@ -9,6 +9,7 @@ and that of its check is the name with "-check".
 from __future__ import annotations
 
 import json
+import re
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import Any
@@ -150,8 +151,9 @@ def source_notebook(
     imports the answer.  An empty code cell with ``predict="name"`` or ``find_out="name"`` marks
     the place of a value that students write down.  A Markdown cell with ``why="name"``, or
     ``task="name" points=3`` for a longer text, asks for a text and holds a model answer in a
-    solution region.  ``setup=true`` marks cells that students should leave alone.  The brief
-    before a stub and the check after it are generated from the question.
+    solution region.  ``setup=true`` marks cells that students should leave alone; the code of cells
+    with what `FOLDED` finds is folded.  The brief before a stub and the check after it are generated
+    from the question.
 
     Args:
         path: The source, in jupytext's percent format.
@@ -189,6 +191,8 @@ def source_notebook(
             setup = cell.metadata.get("setup", False)
             meta = _nbgrader(f"setup-{len(cells)}", locked=True) if setup else {}
             cells.append(_cell(cell.cell_type, cell.source, "setup" if setup else "walk", meta))
+            if cell.cell_type == "code" and FOLDED.search(cell.source):
+                cells[-1]["metadata"]["jupyter"] = {"source_hidden": True}
     for name in (*questions, *by_name):
         if asked.count(name) != 1:
             raise LabkitError(f"{path.name} has {asked.count(name)} stubs of {name}, and needs one")
@@ -200,6 +204,8 @@ def source_notebook(
     )
 
 
+FOLDED = re.compile(r"^(import|from) |\buse\(|\bplt\.|\blk\.plotting\.", re.MULTILINE)
+"""What is in cells whose code is folded at first: set-up, stand-ins and plotting."""
 _ASKS = ("question", "predict", "find_out", "why", "task")
 
 

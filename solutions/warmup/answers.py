@@ -15,9 +15,9 @@ def joint_error(target: lk.Sample, state: lk.State) -> Array:
     return target.position - state.q
 
 
-def transform_point(T_ab: Any, p_b: Any) -> Array:
-    """A point's coordinates in a, from those in b (MLS section 2.3.1)."""
-    return np.asarray(T_ab[:3, :3] @ p_b + T_ab[:3, 3])
+def tag_in_world(T_wt: Any, T_tc: Any, T_cm: Any) -> Array:
+    """The tag's pose in the world: neighbouring letters cancel (MLS section 2.3.2)."""
+    return np.asarray(T_wt @ T_tc @ T_cm)
 
 
 def orientation_error(R_wd: Any, R_wt: Any) -> Array:

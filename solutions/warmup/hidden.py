@@ -38,28 +38,16 @@ def errors(random: Random) -> Iterator[Call]:
     yield call(sample(random)._replace(position=wrist), state(random)._replace(q=-wrist))
 
 
-def points_aligned(random: Random) -> Iterator[Call]:
-    """Frames that are only shifted."""
-    for _ in range(2):
-        T = lk.se3.pose(np.eye(3), random.uniform(-0.8, 0.8, 3))
-        yield call(T, random.uniform(-0.5, 0.5, 3))
+def chains_of_shifts(random: Random) -> Iterator[Call]:
+    """A camera at the tip, and frames that are only shifted."""
+    wt, cm = (lk.se3.pose(np.eye(3), x) for x in random.uniform(-0.8, 0.8, (2, 3)))
+    yield call(wt, np.eye(4), cm)
 
 
-def _yawed(random: Random) -> Any:
-    yaw = random.choice((-1.0, 1.0)) * random.uniform(0.4, 2.5)
-    return lk.se3.pose(lk.se3.rotation([0.0, 0.0, yaw]), random.uniform(-0.8, 0.8, 3))
-
-
-def points_yawed(random: Random) -> Iterator[Call]:
-    """Frames that are shifted and turned about the vertical."""
-    for _ in range(2):
-        yield call(_yawed(random), random.uniform(-0.5, 0.5, 3))
-
-
-def points(random: Random) -> Iterator[Call]:
-    """Any poses and points."""
-    for _ in range(4):
-        yield call(pose(random), random.uniform(-0.5, 0.5, 3))
+def chains(random: Random) -> Iterator[Call]:
+    """Any poses."""
+    for _ in range(3):
+        yield call(pose(random), pose(random), pose(random))
 
 
 def turns_about_z(random: Random) -> Iterator[Call]:

@@ -33,24 +33,25 @@ def wrapped(target: lk.Sample, state: lk.State) -> Array:
     return np.asarray((target.position - state.q + np.pi) % (2.0 * np.pi) - np.pi)
 
 
-def from_a_to_b(T_ab: Any, p_b: Any) -> Array:
-    """The other direction: answers p_b from p_a."""
-    return np.asarray(T_ab[:3, :3].T @ (p_b - T_ab[:3, 3]))
+@dataclass(frozen=True)
+class Chain:
+    """Three poses, multiplied in a wrong manner.
+
+    Attributes:
+        product: What it computes from T_wt, T_tc and T_cm.
+    """
+
+    product: Callable[[Any, Any, Any], Any]
+
+    def __call__(self, T_wt: Any, T_tc: Any, T_cm: Any) -> Array:
+        """The product."""
+        return np.asarray(self.product(T_wt, T_tc, T_cm))
 
 
-def only_turns(T_ab: Any, p_b: Any) -> Array:
-    """The translation is lost."""
-    return np.asarray(T_ab[:3, :3] @ p_b)
-
-
-def shifts_first(T_ab: Any, p_b: Any) -> Array:
-    """Adds the translation, then turns both."""
-    return np.asarray(T_ab[:3, :3] @ (p_b + T_ab[:3, 3]))
-
-
-def turns_backwards(T_ab: Any, p_b: Any) -> Array:
-    """The rotation transposed, so the axes of b are mistaken for those of a."""
-    return np.asarray(T_ab[:3, :3].T @ p_b + T_ab[:3, 3])
+def positions_added(T_wt: Any, T_tc: Any, T_cm: Any) -> Array:
+    """The rotations multiplied, and the positions added, each in its own axes."""
+    T = T_wt @ T_tc @ T_cm
+    return lk.se3.pose(T[:3, :3], T_wt[:3, 3] + T_tc[:3, 3] + T_cm[:3, 3])
 
 
 def _euler(R: Any) -> Array:
@@ -82,11 +83,6 @@ def from_wanted_to_actual(R_wd: Any, R_wt: Any) -> Array:
 def sine_of_the_angle(R_wd: Any, R_wt: Any) -> Array:
     """Reads the skew part instead of the logarithm: right for small angles only."""
     return lk.se3.vee(R_wd @ R_wt.T)
-
-
-def only_shifts(T_ab: Any, p_b: Any) -> Array:
-    """The rotation is lost."""
-    return np.asarray(T_ab[:3, 3] + p_b)
 
 
 def logarithms_subtracted(R_wd: Any, R_wt: Any) -> Array:
@@ -122,8 +118,3 @@ class TurnOf:
         turn = lk.se3.rotation_log(R_wd @ R_wt.T)
         angle = float(np.linalg.norm(turn))
         return turn / angle * self.angle(angle) if angle else turn
-
-
-def translation_subtracted(T_ab: Any, p_b: Any) -> Array:
-    """The vector between the origins subtracted, not added."""
-    return np.asarray(T_ab[:3, :3] @ p_b - T_ab[:3, 3])

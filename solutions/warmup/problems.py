@@ -97,89 +97,97 @@ JOINT_ERROR = Problem(
     variants=(variants.error_list,),
 )
 
-YAW = lk.se3.pose([[0, -1, 0], [1, 0, 0], [0, 0, 1]], [0.6, 0.2, 0.1])
 SHIFT = lk.se3.pose(np.eye(3), [0.6, 0.2, 0.1])
+AHEAD = lk.se3.pose(np.eye(3), [0.05, 0.02, 0.3])
+IN_HAND = lk.se3.pose(lk.se3.rotation([0.2, -0.4, 1.5]), [0.04, 0.01, -0.14])
 TILTED = lk.se3.pose([[0, 0, 1], [1, 0, 0], [0, 1, 0]], [0.3, -0.4, 0.5])
+SEEN = lk.se3.pose(lk.se3.rotation([0.5, 2.4, -0.3]), [0.05, -0.08, 0.35])
 
-TRANSFORM_POINT = Problem(
-    name="transform_point",
+TAG_IN_WORLD = Problem(
+    name="tag_in_world",
     points=2,
     outcomes=("frames",),
-    asks="A point has the coordinates `p_b` in frame b, and frame b has the pose `T_ab` in frame "
-    "a. Return the point's coordinates in frame a, as an array of shape (3,).",
-    answer=answers.transform_point,
+    asks="Return the tag's pose in the world, `T_wm`, of shape (4, 4): from the tip's pose in the "
+    "world, the camera's in the tip's frame and the tag's in the camera's frame.",
+    answer=answers.tag_in_world,
     judge=Close(rtol=1e-9, atol=1e-9),
     trials=(
         Trial(
-            "a frame that is only shifted",
-            (call(SHIFT, np.array([0.1, 0.0, 0.0])),),
-            hidden.points_aligned,
+            "a camera exactly at the tip, which sees a tag that is not turned",
+            (call(SHIFT, np.eye(4), AHEAD),),
+            hidden.chains_of_shifts,
             weight=0.0,
         ),
         Trial(
-            "a frame shifted and turned by 90 degrees of yaw",
-            (call(YAW, np.array([0.1, 0.0, 0.0])), call(YAW, np.array([0.0, 0.3, 0.2]))),
-            hidden.points_yawed,
-            "any yaw",
-        ),
-        Trial(
-            "a frame turned about all axes",
-            (call(TILTED, np.array([0.1, 0.2, 0.3])),),
-            hidden.points,
-            "any poses and points",
+            "three general poses",
+            (call(TILTED, IN_HAND, SEEN), call(SEEN, TILTED, IN_HAND)),
+            hidden.chains,
+            "any poses",
         ),
     ),
     hints=(
-        "First express the vector p_b in a's axes. Then go from a's origin to b's origin, and "
-        "from there along the turned vector.",
-        "The rotation is R_ab = T_ab[:3, :3], and the origin of b in a is T_ab[:3, 3].",
-        "Try a frame that is not turned: the answer is then the sum of two vectors. If the frame "
-        "is turned, decide which of the two vectors must be turned first.",
+        "Walk from the world to the tag: world, tip, camera, tag. Each step is one of the three "
+        "matrices.",
+        "Write the subscripts in a row. Where two matrices meet, the letters must be equal.",
+        "T_wm begins with w and ends with m. Only one order of w-t, t-c and c-m makes all "
+        "neighbours equal. The product of matrices is `@`.",
     ),
     wrong=(
         Wrong(
-            "the inverse, from a to b",
-            "This gives p_b from p_a. Read the subscripts: in p_a = T_ab p_b the two b's meet.",
-            mistakes.from_a_to_b,
+            "the product in the opposite order",
+            "You multiplied from the tag to the world: m meets t, and c meets w. Neighbouring "
+            "letters must be equal: T_wt T_tc T_cm.",
+            mistakes.Chain(lambda wt, tc, cm: cm @ tc @ wt),
             "Neighbouring subscripts must be equal, and cancel.",
         ),
         Wrong(
-            "the translation left out",
-            "The rotation alone is correct for a direction. For a point, also add the vector "
-            "from a's origin to b's.",
-            mistakes.only_turns,
-            "Points and directions transform differently.",
+            "the camera taken for the tip",
+            "T_tc is left out, so the tag is where it would be if the camera were at the tip. "
+            "Put T_tc between the other two.",
+            mistakes.Chain(lambda wt, tc, cm: wt @ cm),
+            "A camera in the hand is not at the tip: hand-eye calibration.",
         ),
         Wrong(
-            "the shift before the turn",
-            "T_ab[:3, 3] is already in a's axes, so it must not be turned. Turn p_b first, then "
-            "add the translation.",
-            mistakes.shifts_first,
+            "the tip in the camera's frame",
+            "You used the inverse of T_tc: that is the tip seen from the camera. Use T_tc itself.",
+            mistakes.Chain(lambda wt, tc, cm: wt @ np.linalg.inv(tc) @ cm),
+            "T_tc and T_ct are inverses; the subscripts say which is needed.",
+        ),
+        Wrong(
+            "the camera seen from the tag",
+            "You used the inverse of T_cm: that is the camera's pose in the tag's frame. Use "
+            "T_cm itself.",
+            mistakes.Chain(lambda wt, tc, cm: wt @ tc @ np.linalg.inv(cm)),
+            "Say of every pose: of what, seen from where.",
+        ),
+        Wrong(
+            "the world seen from the tip",
+            "You used the inverse of T_wt: that is the world's pose in the tip's frame. Use T_wt "
+            "itself.",
+            mistakes.Chain(lambda wt, tc, cm: np.linalg.inv(wt) @ tc @ cm),
+            "Say of every pose: of what, seen from where.",
+        ),
+        Wrong(
+            "entries multiplied, not matrices",
+            "`*` multiplies entry by entry. The product of matrices is `@`.",
+            mistakes.Chain(lambda wt, tc, cm: wt * tc * cm),
+            "In numpy, * is not the matrix product.",
+        ),
+        Wrong(
+            "positions added without turning them",
+            "You added the three positions as they are, but each is given in other axes. Let the "
+            "product of the matrices turn them.",
+            mistakes.positions_added,
             "Add two vectors only if both are in the same axes.",
         ),
         Wrong(
-            "the rotation the wrong way round",
-            "Your rotation is R_ba, which takes vectors from a to b. Do not transpose R_ab; p @ "
-            "R also transposes it.",
-            mistakes.turns_backwards,
-            "R_ab takes components in b to components in a.",
-        ),
-        Wrong(
-            "the rotation left out",
-            "The components of p_b are along b's axes. Turn them into a's axes with R_ab before "
-            "you add the translation.",
-            mistakes.only_shifts,
-            "Add two vectors only if both are in the same axes.",
-        ),
-        Wrong(
-            "the translation subtracted",
-            "To reach the point from a's origin, go first to b's origin and then along p_b: add "
-            "the two vectors.",
-            mistakes.translation_subtracted,
-            "Draw the three vectors as arrows.",
+            "the pose of the tag in the tip's frame",
+            "This is T_tm, the tag seen from the tip. Begin with T_wt.",
+            mistakes.Chain(lambda wt, tc, cm: tc @ cm),
+            "Say of every pose: of what, seen from where.",
         ),
     ),
-    variants=(variants.point_homogeneous, variants.point_by_einsum),
+    variants=(variants.chain_by_parts, variants.chain_as_lists),
 )
 
 
@@ -310,6 +318,6 @@ ORIENTATION_ERROR = Problem(
 
 PROBLEMS = (
     JOINT_ERROR,
-    TRANSFORM_POINT,
+    TAG_IN_WORLD,
     ORIENTATION_ERROR,
 )

@@ -14,14 +14,16 @@ def error_list(target: lk.Sample, state: lk.State) -> Any:
     return [a - b for a, b in zip(target.position, state.q, strict=True)]
 
 
-def point_homogeneous(T_ab: Any, p_b: Any) -> Any:
-    """A product with the homogeneous vector."""
-    return (T_ab @ np.append(p_b, 1.0))[:3]
+def chain_by_parts(T_wt: Any, T_tc: Any, T_cm: Any) -> Any:
+    """Rotations and positions on their own."""
+    R = T_wt[:3, :3] @ T_tc[:3, :3]
+    p = T_wt[:3, 3] + T_wt[:3, :3] @ T_tc[:3, 3] + R @ T_cm[:3, 3]
+    return lk.se3.pose(R @ T_cm[:3, :3], p)
 
 
-def point_by_einsum(T_ab: Any, p_b: Any) -> Any:
-    """A sum over columns, returned as a list."""
-    return list(np.einsum("ij,j->i", T_ab, [*p_b, 1.0])[:3])
+def chain_as_lists(T_wt: Any, T_tc: Any, T_cm: Any) -> Any:
+    """The other bracket first, returned as lists."""
+    return np.linalg.multi_dot([T_wt, T_tc, T_cm]).tolist()
 
 
 class OrientationError:

@@ -55,11 +55,19 @@ def test_each_question_gets_brief_stub_and_check():
         assert test.source.endswith(f'check("{name}", {name})')
 
 
-def test_the_brief_says_what_is_hidden_and_withheld():
-    """Points, gate, classes of hidden case, withheld names and the hint stand above each stub."""
+def test_the_brief_says_what_it_is_worth_and_what_is_withheld():
+    """Points and withheld names stand above each stub."""
     words = brief(QUESTIONS["circle"])
-    assert "4 points" in words and "other circles" in words
-    assert "`lk.Circle`" in words and "hint(" in words
+    assert "4 points" in words and "`lk.Circle`" in words
+
+
+def test_stand_ins_plots_and_set_up_are_folded():
+    """Of the cells that nobody writes in, those are open that neither import nor draw."""
+    walk = [c for c in source().cells if c.metadata["lab"] in ("setup", "walk")]
+    code = [c for c in walk if c.cell_type == "code"]
+    opened = "".join(c.source for c in code if "jupyter" not in c.metadata)
+    assert "hand_in(" in opened and "lk.Arm(" in opened
+    assert "use(" not in opened and "plt." not in opened and "import" not in opened
 
 
 def test_stubs_and_questions_must_match(tmp_path):
