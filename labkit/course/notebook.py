@@ -151,9 +151,9 @@ def source_notebook(
     imports the answer.  An empty code cell with ``predict="name"`` or ``find_out="name"`` marks
     the place of a value that students write down.  A Markdown cell with ``why="name"``, or
     ``task="name" points=3`` for a longer text, asks for a text and holds a model answer in a
-    solution region.  ``setup=true`` marks cells that students should leave alone; the code of cells
-    with what `FOLDED` finds is folded.  The brief before a stub and the check after it are generated
-    from the question.
+    solution region.  ``setup=true`` marks cells that students should leave alone; the code of
+    cells with what `FOLDED` finds is folded.  The brief before a stub and the check after it are
+    generated from the question.
 
     Args:
         path: The source, in jupytext's percent format.

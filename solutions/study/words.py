@@ -45,8 +45,11 @@ def counted(path: Path) -> Counter[str]:
 
 
 if __name__ == "__main__":
+    print(f"{'':22}{'core':>7}{'folded':>8}{'appendix':>10}{'points':>8}{'more':>6}{'minutes':>9}")
     for path in sorted(Path("assignments").glob("0[0-7]_*/*.ipynb")):
         n = counted(path)
         minutes = n["core"] / 150 + 7 * n["core points"]
-        print(f"{path.stem:22}{n['core']:6} words{n['folded']:6} folded{n['appendix']:6} in the appendix"
-              f"{n['core points']:4g} + {n['appendix points']:g} points{minutes:6.0f} min")  # fmt: skip
+        print(
+            f"{path.stem:22}{n['core']:7}{n['folded']:8}{n['appendix']:10}"
+            f"{n['core points']:8g}{n['appendix points']:6g}{minutes:9.0f}"
+        )
