@@ -297,7 +297,7 @@ def trust() -> HTML:
     said = "; ".join(f"{name} {x:.2g}" for name, (_, x) in found.items())
     return figure(
         f"The detector's covariance, tested with {PICTURES} pictures of each kind. The right value "
-        "is 3; the band is from 1 to 6.",
+        "is 3; the band is from 1 to 8.",
         f"A point for each kind of picture. {said}.",
     )
 
