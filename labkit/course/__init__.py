@@ -5,14 +5,14 @@ A notebook uses `check`, `hint` and `use`; the graders apply `mark` to the same 
 
 from __future__ import annotations
 
-from .bugs import Found
+from .bugs import Bug, Found, commanded
 from .equivalence import AtTip, Response, TipTorque
 from .forms import Choose, Curve, Measured, Number
 from .handin import hand_in
 from .identification import Identification
 from .judges import AtMost, Close, Gains
 from .marking import fingerprint, mark
-from .own_arm import my_arm, my_bug
+from .own_arm import PUBLIC_ARMS, OwnArm, my_arm, my_bug
 from .predictions import Prediction
 from .question import Call, Chase, Choice, Loop, Mistake, Question, Raised, Test, Tuned
 from .reply import NoAnswer
@@ -22,8 +22,10 @@ from .student import case, check, hint, use
 from .verdict import Outcome, TestResult, Verdict
 
 __all__ = [
+    "PUBLIC_ARMS",
     "AtMost",
     "AtTip",
+    "Bug",
     "Call",
     "Chase",
     "Choice",
@@ -39,6 +41,7 @@ __all__ = [
     "NoAnswer",
     "Number",
     "Outcome",
+    "OwnArm",
     "Prediction",
     "Question",
     "Raised",
@@ -50,6 +53,7 @@ __all__ = [
     "Verdict",
     "case",
     "check",
+    "commanded",
     "fingerprint",
     "hand_in",
     "hint",

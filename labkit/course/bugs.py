@@ -18,6 +18,7 @@ from ..plant import Plant
 from ..run import run
 from ..shapes import Array
 from ..trajectory import Chain, Hold, Sample, Trajectory
+from .calling import Recipe
 from .forms import Choose, RightOrWrong, shown
 from .verdict import Difference, Kind
 
@@ -49,13 +50,15 @@ MOVES = (
 
 The arm goes there, rests for a quarter of a second and comes back.
 """
+ONSETS = (0.3, 0.8)
+"""The range of times at which a mistake begins, in [s], while the arm is moving."""
 LASTS = 1.2
 SHOWS = 0.003
 """Deviation of a joint from the right run at which the mistake is visible, in [rad]."""
 
 
 @dataclass(frozen=True)
-class Bug:
+class Bug(Recipe):
     """One misbehaving run.
 
     Attributes:
@@ -69,6 +72,16 @@ class Bug:
     move: int
     onset: float
     seed: int
+
+    @classmethod
+    def drawn(cls, random: np.random.Generator) -> Bug:
+        """A run with any cause, such as for a hidden case."""
+        cause, move = random.choice(list(CAUSES)), int(random.integers(len(MOVES)))
+        return cls(str(cause), move, float(random.uniform(*ONSETS)), int(random.integers(1000)))
+
+    def made(self) -> Log:
+        """The run, which is what a function that looks for the cause is given."""
+        return self.log()
 
     def log(self) -> Log:
         """The run, up to the moment when the arm diverges, if it does."""
@@ -96,19 +109,34 @@ def _run(target: Chain, cause: str, onset: float, seed: int) -> Log:
     model = Model("left", PLANT)
     with Arm("left", PLANT, seed, q0=target(0.0).position) as arm:
         try:
-            return run(arm, target, _law(model, target, cause, onset), RATE)
+            return run(arm, target, _law(model, target(target.duration), cause, onset), RATE)
         except Diverged as error:
             if not isinstance(error.log, Log):
                 raise
             return error.log
 
 
+def commanded(log: Log, cause: str) -> Array:
+    """What computed torque with one mistake would command in the states that a run saw.
+
+    Args:
+        log: One of these runs; its move ends where it begins.
+        cause: A letter of `CAUSES`; "" is the right law.
+
+    Returns:
+        The torques at each tick, shape (N, n) in [N m].
+    """
+    rows = [Sample(*row) for row in zip(*log.target, strict=True)]
+    law = _law(Model("left", PLANT), rows[0], cause, 0.0)
+    states = [State(*row) for row in zip(*log.measured, strict=True)]
+    return np.array([law(*pair).value for pair in zip(states, rows, strict=True)])
+
+
 def _law(
-    model: Model, target: Chain, cause: str, onset: float
+    model: Model, last: Sample, cause: str, onset: float
 ) -> Callable[[State, Sample], JointTorque]:
     """Computed torque, which has one mistake from `onset` on."""
     before: list[State] = []
-    last = target(target.duration)
 
     def law(state: State, wanted: Sample) -> JointTorque:
         now = cause if state.t >= onset else ""

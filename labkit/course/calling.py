@@ -69,6 +69,14 @@ def captured() -> Iterator[Captured]:
                 result.text = "".join([*words, below])
 
 
+class Recipe:
+    """An argument that is made anew for each call, such as an arm."""
+
+    def made(self) -> Any:
+        """The argument that the function is given."""
+        raise NotImplementedError
+
+
 class ArgumentChanged(LabkitError):
     """A function changed a list, a dict or an array that it was given."""
 
@@ -86,13 +94,21 @@ def call(function: Callable[..., Any], args: Sequence[Any], kwargs: Mapping[str,
     places: list[int | str] = [*range(len(args)), *kwargs]
     befores, afters = [*args, *kwargs.values()], [*given, *named.values()]
     for place, before, after in zip(places, befores, afters, strict=True):
-        if before is not after and not _same(before, after):
+        changed = before is not after and not isinstance(before, Recipe)
+        if changed and not _same(before, after):
             raise ArgumentChanged(_sentence(function, place, before))
     return answer
 
 
+def called(function: Callable[..., Any]) -> Callable[..., Any]:
+    """The function, each call of which goes through `call`."""
+    return lambda *args, **kwargs: call(function, args, kwargs)
+
+
 def copied(x: Any) -> Any:
-    """A copy with new containers and arrays; the value itself if it has neither."""
+    """A copy with new containers and arrays; what a recipe makes; else the value itself."""
+    if isinstance(x, Recipe):
+        return x.made()
     if isinstance(x, np.ndarray):
         return x.copy()
     if type(x) is list:

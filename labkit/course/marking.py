@@ -16,7 +16,7 @@ from ..errors import Diverged, LabkitError
 from ..log import Log
 from ..shapes import Array
 from .advice import full_description
-from .calling import call
+from .calling import called
 from .equivalence import Judge, as_expected, shares_error
 from .judges import AtMost, Close, numbers
 from .question import Call, Case, Choice, Loop, Mistake, Question, Raised, Test, Tuned
@@ -219,11 +219,7 @@ def recognise(question: Question, answers: list[Any]) -> Mistake | None:
 
 def fingerprint(question: Question, function: Function) -> tuple[Any, ...]:
     """A function's answer to each public call, or `Raised` if it raises an exception."""
-
-    def safely(*args: Any, **kwargs: Any) -> Any:
-        return call(function, args, kwargs)
-
-    given = [ask(case, safely) for case in question.calls]
+    given = [ask(case, called(function)) for case in question.calls]
     return tuple(Raised(a.kind) if isinstance(a, _Failure) else a for a in given)
 
 

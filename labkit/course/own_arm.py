@@ -24,7 +24,8 @@ from ..plant import BAXTER, Plant
 from ..scene import TIP_RADIUS, Wall
 from ..sensors import TorqueSensors
 from ..world import World
-from .bugs import CAUSES, MOVES, Bug
+from .bugs import CAUSES, MOVES, ONSETS, Bug
+from .calling import Recipe
 from .seed import PUBLIC_SEED
 
 FILE = "arms.json"
@@ -40,16 +41,14 @@ RANGES = {
     "lag": (0.03, 0.09),
     "wall": (0.04, 0.09),
 }
-"""The range from which each number is drawn; `OwnArm` explains the numbers."""
+"""The range from which each number of an `OwnArm` is drawn."""
 
 BUGS = 3
 """The number of misbehaving runs of each arm, of all pairs from `CAUSES` and `MOVES`."""
-ONSETS = (0.3, 0.8)
-"""The range of times at which a mistake begins, in [s], while the arm is moving."""
 
 
 @dataclass(frozen=True)
-class OwnArm:
+class OwnArm(Recipe):
     """What distinguishes a student's arm from Baxter's.
 
     Attributes:
@@ -77,6 +76,24 @@ class OwnArm:
             stiction=tuple(scale * x for x in BAXTER.stiction),
             velocity_lag=self.lag,
         )
+
+    @classmethod
+    def drawn(cls, random: np.random.Generator) -> OwnArm:
+        """An arm with numbers from `RANGES`, such as for a hidden case."""
+        payload, stiction, lag, wall = (random.uniform(*ends) for ends in RANGES.values())
+        return cls(payload, stiction, lag, wall)
+
+    def made(self, seed: int = 0) -> Arm:
+        """The arm, at rest in its ready pose in front of its wall; it reports Baxter's numbers."""
+        known = replace(BAXTER, name="own")
+        model = Model("left", known)
+        tip = model.pose(model.robot.ready)[:3, 3]
+        wall = Wall(tip + [self.wall + TIP_RADIUS, 0.0, 0.0], (-1.0, 0.0, 0.0))
+        arm = Arm("left", self.plant, seed, q0=model.robot.ready, world=World(things=[wall]))
+        # Zeroed with the load in the gripper, or the torque sensors would reveal the load at rest.
+        arm._sensors = TorqueSensors(Model("left", self.plant), self.plant, arm.world.dt)
+        arm.plant, arm.model = known, model  # what students know of it
+        return arm
 
 
 def draw(key: str, handle: str) -> OwnArm:
@@ -172,16 +189,7 @@ def my_arm(handle: str = DEMO, seed: int = 0) -> Arm:
     Raises:
         LabkitError: The file of arms is missing, or does not contain the handle.
     """
-    own = _own(handle)
-    known = replace(BAXTER, name="own")
-    model = Model("left", known)
-    tip = model.pose(model.robot.ready)[:3, 3]
-    wall = Wall(tip + [own.wall + TIP_RADIUS, 0.0, 0.0], (-1.0, 0.0, 0.0))
-    arm = Arm("left", own.plant, seed, q0=model.robot.ready, world=World(things=[wall]))
-    # Zeroed with the load in the gripper, or the torque sensors would reveal the load at rest.
-    arm._sensors = TorqueSensors(Model("left", own.plant), own.plant, arm.world.dt)
-    arm.plant, arm.model = known, model  # what students know of it
-    return arm
+    return _own(handle).made(seed)
 
 
 def my_bug(number: int, handle: str = DEMO) -> Log:
@@ -203,6 +211,10 @@ def my_bug(number: int, handle: str = DEMO) -> Log:
 def public_arm() -> OwnArm:
     """The arm of `DEMO`."""
     return draw(str(PUBLIC_SEED), DEMO)
+
+
+PUBLIC_ARMS = (replace(public_arm(), bugs=()), OwnArm.drawn(np.random.default_rng(PUBLIC_SEED)))
+"""Two arms for public cases of a function that measures; the first is that of `DEMO`."""
 
 
 def _own(handle: str) -> OwnArm:

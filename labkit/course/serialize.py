@@ -24,7 +24,9 @@ from ..log import Log
 from ..model import Model
 from ..recordings import Runner, Trials
 from ..shapes import locked
+from .bugs import Bug
 from .equivalence import Judge, Ratio, TipTorque
+from .own_arm import OwnArm
 from .question import Case, Mistake, Question, Raised, Test
 
 DATA = (
@@ -64,6 +66,8 @@ GIVEN = (
     Runner,
     servo.Hand,
     servo.Conveyor,
+    OwnArm,
+    Bug,
 )
 """What a student's function may also be given; each is sent as the arguments that make it."""
 

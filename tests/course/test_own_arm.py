@@ -11,18 +11,26 @@ import pytest
 
 import labkit as lk
 from labkit.course import (
+    PUBLIC_ARMS,
+    Close,
     Found,
     Identification,
     Measured,
     Outcome,
+    OwnArm,
+    commanded,
     mark,
     my_arm,
     own_arm,
+    question_data,
+    read_question,
     student,
 )
 from labkit.course.authoring.layout import Course
-from labkit.course.authoring.refusals import GUESSED, guessable
+from labkit.course.authoring.problem import Problem, Trial, Wrong, call
+from labkit.course.authoring.refusals import GUESSED, guessable, memorised
 from labkit.course.bugs import CAUSES, MOVES, Bug
+from labkit.course.calling import copied
 from labkit.course.differences import sentence
 from labkit.course.identification import on_the_public_arm, personalised
 from labkit.course.messages import message
@@ -192,6 +200,42 @@ def test_a_bug_is_found_by_its_cause_and_its_time():
     wrong = next(letter for letter in CAUSES if letter != cause)
     found = judge((wrong, shows), (cause, shows))
     assert sentence(found) == f"It should be ({cause!r}, {shows}), not ({wrong!r}, {shows})."
+
+
+def lag_of(arm):
+    """The time constant of the motors, from a step of the speed of one joint."""
+    log = lk.run(
+        arm, lk.Hold(arm.robot.ready, 1.0), lambda *_: lk.JointVelocity(0.4 * np.eye(7)[0])
+    )
+    return float(np.mean((log.t - (log.q - log.q[0])[:, 0] / 0.4)[log.t > 0.5]))
+
+
+def test_a_function_that_measures_is_tried_on_arms_that_it_has_not_seen():
+    """A question holds the numbers of its arms; each call makes the arm anew."""
+    trial = Trial(
+        "two public arms",
+        tuple(map(call, PUBLIC_ARMS)),
+        lambda random: [call(OwnArm.drawn(random)) for _ in range(2)],
+    )
+    judge = Close(rtol=0.0, atol=0.005)
+    twice = Wrong("twice", "It is twice the lag.", lambda arm: 2.0 * lag_of(arm))
+    problem = Problem(
+        "lag_of", 3.0, "?", lag_of, (trial,), judge, wrong=(twice,), expected=lambda arm: arm.lag
+    )
+    question = read_question(json.loads(json.dumps(question_data(problem.question(7)))))
+    assert mark(question, LocalFunction(lag_of)).right
+    assert mark(question, LocalFunction(twice.function)).mistake.name == "twice"
+    typed = mark(question, memorised(question))
+    assert typed.earned == 0.0 and typed.tests[0].hidden
+
+
+def test_the_cause_of_a_run_is_the_mistake_that_commands_what_it_shows():
+    """For each cause, the torques of its own law are those of the second half of the run."""
+    for k, cause in enumerate(CAUSES):
+        log = copied(Bug(cause, k % 3, 0.5, k))
+        late = log.t > 0.6
+        off = {x: np.abs(log.command - commanded(log, x))[late].max() for x in CAUSES}
+        assert off[cause] < 1e-9 and min(y for x, y in off.items() if x != cause) > 0.1
 
 
 def test_a_mistake_shows_after_its_onset():

@@ -11,7 +11,7 @@ from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 
 from ...errors import UnknownName
-from ..calling import captured
+from ..calling import called, captured
 from ..marking import mark
 from ..question import Question
 from ..verdict import Outcome, Verdict
@@ -84,13 +84,13 @@ def row(assignment: str, problem: Problem, seeds: Iterable[int]) -> Row:
     rejected = named = accepted = 0
     with captured():  # what answers print is not the card's
         for wrong in problem.wrong:
-            verdicts = [mark(question, wrong.function) for question in questions]
+            verdicts = [mark(question, called(wrong.function)) for question in questions]
             found = [*_faults(wrong.name, verdicts, limit)]
             rejected += max(verdict.earned for verdict in verdicts) < limit
             named += not any("taken for" in words for words in found)
             failures += [f"{wrong.name}: {words}" for words in found]
         for k, answer in enumerate((problem.answer, *problem.variants)):
-            earned = min(mark(question, answer).earned for question in questions)
+            earned = min(mark(question, called(answer)).earned for question in questions)
             accepted += earned == problem.points
             if earned < problem.points:
                 failures.append(f"right answer {k}: earned only {earned:g}")

@@ -42,7 +42,7 @@ class Limits:
     parse: float = 15.0
     cell: float = 10.0
     cells: float = 20.0
-    call: float = 2.0
+    call: float = 4.0
     question: float = 12.0
     wall: float = 45.0
     grace: float = 1.5
