@@ -8,8 +8,7 @@ from pathlib import Path
 import nbformat
 from IPython.display import HTML
 
-from labkit.course.authoring.layout import Course
-from labkit.course.authoring.outcomes import OUTCOMES
+from labkit.course.authoring.layout import OUTCOMES, Course
 from labkit.course.identification import Identification
 from labkit.grader.whys import DRAWN
 

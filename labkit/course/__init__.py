@@ -5,18 +5,26 @@ A notebook uses `check`, `hint` and `use`; the graders apply `mark` to the same 
 
 from __future__ import annotations
 
-from .bugs import Bug, Found, commanded
-from .equivalence import AtTip, Response, TipTorque
-from .forms import Choose, Curve, Measured, Number
+from .calling import NoAnswer
 from .handin import hand_in
 from .identification import Identification
-from .judges import AtMost, Close, Gains
+from .judges import (
+    AtMost,
+    AtTip,
+    Choose,
+    Close,
+    Curve,
+    Found,
+    Gains,
+    Measured,
+    Number,
+    Response,
+    TipTorque,
+)
 from .marking import fingerprint, mark
-from .own_arm import PUBLIC_ARMS, OwnArm, my_arm, my_bug
-from .predictions import Prediction
+from .own_arm import PUBLIC_ARMS, Bug, OwnArm, commanded, my_arm, my_bug
+from .predictions import Prediction, predict
 from .question import Call, Chase, Choice, Loop, Mistake, Question, Raised, Test, Tuned
-from .reply import NoAnswer
-from .reveal import predict
 from .serialize import question_data, read_question
 from .student import case, check, hint, use
 from .verdict import Outcome, TestResult, Verdict

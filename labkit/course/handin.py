@@ -21,10 +21,18 @@ from pathlib import Path
 from typing import Any
 
 from ..errors import LabkitError
-from .brief import WORDS, words_in_all, words_of
-from .checks_file import FILE, read_checks
 from .messages import head, wrapped
-from .notebook import cells_made_for, last_verdict, read_cells, verdict_metadata
+from .notebook import (
+    FILE,
+    WORDS,
+    cells_made_for,
+    last_verdict,
+    read_cells,
+    read_checks,
+    verdict_metadata,
+    words_in_all,
+    words_of,
+)
 from .source import analyse
 from .student import desk, last_run, shell
 from .verdict import Outcome, Verdict

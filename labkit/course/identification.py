@@ -5,9 +5,8 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 from typing import Any
 
-from .brief import heading, where_hints_are
-from .bugs import Found
-from .forms import OWN_ARM, Measured
+from .judges import OWN_ARM, Found, Measured
+from .notebook import heading, where_hints_are
 from .own_arm import DEMO, OwnArm, public_arm
 from .question import Call, Question, Test
 from .verdict import Difference, Kind, Outcome, Verdict

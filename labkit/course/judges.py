@@ -1,24 +1,216 @@
 """Judges, which say whether an answer agrees with the expected one, and if not, how it differs.
 
-A judge is a frozen value, so it can be stored with its question as data.
+A judge is a frozen value, so it can be stored with its question as data.  A `Form` is the judge of
+a prediction: it accepts every plausible value, because the point is given for committing.
 """
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field, replace
 from typing import Any
 
 import numpy as np
 
 from ..baxter import robot
-from ..control import COMMANDS
-from ..errors import LabkitError
+from ..control import COMMANDS, JointTorque
+from ..errors import LabkitError, OutOfRange
 from ..servo import Memory, Motion
 from ..shapes import Array, as_array, as_gains
 from ..trajectory import PoseSample, Sample
-from .forms import RightOrWrong
+from .own_arm import CAUSES, Bug
 from .verdict import Difference, Kind, Value
+
+COMMITTED = "committed before the arm answers"
+"""The one test of a prediction."""
+
+UNSAID = "?"
+"""What stands in the place of a prediction until a student writes one."""
+
+OWN_ARM = "it is right for your own arm"
+"""The test of a number that a student measured; only the grader knows the arm."""
+
+
+def letters(said: Any) -> str:
+    """A text, or texts in a list, in lower case, without spaces and commas; "" for other values."""
+    if isinstance(said, list | tuple):
+        return "".join(map(letters, said))
+    return "".join(said.lower().replace(",", " ").split()) if isinstance(said, str) else ""
+
+
+def shown(said: Any) -> str:
+    """What a student wrote down, cut short."""
+    try:
+        return f"{said!r:.200}"
+    except ValueError:
+        return "an integer of thousands of digits"
+
+
+class RightOrWrong:
+    """The base of judges without a tolerance: an answer is right or wrong, equal or not."""
+
+    def __call__(self, answer: Any, expected: Any) -> Difference | None:
+        """None if the answer is right, else how it differs."""
+        raise NotImplementedError
+
+    def same(self, answer: Any, other: Any) -> bool:
+        """Whether two answers, right or wrong, are the same."""
+        return np.array_equal(answer, other)
+
+
+class _Form(RightOrWrong):
+    """The base of the three forms: a prediction of the right form is accepted, whatever it says."""
+
+    def problem(self, said: Any) -> str:
+        """What is wrong with the form of a prediction, or ""."""
+        raise NotImplementedError
+
+    def __call__(self, answer: Any, expected: Any) -> Difference | None:
+        """None if the answer has this form, else what is wrong with it."""
+        found = self.problem(answer)
+        return Difference(Kind.REFUSED, found=found) if found else None
+
+    def same(self, answer: Any, other: Any) -> bool:
+        """Whether two predictions are the same."""
+        if said := letters(answer):
+            return said == letters(other)
+        return super().same(answer, other)
+
+
+@dataclass(frozen=True)
+class Choose(_Form):
+    """One of several options, by its letter.
+
+    Attributes:
+        options: What each letter stands for.
+    """
+
+    options: Mapping[str, str] = field(hash=False)
+
+    @property
+    def how(self) -> str:
+        """How to write the prediction down."""
+        return f"a letter, such as {next(iter(self.options))!r}"
+
+    def problem(self, said: Any) -> str:
+        """What is wrong with the form of a prediction, or ""."""
+        if letters(said) in self.options:
+            return ""
+        return f"it is {shown(said)}; choose one of {', '.join(map(repr, self.options))}"
+
+    def words(self, said: Any) -> str:
+        """The prediction in words, as the object of a sentence."""
+        return f"({letters(said)}) {self.options[letters(said)]}"
+
+
+@dataclass(frozen=True)
+class Number(_Form):
+    """A number with a unit.
+
+    Attributes:
+        unit: Its unit.
+        least: The smallest plausible value.
+        most: The largest plausible value.
+    """
+
+    unit: str
+    least: float
+    most: float
+
+    @property
+    def how(self) -> str:
+        """How to write the prediction down."""
+        return f"a number from {self.least:g} to {self.most:g} ({self.unit})"
+
+    def problem(self, said: Any) -> str:
+        """What is wrong with the form of a prediction, or ""."""
+        if isinstance(said, bool) or not isinstance(said, int | float | np.integer | np.floating):
+            example = "with a point, such as 8.5" if "," in shown(said) else f"({self.unit})"
+            if isinstance(said, str) and said.replace(".", "", 1).lstrip("-").isdecimal():
+                example = "without quotes"
+            return f"it is {shown(said)}; write one number {example}"
+        if not self.least <= said <= self.most:
+            return f"it is {shown(said)} {self.unit}; write {self.how}"
+        return ""
+
+    def words(self, said: Any) -> str:
+        """The prediction in words, as the object of a sentence."""
+        return f"{said:.3g} {self.unit}"
+
+
+@dataclass(frozen=True)
+class Curve(_Form):
+    """A curve, as its heights at some places.
+
+    Attributes:
+        at: The places.
+        along: The quantity on the horizontal axis, with its unit.
+        height: The quantity on the vertical axis, with its unit.
+        least: The lower end of the vertical axis.
+        most: The upper end of the vertical axis.
+    """
+
+    at: tuple[float, ...]
+    along: str
+    height: str
+    least: float
+    most: float
+
+    @property
+    def how(self) -> str:
+        """How to write the prediction down."""
+        places = ", ".join(f"{x:g}" for x in self.at)
+        what = f"the {self.height} where the {self.along} is {places}"
+        return f"a list of {len(self.at)} numbers: {what}"
+
+    def problem(self, said: Any) -> str:
+        """What is wrong with the form of a prediction, or ""."""
+        if not isinstance(said, list | tuple) or len(said) != len(self.at):
+            return f"it is {shown(said)}; write {self.how}"
+        one = Number(self.height, self.least, self.most)
+        return next(filter(None, map(one.problem, said)), "")
+
+    def words(self, said: Any) -> str:
+        """The prediction in words, as the object of a sentence."""
+        return ", ".join(f"{y:.3g} at {x:g}" for x, y in zip(self.at, said, strict=True))
+
+
+Form = Choose | Number | Curve
+
+
+@dataclass(frozen=True)
+class Measured(RightOrWrong):
+    """The judge of a measured number, which must be within a tolerance of the arm's.
+
+    Where no number is expected, every plausible number is accepted.
+
+    Attributes:
+        of: The name of the number, a field of `OwnArm`.
+        unit: Its unit.
+        least: The smallest plausible value.
+        most: The largest plausible value.
+        tolerance: Largest difference, in the same unit.
+    """
+
+    of: str
+    unit: str
+    least: float
+    most: float
+    tolerance: float
+
+    def __call__(self, answer: Any, expected: Any) -> Difference | None:
+        """None if the number is near enough, else how it differs."""
+        found = Number(self.unit, self.least, self.most).problem(answer)
+        if found:
+            return Difference(Kind.REFUSED, found=found)
+        if expected is None or abs(answer - expected) <= self.tolerance:
+            return None
+        return Difference(Kind.NUMBERS, expected=float(expected), found=float(answer))
+
+    def expected(self, arm: object) -> float:
+        """The right number for a student's `OwnArm`."""
+        return float(getattr(arm, self.of))
+
 
 FEW = 9
 """The most numbers that are shown together; of a longer answer only the worst is shown."""
@@ -238,3 +430,184 @@ def factor(a: Array, b: Array) -> float | None:
     times = float(np.vdot(b, a)) / size
     near = 1e-9 * float(np.abs(b).max())
     return times if np.allclose(a, times * b, rtol=1e-6, atol=near) else None
+
+
+MOST_COEFFICIENTS = 50
+"""Limit for a polynomial in an answer."""
+
+
+@dataclass(frozen=True)
+class Ratio:
+    """A transfer function as data: two polynomials, highest power first.
+
+    Attributes:
+        num: Numerator.
+        den: Denominator.
+    """
+
+    num: tuple[float, ...]
+    den: tuple[float, ...]
+
+    def __post_init__(self) -> None:
+        most = max(len(self.num), len(self.den))
+        if most > MOST_COEFFICIENTS:
+            raise OutOfRange(
+                f"a polynomial has {most} coefficients, but the limit is {MOST_COEFFICIENTS}; "
+                "cancel the common factors of the numerator and the denominator"
+            )
+
+    def __call__(self, s: complex) -> complex:
+        """The value of the transfer function at ``s``."""
+        return complex(np.polyval(self.num, s) / np.polyval(self.den, s))
+
+
+@dataclass(frozen=True)
+class Response:
+    """The judge of a transfer function by its frequency response, whatever its form.
+
+    Attributes:
+        omega: Frequencies at which to compare, in [rad/s].
+        rtol: Largest difference, relative to the expected value.
+    """
+
+    omega: tuple[float, ...]
+    rtol: float = 0.02
+
+    def __call__(self, answer: Any, expected: Any) -> Difference | None:
+        """None if the responses agree, else the first frequency at which they differ, and how."""
+        other = Difference(Kind.TYPE, expected="transfer function", found=value(answer))
+        if not hasattr(answer, "num"):
+            return other
+        try:
+            pairs = [(w, complex(answer(1j * w)), complex(expected(1j * w))) for w in self.omega]
+        except (TypeError, ValueError):
+            return other
+        for w, a, b in pairs:
+            if not abs(a - b) <= self.rtol * abs(b):
+                return Difference(Kind.RESPONSE, "", (w,), _polar(b), _polar(a))
+        return None
+
+    def same(self, answer: Any, other: Any) -> bool:
+        """Whether two answers, right or wrong, have the same response."""
+        return self(answer, other) is None
+
+
+def _polar(z: complex) -> Value:
+    """Magnitude and phase, in [degrees]."""
+    return value(np.array([abs(z), np.degrees(np.angle(z))]))
+
+
+@dataclass(frozen=True, eq=False)
+class TipTorque:
+    """An expected torque of which only the effect on the tip counts; `AtTip` compares with it.
+
+    Attributes:
+        value: One of the right torques, shape (n,) in [N m].
+        accelerates: J M^-1, which maps a torque to the tip acceleration it adds, shape (6, n).
+        elbow: The joint motion that does not move the tip, a unit vector, shape (n,).
+    """
+
+    value: Array
+    accelerates: Array
+    elbow: Array = field(default_factory=lambda: np.zeros(1))  # older files have none
+
+
+@dataclass(frozen=True)
+class AtTip:
+    """The judge of a `JointTorque` by the acceleration that it gives to the tip.
+
+    Seven joints have one motion that does not move the tip, so more than one torque is right.
+
+    Attributes:
+        rtol: Tolerance relative to the expected torque.
+        atol: Tolerance of the tip's acceleration, in [m/s^2] and [rad/s^2].
+    """
+
+    rtol: float = 1e-6
+    atol: float = 1e-6
+
+    def __call__(self, answer: Any, expected: TipTorque) -> Difference | None:
+        """None if the tip accelerates in the same way, else how the torques differ."""
+        if self._off(answer, expected) <= 1.0:
+            return None
+        found = Close(self.rtol, self.atol)(answer, JointTorque(expected.value))
+        return replace(found, several=True) if found else Difference(Kind.OTHER)
+
+    def same(self, answer: Any, other: Any) -> bool:
+        """Whether two torques, right or wrong, move the tip in the same way.
+
+        They may also differ by a torque along the elbow's motion.  A damper multiplied by
+        ``I - pinv(J) J`` gives one, which does act on the tip, and any mistake may come with it.
+        """
+        if isinstance(other, TipTorque) and type(answer) is JointTorque:
+            loose = replace(self, rtol=max(self.rtol, 1e-4))
+            along = other.elbow * np.sum(other.elbow * (answer.value - other.value))
+            less = (answer.value, answer.value - along)
+            return any(loose._off(JointTorque(tau), other) <= 1.0 for tau in less)
+        return Close(self.rtol, self.atol).same(answer, other)
+
+    def _off(self, answer: Any, expected: TipTorque) -> float:
+        """The error of the tip's acceleration, in tolerances; infinite for another command type."""
+        if type(answer) is not JointTorque:
+            return float("inf")
+        off = np.abs(expected.accelerates @ (answer.value - expected.value))
+        scale = np.abs(expected.accelerates) @ np.abs(expected.value)
+        return float(np.max(off / (self.atol + self.rtol * scale)))
+
+
+def as_expected(known: Any, expected: Any) -> Any:
+    """The answer of a known mistake to a call, in the form of the expected answer."""
+    if isinstance(expected, TipTorque) and type(known) is JointTorque:
+        return replace(expected, value=known.value)
+    return known
+
+
+CHOICE = Choose(CAUSES)
+NEAR = 0.15
+"""Tolerance of the time at which a mistake is first visible, in [s]."""
+
+
+@dataclass(frozen=True)
+class Found(RightOrWrong):
+    """The judge of a diagnosis of a misbehaving run: the cause and when it is first visible.
+
+    Attributes:
+        number: Index of the run, from 0.
+    """
+
+    number: int
+
+    def __call__(self, answer: Any, expected: Any) -> Difference | None:
+        """None if the diagnosis is right, or if it is plausible and nothing is expected."""
+        try:
+            cause, seconds = answer
+            seconds = float(seconds)
+        except (TypeError, ValueError, OverflowError):
+            what = 'a letter and a time in s, such as ("b", 1.25)'
+            return Difference(Kind.REFUSED, found=f"it is {shown(answer)}; write {what}")
+        if found := CHOICE.problem(cause):
+            return Difference(Kind.REFUSED, found=found)
+        if expected is None or (cause == expected[0] and abs(seconds - expected[1]) <= NEAR):
+            return None
+        return Difference(Kind.VALUE, expected=str(expected), found=str(answer))
+
+    def expected(self, arm: Any) -> tuple[str, float]:
+        """The right diagnosis for a student's `OwnArm`."""
+        bug: Bug = arm.bugs[self.number]
+        return bug.cause, bug.first_visible()
+
+
+Judge = Close | Response | Gains | AtTip | Form | Measured | Found
+
+
+def accepts(judge: Judge, answer: Any, expected: Any) -> bool:
+    """Whether a judge finds an answer right; an answer that makes it raise is not."""
+    try:
+        return judge(answer, expected) is None
+    except Exception:
+        return False
+
+
+def shares_error(judge: Judge, answer: Any, mistake: Any, expected: Any) -> bool:
+    """Whether an answer is wrong on a call, or the known mistake is right on it."""
+    return accepts(judge, mistake, expected) or not accepts(judge, answer, expected)

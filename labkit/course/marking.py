@@ -16,11 +16,9 @@ from ..errors import Diverged, LabkitError
 from ..log import Log
 from ..shapes import Array
 from .advice import full_description
-from .calling import called
-from .equivalence import Judge, as_expected, shares_error
-from .judges import AtMost, Close, numbers
+from .calling import NoAnswer, called
+from .judges import AtMost, Close, Judge, as_expected, numbers, shares_error
 from .question import Call, Case, Choice, Loop, Mistake, Question, Raised, Test, Tuned
-from .reply import NoAnswer
 from .verdict import Difference, Kind, Misconception, Outcome, TestResult, Verdict
 
 Function = Callable[..., Any]

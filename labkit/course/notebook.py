@@ -1,28 +1,109 @@
-"""Cells of a notebook; no other module interprets the metadata of a cell.
+"""Cells of a notebook, their briefs, and the file of questions beside it.
 
-A course's cells are of six kinds: "setup" cells, which students leave alone; "walk" cells, which
-they may change; for each question and prediction a "brief", an "answer" and a "check"; and the
-"why", a text that a person marks.  The grade_id in nbgrader of an answer is the question's name,
-and that of its check is the name with "-check".
+No other module interprets the metadata of a cell.  A course's cells are of six kinds: "setup"
+cells, which students leave alone; "walk" cells, which they may change; for each question and
+prediction a "brief", an "answer" and a "check"; and the "why", a text that a person marks.  The
+grade_id in nbgrader of an answer is the question's name, and that of its check is the name with
+"-check".
 """
 
 from __future__ import annotations
 
 import json
 import re
+import unicodedata
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from ..errors import LabkitError
-from ..formats import stamp
-from .brief import WHY_POINTS, brief, brief_of_why
-from .identification import Identification
-from .predictions import Prediction
-from .question import Question
+from ..formats import check_stamp, stamp
+from .question import Question, in_points
 from .serialize import read_record, record_data
 from .source import analyse
 from .verdict import Verdict
+
+if TYPE_CHECKING:
+    from .identification import Identification
+    from .predictions import Prediction
+
+FILE = "checks.json"
+
+
+def read_checks(folder: Path) -> dict[str, Any]:
+    """The data in a notebook's folder: its ``assignment``, its ``questions`` and its ``texts``.
+
+    The texts, which a person marks, map the name of each to the id of its cell; the files of older
+    releases have none.
+
+    Raises:
+        LabkitError: The file is missing or damaged.
+    """
+    file = folder / FILE
+    remedy = "fetch the assignment's whole folder again"
+    try:
+        data: dict[str, Any] = json.loads(file.read_text(encoding="utf-8"))
+        if not isinstance(data, dict):
+            raise TypeError
+        check_stamp(data, f"{FILE} in {folder.name!r}", remedy)
+        if not isinstance(data["assignment"], str) or not isinstance(data["questions"], list):
+            raise TypeError
+        if not isinstance(data.setdefault("texts", {}), dict):
+            raise TypeError
+    except (FileNotFoundError, KeyError, TypeError, ValueError) as error:
+        there = "no" if isinstance(error, FileNotFoundError) else "only a damaged"
+        raise LabkitError(
+            f"there is {there} {FILE} in {folder.name!r}; it came with the notebook and belongs "
+            f"beside it, so {remedy}"
+        ) from None
+    return data
+
+
+WORDS, WHY_POINTS = (25, 80), 2.0
+"""The smallest and the largest number of words in a why, and its points."""
+RUBRIC = (
+    "2 points: the right cause, and how it leads to what you saw. 1 point: the right cause, but "
+    "a step is missing or wrong. 0 points: another cause, or only a repetition of what you saw."
+)
+"""The rubric by which a person marks a why."""
+PLACEHOLDER = "*Double-click here and write your text in place of this line.*"
+"""The initial text of a why; nbgrader's settings have the same text."""
+
+
+def words_of(text: str) -> list[str]:
+    """The words that a reader sees, without placeholder, HTML comments and invisible characters."""
+    text = re.sub(r"<!--(-?>|.*?(-->|\Z))", "", text.replace(PLACEHOLDER, ""), flags=re.DOTALL)
+    return "".join(x for x in text if unicodedata.category(x) != "Cf").split()
+
+
+def words_in_all(count: int) -> str:
+    """A number of words with its unit, such as "1 word" or "30 words"."""
+    return f"{count} word{'s' * (count != 1)}"
+
+
+def brief_of_why(name: str, points: float, asks: str) -> str:
+    """The text above a why, with its rubric."""
+    least, most = WORDS
+    head = f"**Why? `{name}`** · {in_points(points)} · {least} to {most} words of your own"
+    return f"{head}\n\n{asks}\n\n<details><summary>How it is marked</summary>{RUBRIC}</details>"
+
+
+def heading(does: str, name: str, points: float, core: bool) -> str:
+    """The first line of a brief: what to do, for how many points, and whether it is core."""
+    return f"**{does}: `{name}`** · {in_points(points)} · {'core' if core else 'extension'}"
+
+
+def where_hints_are(name: str) -> str:
+    """The line of a brief that tells students how to get a hint."""
+    return f'- Stuck? `hint("{name}", 1)` in a new cell (Esc, B): it is free.'
+
+
+def brief(question: Question) -> str:
+    """The text above a stub: the task, the points, and what the answer may not use."""
+    head = heading("Your turn", question.name, question.points, question.core)
+    names = " or ".join(f"`{name.replace('labkit.', 'lk.')}`" for name in question.withheld)
+    return f"{head}\n\n{question.asks}" + (f" Do not use {names}." if names else "")
+
 
 Cell = Mapping[str, Any]
 Notebook = Any

@@ -24,7 +24,7 @@ from ..run import run
 from ..servo import Conveyor, Followed
 from ..shapes import Array
 from ..world import Thing, World
-from .equivalence import Judge
+from .judges import Judge
 from .verdict import Misconception
 
 

@@ -24,9 +24,8 @@ from ..log import Log
 from ..model import Model
 from ..recordings import Runner, Trials
 from ..shapes import locked
-from .bugs import Bug
-from .equivalence import Judge, Ratio, TipTorque
-from .own_arm import OwnArm
+from .judges import Judge, Ratio, TipTorque
+from .own_arm import Bug, OwnArm
 from .question import Case, Mistake, Question, Raised, Test
 
 DATA = (

@@ -27,21 +27,18 @@ import numpy as np
 from ..errors import LabkitError, UnknownName
 from ..trajectory import PoseSample, Sample
 from .advice import line_of, still_raises
-from .calling import captured, copied
+from .calling import LocalFunction, captured, copied
 from .card import card, picture
-from .checks_file import read_checks
+from .causes import diagnosed
 from .identification import on_the_public_arm
 from .marking import Mismatch, mark, not_counted, try_public
 from .messages import HEADS, Message, awaits_marking, message, wrapped
-from .notebook import verdict_metadata
-from .observed import diagnosed
+from .notebook import read_checks, verdict_metadata
 from .own_arm import DEMO, normalised
 from .question import Call, Question
-from .reply import LocalFunction
 from .serialize import read_question
-from .source import analyse
+from .source import analyse, withheld_tools
 from .verdict import Outcome, Verdict
-from .withheld import withheld_tools
 
 
 class Desk:

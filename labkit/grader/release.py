@@ -18,8 +18,7 @@ from pathlib import Path
 import nbformat
 
 from ..course.authoring.bundle import Bundle
-from ..course.authoring.layout import Course
-from ..course.authoring.outcomes import check_outcomes
+from ..course.authoring.layout import Course, check_outcomes
 from ..course.authoring.problem import Problem
 from ..course.authoring.release import Prepared, prepare, write
 from ..course.notebook import BLANK, by_hand, grade_id, kind, manifest, nbgrader_info

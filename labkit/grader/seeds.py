@@ -9,8 +9,7 @@ from __future__ import annotations
 import hmac
 import json
 
-from ..course.authoring.layout import Course
-from ..course.seed import PUBLIC_SEED
+from ..course.authoring.layout import PUBLIC_SEED, Course
 from ..errors import LabkitError
 
 

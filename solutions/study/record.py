@@ -15,10 +15,9 @@ from collections.abc import Callable, Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
-from labkit.course.authoring.layout import Course
+from labkit.course.authoring.layout import PUBLIC_SEED, Course
 from labkit.course.authoring.problem import Problem
 from labkit.course.marking import mark
-from labkit.course.seed import PUBLIC_SEED
 from labkit.course.verdict import Verdict
 
 ROOT = Path(__file__).parents[2]

@@ -1,6 +1,6 @@
 """The word for a prediction."""
 
-from labkit.course.forms import COMMITTED
+from labkit.course.judges import COMMITTED
 from labkit.course.messages import is_prediction, outcome_word
 from labkit.course.verdict import Outcome, TestResult, Verdict
 

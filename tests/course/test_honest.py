@@ -6,9 +6,8 @@ from pathlib import Path
 import pytest
 
 from labkit.course.authoring.layout import Course
-from labkit.course.authoring.solved import inlined
-from labkit.course.source import analyse
-from labkit.course.withheld import withheld_tools
+from labkit.course.authoring.release import inlined
+from labkit.course.source import analyse, withheld_tools
 from tests.synthetic.inline import inline
 
 COURSE = Course.here(Path(__file__))

@@ -21,8 +21,7 @@ from labkit.course import (
     question_data,
     read_question,
 )
-from labkit.course.equivalence import Ratio
-from labkit.course.judges import factor, value
+from labkit.course.judges import Ratio, factor, value
 from labkit.course.marking import mark
 
 CLOSE = Close(rtol=1e-6, atol=1e-9)

@@ -14,9 +14,8 @@ from questions import DOUBLE, double, square
 
 from labkit.course import check, hint, question_data, use
 from labkit.course import student as notebook
-from labkit.course.checks_file import FILE
 from labkit.course.marking import mark, not_counted
-from labkit.course.notebook import verdict_in
+from labkit.course.notebook import FILE, verdict_in
 from labkit.course.serialize import record_data
 from labkit.errors import LabkitError, UnknownName
 from labkit.formats import FORMAT, stamp

@@ -7,9 +7,9 @@ from questions import DOUBLE
 import labkit as lk
 from labkit.course import mark
 from labkit.course.authoring.problem import Problem, Trial, call
+from labkit.course.causes import VARIES, diagnosed
 from labkit.course.judges import Close
 from labkit.course.marking import try_public
-from labkit.course.observed import VARIES, diagnosed
 from labkit.course.student import Desk
 from labkit.course.verdict import Misconception
 

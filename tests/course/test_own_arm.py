@@ -29,13 +29,10 @@ from labkit.course import (
 from labkit.course.authoring.layout import Course
 from labkit.course.authoring.problem import Problem, Trial, Wrong, call
 from labkit.course.authoring.refusals import GUESSED, guessable, memorised
-from labkit.course.bugs import CAUSES, MOVES, Bug
-from labkit.course.calling import copied
-from labkit.course.differences import sentence
+from labkit.course.calling import LocalFunction, copied
 from labkit.course.identification import on_the_public_arm, personalised
-from labkit.course.messages import message
-from labkit.course.own_arm import FILE, RANGES, Arms, draw, public_arm
-from labkit.course.reply import LocalFunction
+from labkit.course.messages import message, sentence
+from labkit.course.own_arm import CAUSES, FILE, MOVES, RANGES, Arms, Bug, draw, public_arm
 from labkit.errors import LabkitError
 from solutions.impedance.predictions import PREDICTIONS
 

@@ -17,7 +17,7 @@ from labkit.course import (
     predict,
 )
 from labkit.course import student as desk
-from labkit.course.reply import LocalFunction
+from labkit.course.calling import LocalFunction
 from labkit.course.serialize import question_data, read_question
 from labkit.errors import LabkitError
 from labkit.grader.sandbox import stubs
@@ -50,7 +50,7 @@ def place(monkeypatch):
     """A notebook with one prediction."""
     question = Prediction("x", "?", Choose(TWO), "a").question()
     made = desk.Desk({"x": question})
-    monkeypatch.setattr("labkit.course.reveal.desk", lambda: made)
+    monkeypatch.setattr("labkit.course.predictions.desk", lambda: made)
     return made
 
 
@@ -107,7 +107,7 @@ def test_an_array_after_the_reveal_is_compared_with_the_first_prediction(place, 
     """It is another prediction, or the same one, and no error."""
     curve = FORMS[2][0]
     made = desk.Desk({"y": Prediction("y", "?", curve, [0.0, 0.0]).question()})
-    monkeypatch.setattr("labkit.course.reveal.desk", lambda: made)
+    monkeypatch.setattr("labkit.course.predictions.desk", lambda: made)
     made.committed["y"], made.revealed = [0.1, 0.2], {"y"}
     assert predict("y", np.array([0.3, 0.4])) == [0.1, 0.2]
     assert predict("y", [0.1, 0.2]) == [0.1, 0.2]
@@ -142,7 +142,7 @@ def test_a_decimal_comma_is_told_how_to_be_written():
 def test_a_number_that_is_the_arms_own_is_told_so(monkeypatch, capsys):
     """Rather than that it is 1 times the arm's."""
     made = desk.Desk({"x": Prediction("x", "?", Number("mm", 0.0, 9.0), 8.3).question()})
-    monkeypatch.setattr("labkit.course.reveal.desk", lambda: made)
+    monkeypatch.setattr("labkit.course.predictions.desk", lambda: made)
     predict("x", 8.3)
     predict("x", truth=8.3)
     assert "Your number is the arm's." in capsys.readouterr().out

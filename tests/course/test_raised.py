@@ -10,7 +10,7 @@ from scipy.optimize import brentq
 
 import labkit as lk
 from labkit.course.advice import full_description, line_of
-from labkit.course.reply import reply
+from labkit.course.calling import reply
 
 STATE = lk.State(0.0, np.zeros(7), np.zeros(7))
 SAMPLE = lk.Sample(*np.zeros((3, 7)))

@@ -14,12 +14,11 @@ from scipy.spatial.transform import Rotation
 
 import labkit as lk
 from labkit.course import Call, Close, Outcome, Question, Response, Test
-from labkit.course import reply as reply_module
-from labkit.course.calling import ArgumentChanged, call
-from labkit.course.equivalence import Ratio
+from labkit.course import calling as reply_module
+from labkit.course.calling import ArgumentChanged, LocalFunction, NoAnswer, answer, call, reply
+from labkit.course.judges import Ratio
 from labkit.course.marking import mark
 from labkit.course.messages import message, why
-from labkit.course.reply import LocalFunction, NoAnswer, answer, reply
 from labkit.errors import LabkitError
 
 

@@ -2,8 +2,7 @@
 
 import pytest
 
-from labkit.course.source import analyse, needed
-from labkit.course.withheld import withheld_tools
+from labkit.course.source import analyse, needed, withheld_tools
 
 WITHHELD = (
     "labkit.Circle",

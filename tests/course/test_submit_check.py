@@ -12,10 +12,9 @@ from questions import DOUBLE
 
 from labkit import LabkitError
 from labkit.course import Choose, Prediction, question_data
-from labkit.course.brief import PLACEHOLDER
-from labkit.course.checks_file import FILE
 from labkit.course.cli import submit_check as command
 from labkit.course.handin import submit_check
+from labkit.course.notebook import FILE, PLACEHOLDER
 from labkit.course.verdict import Outcome
 from labkit.formats import stamp
 

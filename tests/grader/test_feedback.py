@@ -17,8 +17,7 @@ from made import said_by_hand, saying
 import labkit as lk
 from labkit.control import springs
 from labkit.course import Call, Close, Loop, Question, Test, Tuned
-from labkit.course.forms import Number
-from labkit.course.judges import Gains
+from labkit.course.judges import Gains, Number
 from labkit.course.marking import mark, try_public
 from labkit.course.predictions import Prediction
 from labkit.course.verdict import Misconception, Outcome

@@ -10,7 +10,7 @@ from handmade import nbgrader
 from plain_nbgrader import grade_with_nbgrader, pack_hidden
 
 from labkit.course.authoring.layout import Course
-from labkit.course.authoring.solved import inlined
+from labkit.course.authoring.release import inlined
 from labkit.grader.release import release
 
 pytestmark = pytest.mark.xdist_group("nbgrader marks")

@@ -10,8 +10,7 @@ from courses import copied
 from labkit import LabkitError
 from labkit.__main__ import main
 from labkit.course.authoring.bundle import Bundle
-from labkit.course.authoring.layout import Course
-from labkit.course.seed import PUBLIC_SEED
+from labkit.course.authoring.layout import PUBLIC_SEED, Course
 from labkit.errors import UnknownName
 from labkit.grader import seeds, term
 from labkit.grader.nbgrader.gradebook import open_gradebook

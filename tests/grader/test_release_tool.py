@@ -17,9 +17,8 @@ from labkit.course import read_question
 from labkit.course.authoring.layout import Course
 from labkit.course.authoring.problem import _none
 from labkit.course.authoring.refusals import refusals, stand_ins
-from labkit.course.authoring.solved import inlined, solution_notebook
-from labkit.course.brief import brief
-from labkit.course.notebook import source_notebook
+from labkit.course.authoring.release import inlined, solution_notebook
+from labkit.course.notebook import brief, source_notebook
 from labkit.errors import LabkitError
 from labkit.grader.release import FORBIDDEN, release
 

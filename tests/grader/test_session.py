@@ -9,9 +9,9 @@ from contextlib import closing
 import pytest
 from handmade import FULL, QUICK, add, cell_of, put, raw
 
-from labkit.course.equivalence import MOST_COEFFICIENTS, Ratio
+from labkit.course.calling import NoAnswer
+from labkit.course.judges import MOST_COEFFICIENTS, Ratio
 from labkit.course.messages import why
-from labkit.course.reply import NoAnswer
 from labkit.errors import OutOfRange
 from labkit.grader.grading import grade as checker
 from labkit.grader.grading.grade import grade

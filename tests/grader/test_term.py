@@ -14,7 +14,7 @@ from handmade import QUICK
 from made import said_by_hand, saying
 
 from labkit.__main__ import main
-from labkit.course.authoring.outcomes import OUTCOMES
+from labkit.course.authoring.layout import OUTCOMES
 from labkit.course.serialize import encode
 from labkit.course.verdict import Outcome
 from labkit.grader.collect import Participant

@@ -15,8 +15,8 @@ import nbformat
 import labkit
 from labkit.course import student as desk
 from labkit.course.authoring.layout import Course
-from labkit.course.authoring.solved import inlined
-from labkit.course.checks_file import FILE
+from labkit.course.authoring.release import inlined
+from labkit.course.notebook import FILE
 
 matplotlib.use("Agg")
 COURSE = Course.here(Path(__file__))

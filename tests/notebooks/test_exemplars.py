@@ -7,9 +7,8 @@ import jupytext
 import numpy as np
 import pytest
 
-from labkit.course.authoring.layout import Course
+from labkit.course.authoring.layout import PUBLIC_SEED, Course
 from labkit.course.own_arm import DEMO, draw
-from labkit.course.seed import PUBLIC_SEED
 
 COURSE = Course.here(Path(__file__))
 

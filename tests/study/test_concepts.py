@@ -10,8 +10,7 @@ import pytest
 from courses import ROOT
 
 import labkit as lk
-from labkit.course.authoring.layout import Course
-from labkit.course.authoring.outcomes import OUTCOMES
+from labkit.course.authoring.layout import OUTCOMES, Course
 from solutions.study.concepts import FILE, paper
 
 COURSE = Course(ROOT)

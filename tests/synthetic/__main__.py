@@ -6,8 +6,7 @@ import sys
 from functools import partial
 from pathlib import Path
 
-from labkit.course.authoring.layout import Course
-from labkit.course.seed import PUBLIC_SEED
+from labkit.course.authoring.layout import PUBLIC_SEED, Course
 from labkit.grader.each import Failures
 from labkit.grader.grading.batch import GradeOptions
 

@@ -9,8 +9,7 @@ from collections.abc import Iterator
 from pathlib import Path
 
 from labkit.course.authoring.bundle import Bundle
-from labkit.course.authoring.layout import Course
-from labkit.course.seed import PUBLIC_SEED
+from labkit.course.authoring.layout import PUBLIC_SEED, Course
 from labkit.errors import LabkitError
 from labkit.grader.atomic import write
 from labkit.grader.collect import collect

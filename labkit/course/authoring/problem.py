@@ -12,8 +12,7 @@ from typing import Any
 
 import numpy as np
 
-from ..equivalence import Judge
-from ..judges import Close
+from ..judges import Close, Judge
 from ..marking import fingerprint
 from ..question import Call, Case, Mistake, Question, Test
 

@@ -17,19 +17,16 @@ import numpy as np
 
 from ...control import JointTorque
 from ...errors import LabkitError
-from ..equivalence import Judge, TipTorque
-from ..forms import Measured
+from ..calling import LocalFunction
 from ..identification import Identification
-from ..judges import numbers
+from ..judges import Judge, Measured, TipTorque, numbers
 from ..marking import fingerprint, mark, recognise
 from ..notebook import Notebook
 from ..own_arm import RANGES
 from ..question import Call, Question, Raised
-from ..reply import LocalFunction
 from ..serialize import encode
-from ..source import analyse, needed
+from ..source import analyse, needed, withheld_tools
 from ..verdict import Outcome
-from ..withheld import withheld_tools
 from .problem import Problem
 
 USE = "def use(name, function, given, yours=None, **options):\n    return yours or function\n"

@@ -7,6 +7,7 @@ makes room for it in the gradebook.
 from __future__ import annotations
 
 import copy
+import inspect
 import json
 import math
 import re
@@ -23,14 +24,46 @@ import nbformat
 
 from ...errors import LabkitError
 from ...formats import stamp
-from ..checks_file import FILE
-from ..notebook import Notebook, kind, manifest, source_notebook
+from ..notebook import FILE, Notebook, grade_id, kind, manifest, source_notebook
 from ..question import Question
 from ..serialize import question_data
+from ..source import needed
 from .bundle import write_bundle
 from .layout import Course
+from .problem import Problem
 from .refusals import guessable, refusals
-from .solved import solution_notebook
+
+
+def solution_notebook(source: Notebook, problems: Mapping[str, Problem]) -> Notebook:
+    """The notebook with the answers' source in place of stubs, and model texts in place of whys."""
+    notebook = copy.deepcopy(source)
+    for cell in notebook.cells:
+        if kind(cell) == "answer" and grade_id(cell) in problems:
+            cell.source = inlined(problems[grade_id(cell)])
+        elif kind(cell) == "why":
+            cell.source = "\n".join(cell.source.splitlines()[1:-1])
+    return notebook
+
+
+def inlined(problem: Problem) -> str:
+    """The source of an answer as one cell, with the imports and helpers that it needs.
+
+    Raises:
+        LabkitError: The answer depends on something that cannot be copied.
+    """
+    function = inspect.unwrap(problem.answer)
+    module = inspect.getmodule(function)
+    assert module is not None
+    parts = needed(inspect.getsource(module), function.__name__)
+    imports = [part for part in parts if part.startswith(("import ", "from "))]
+    for line in imports:
+        if line.startswith(("import solutions", "from solutions", "from .")):
+            raise LabkitError(
+                f"the answer of {problem.name} needs `{line}`, which students do not have; define "
+                "what it imports in the answer's own module"
+            )
+    bodies = [part for part in parts if part not in imports]
+    return "\n\n\n".join(["\n".join(imports), *bodies] if imports else bodies)
 
 
 @dataclass(frozen=True)

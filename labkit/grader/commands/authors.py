@@ -4,9 +4,8 @@ from __future__ import annotations
 
 import click
 
-from ...course.authoring.layout import Course
+from ...course.authoring.layout import PUBLIC_SEED, Course
 from ...course.cli import verb
-from ...course.seed import PUBLIC_SEED
 from .course import SEED, names, of_course
 
 

@@ -9,9 +9,9 @@ from collections.abc import Callable, Iterator, Mapping, Sequence
 from statistics import mean, median
 from typing import Any, NamedTuple
 
-from ...course.authoring.outcomes import OUTCOMES
+from ...course.authoring.layout import OUTCOMES
 from ...course.authoring.problem import Problem
-from ...course.forms import Form
+from ...course.judges import Form
 from ...course.messages import why_not_counted
 from ...course.question import Question
 from ...course.verdict import Outcome, Verdict

@@ -18,8 +18,8 @@ from ...course.marking import PublicResult, all_alike, mark, not_counted, try_pu
 from ...course.messages import why_not_counted
 from ...course.question import Question
 from ...course.serialize import read_record, record_data
+from ...course.source import withheld_tools
 from ...course.verdict import Kind, Outcome, Verdict
-from ...course.withheld import withheld_tools
 from ..clean import clean_data, clean_line, how_many
 from ..sandbox.launch import Sandbox
 from ..sandbox.limits import MAX_TEXT, Limits, TextBudget

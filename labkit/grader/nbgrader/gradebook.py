@@ -18,8 +18,7 @@ from sqlalchemy import text as sql
 from sqlalchemy.exc import DatabaseError, OperationalError, SAWarning
 
 from ...course.authoring.layout import Course
-from ...course.brief import words_of
-from ...course.notebook import by_hand, grade_id, nbgrader_info, question_of, read_cells
+from ...course.notebook import by_hand, grade_id, nbgrader_info, question_of, read_cells, words_of
 from ...errors import LabkitError
 from ..atomic import write
 from ..each import Failure, for_student

@@ -20,8 +20,7 @@ from collections.abc import Iterator
 from contextlib import contextmanager, suppress
 from typing import Any
 
-from labkit.course.calling import CappedText
-from labkit.course.reply import LONGEST, TimeUp, kind, reply, sentence
+from labkit.course.calling import LONGEST, CappedText, TimeUp, kind, reply, sentence
 from labkit.course.serialize import decode
 from labkit.course.source import analyse, plain
 

@@ -14,8 +14,8 @@ from dataclasses import dataclass
 from typing import Any
 
 from ... import errors
+from ...course.calling import NoAnswer, answer
 from ...course.question import Question
-from ...course.reply import NoAnswer, answer
 from ...course.serialize import encode
 from .clean import clean_line
 from .launch import Sandbox, SandboxProcess

@@ -16,7 +16,7 @@ from typing import Any
 def install() -> None:
     """Put the stubs where a notebook looks for the originals."""
     import labkit
-    from labkit.course.bugs import commanded
+    from labkit.course.own_arm import commanded
 
     checks = ModuleType("labkit.course")
     for function in (check, hint, predict, use):

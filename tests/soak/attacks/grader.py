@@ -98,7 +98,7 @@ REPLIES = answers(
     an_array_of_much_space="import numpy as np\nreturn np.zeros((500, 3000))",
     a_deep_list="x = []\nfor _ in range(900): x = [x] * 2 if _ < 18 else [x]\nreturn x",
     a_long_number="return [10**4000] * 500",
-    coefficients="import labkit.course.equivalence as j\nreturn j.Ratio((1.0,) * 500_000, (1.0,) * 500_000)",
+    coefficients="import labkit.course.judges as j\nreturn j.Ratio((1.0,) * 500_000, (1.0,) * 500_000)",
     a_long_exception="raise ValueError('x' * 10**7)",
 )  # fmt: skip
 REPLIES["coefficients"] = Attack(

@@ -17,8 +17,7 @@ from typing import Any
 import numpy as np
 
 from ..shapes import Array
-from .equivalence import accepts
-from .judges import factor, numbers
+from .judges import accepts, factor, numbers
 from .marking import Function, PublicResult, ask
 from .question import Call, Case, Question, Raised
 from .verdict import Kind, Misconception, Outcome, Verdict
