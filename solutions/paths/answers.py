@@ -28,6 +28,12 @@ def bang_bang(t: float, duration: float) -> tuple[float, float, float]:
     return 1.0 - a * left**2 / 2.0, a * left, -a
 
 
+def duration_for(distance: float, v_max: float, a_max: float) -> float:
+    """Ramps and cruise, within limits in metres (Lynch & Park, section 9.2.2)."""
+    v = min(v_max, sqrt(distance * a_max))  # a short distance never reaches v_max
+    return distance / v + v / a_max
+
+
 def trapezoid(t: float, distance: float, v_max: float, a_max: float) -> tuple[float, float, float]:
     """Accelerate, cruise, brake, with limits in metres (Lynch & Park, section 9.2.2)."""
     v = min(v_max, sqrt(distance * a_max))  # a short distance never reaches v_max

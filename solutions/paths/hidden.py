@@ -40,6 +40,20 @@ def bang_bang_all(random: Random) -> Iterator[Call]:
         yield call(x * T, T)
 
 
+def durations_long(random: Random) -> Iterator[Call]:
+    """Distances long enough to cruise."""
+    for share in random.uniform(1.5, 4.0, 2):
+        v, a = random.uniform(0.1, 0.5), random.uniform(0.3, 2.0)
+        yield call(share * v * v / a, v, a)
+
+
+def durations_short(random: Random) -> Iterator[Call]:
+    """Distances too short for v_max: with room for less than one ramp, and for more."""
+    for share in (random.uniform(0.05, 0.4), random.uniform(0.6, 0.9)):
+        v, a = random.uniform(0.5, 0.8), random.uniform(0.5, 2.0)
+        yield call(share * v * v / a, v, a)
+
+
 def trapezoid_long(random: Random) -> Iterator[Call]:
     """Distances long enough to cruise."""
     for _ in range(3):

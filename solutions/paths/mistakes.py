@@ -11,7 +11,7 @@ import numpy as np
 
 import labkit as lk
 
-from .answers import Path, Scaling, circle
+from .answers import Path, Scaling, circle, trapezoid
 
 
 def twice_too_slow(t: float, duration: float) -> tuple[float, float, float]:
@@ -63,8 +63,6 @@ def limits_on_s(
     t: float, distance: float, v_max: float, a_max: float
 ) -> tuple[float, float, float]:
     """Takes the limits as limits of s, so the length of the path does not matter."""
-    from .answers import trapezoid
-
     return trapezoid(t, 1.0, v_max, a_max)
 
 
@@ -143,8 +141,6 @@ def still_but_accelerated(t: float, duration: float) -> tuple[float, float, floa
 
 def way_for_s(t: float, distance: float, v_max: float, a_max: float) -> tuple[float, float, float]:
     """The distance in metres, never divided by the length of the path."""
-    from .answers import trapezoid
-
     s, ds, dds = trapezoid(t, distance, v_max, a_max)
     return s * distance, ds * distance, dds * distance
 
@@ -222,37 +218,47 @@ class Ramps:
     """The trapezoid with weighted terms; 1 is right, 0 omits a term, -1 reverses it.
 
     Attributes:
-        ramp: Factor of the ramp in the duration.
         offset: Factor of half the ramp, by which the cruise is late.
         dds: Factor of the acceleration while braking.
-        reach: Factor of the shortest distance on which v_max is reached.
     """
 
-    ramp: float = 1.0
     offset: float = 1.0
     dds: float = 1.0
-    reach: float = 1.0
 
     def __call__(
         self, t: float, distance: float, v_max: float, a_max: float
     ) -> tuple[float, float, float]:
         """The motion at t."""
         d, a = distance, a_max
-        v = v_max if d >= self.reach * v_max**2 / a else sqrt(d * a)
+        v = min(v_max, sqrt(d * a))
         ramp = v / a
-        T = d / v + self.ramp * ramp
-        if t < 0.0:
-            return 0.0, 0.0, 0.0
-        if t >= T:
-            return 1.0, 0.0, 0.0
-        if t < ramp:
-            way, speed, acc = a * t**2 / 2.0, a * t, a
-        elif t < T - ramp:
-            way, speed, acc = v * (t - self.offset * ramp / 2.0), v, 0.0
-        else:
-            left = T - t
-            way, speed, acc = d - a * left**2 / 2.0, a * left, -self.dds * a
-        return way / d, speed / d, acc / d
+        T = d / v + ramp
+        s, ds, dds = trapezoid(t, d, v_max, a)
+        if ramp <= t < T - ramp:
+            return v * (t - self.offset * ramp / 2.0) / d, ds, dds
+        return s, ds, self.dds * dds if t >= T - ramp else dds
+
+
+@dataclass(frozen=True)
+class Lasting:
+    """A wrong duration of a trapezoid.
+
+    Attributes:
+        formula: The duration, given distance, v_max and a_max.
+    """
+
+    formula: Callable[[float, float, float], float]
+
+    def __call__(self, distance: float, v_max: float, a_max: float) -> float:
+        """The duration."""
+        return self.formula(distance, v_max, a_max)
+
+
+def argmax_of_ends(durations: Sequence[float], t: float) -> tuple[int, float]:
+    """The first end after t by numpy's argmax, which is 0 where there is none."""
+    ends = np.cumsum(durations)
+    k = int(np.argmax(ends > t))
+    return k, t - (ends[k] - durations[k])
 
 
 def arctangent_of_x_over_y(s: float, start: Any, centre: Any) -> lk.Sample:

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from math import sqrt
+
 import numpy as np
 
 import labkit as lk
@@ -17,8 +19,7 @@ BANG_BANG = Problem(
     name="bang_bang",
     points=3,
     outcomes=("motion",),
-    asks="Return `(s, ds, dds)` at time `t` for a motion with constant acceleration in the first "
-    "half of its duration and constant deceleration in the second half.",
+    asks="Return `(s, ds, dds)` at time `t` of a bang-bang motion.",
     answer=answers.bang_bang,
     judge=SCALING,
     trials=(
@@ -64,73 +65,172 @@ BANG_BANG = Problem(
         Wrong(
             "an acceleration of 2/T²",
             "With this acceleration, s reaches only 1/4 by the middle, where it should be 1/2. "
-            "Speeding up lasts T/2, so choose a such that a (T/2)²/2 = 1/2.",
+            "Speeding up lasts T/2, not T.",
             mistakes.twice_too_slow,
             "Check the middle of every symmetric motion: s(T/2) = 1/2.",
+            cure="Choose a such that a (T/2)²/2 = 1/2.",
         ),
         Wrong(
             "at rest, but still accelerating",
-            "Before the start and from T on nothing moves: your s is right there and ds is 0, so "
-            "dds must be 0 as well.",
+            "Before the start and from T on nothing moves: your s is right there and ds is 0, "
+            "but dds is not.",
             mistakes.still_but_accelerated,
             "The derivative of a constant is zero.",
+            cure="The derivative of a constant is 0: dds must be 0 there as well.",
         ),
         Wrong(
             "no hold after the end",
-            "After the end your formula continues, and s decreases from 1. From t = T on, the "
-            "motion rests at s = 1.",
+            "After the end your formula continues, and s decreases from 1.",
             mistakes.Bang(after=False),
             "A reference can be evaluated at any time; outside the motion it is at rest.",
+            cure="From t = T on, the motion rests at s = 1.",
         ),
         Wrong(
             "no hold before the start",
-            "Before t = 0 your parabola continues, so s is above 0. Before the start, the motion "
-            "rests at s = 0.",
+            "Before t = 0 your parabola continues, so s is above 0.",
             mistakes.Bang(before=False),
             "A reference can be evaluated at any time; outside the motion it is at rest.",
+            cure="Before the start, the motion rests at s = 0.",
         ),
         Wrong(
             "back to 0 after the end",
-            "After the end, the motion rests where it arrived, at s = 1. With s = 0 the arm "
-            "would jump back to the start.",
+            "After the end your s is 0, so the arm would jump back to the start.",
             mistakes.Bang(end=0.0),
             "After the end, a motion rests at its end, not at its start.",
+            cure="After the end, the motion rests where it arrived, at s = 1.",
         ),
         Wrong(
             "still speeding up in the second half",
-            "Your dds stays positive while the speed decreases. Braking is a negative "
-            "acceleration: -a.",
+            "Your dds stays positive while the speed decreases.",
             mistakes.Bang(dds=-1.0),
             "The second derivative is the slope of the first.",
+            cure="Braking is a negative acceleration: -a.",
         ),
         Wrong(
             "a negative speed while braking",
-            "Braking makes the speed smaller, not negative, because s still grows. The speed is "
-            "a times the time until the end.",
+            "Braking makes the speed smaller, not negative, because s still grows.",
             mistakes.Bang(ds=-1.0),
             "Slowing down is not going back.",
+            cure="The speed is a times the time until the end.",
         ),
         Wrong(
             "a rounded middle: // in place of /",
             "duration // 2 drops the fraction, so the middle of a motion of 1 s is at 0 s, and "
-            "it brakes from the start. Write duration / 2.",
+            "it brakes from the start.",
             mistakes.Bang(middle=lambda T: T // 2.0),
             "// rounds down; / divides.",
+            cure="Write duration / 2.",
         ),
         Wrong(
             "the distance of the first half forgotten",
-            "In the second half, s starts at 1/2, where the first half ended. Your s starts "
-            "again at 0.",
+            "In the second half your s starts again at 0, but the first half ended at 1/2.",
             mistakes.Bang(brake=mistakes.half_the_way_lost),
             "Each phase starts with the position and speed at the end of the phase before.",
+            cure="Add the 1/2, or count back from the end: 1 - a (T - t)²/2.",
         ),
     ),
     variants=(variants.bang_bang_list, variants.bang_bang_array),
 )
 
+DURATION_FOR = Problem(
+    name="duration_for",
+    points=2,
+    outcomes=("motion",),
+    asks="Return the shortest duration, in s, of a motion over `distance` metres, from rest to rest, "
+    "within `v_max` in m/s and `a_max` in m/s².",
+    answer=answers.duration_for,
+    trials=(
+        Trial(
+            "distances long enough to cruise",
+            (call(0.3, 0.2, 0.4), call(0.5, 0.25, 1.0), call(1.2, 0.5, 0.4)),
+            hidden.durations_long,
+            "other limits",
+            weight=0.0,
+        ),
+        Trial(
+            "distances too short to reach v_max",
+            (call(0.03, 0.2, 0.4), call(0.08, 0.2, 0.4)),
+            hidden.durations_short,
+            "other short distances",
+        ),
+    ),
+    withheld=OWN_WORK,
+    hints=(
+        "Draw the speed over time. The area under it is the distance, and the slope of its ramps "
+        "is a_max. How wide is it?",
+        "With a top speed v each ramp lasts v/a_max and covers v²/(2 a_max). When do two ramps "
+        "need more than the whole distance?",
+        "If they do, the graph is a triangle: its height is found from area and slope. With the "
+        "top speed that is really reached, one formula serves both cases.",
+    ),
+    wrong=(
+        Wrong(
+            "no triangular case",
+            "Over a short distance the arm never reaches v_max; your ramps alone cover more than "
+            "the distance.",
+            mistakes.Lasting(lambda d, v, a: d / v + v / a),
+            "A trapezoid whose cruise would last less than zero seconds is a triangle.",
+            cure="Use the smaller of v_max and √(distance·a_max) as the top speed.",
+        ),
+        Wrong(
+            "five seconds a metre",
+            "This is the report's equation 1. Its 5 has the unit s/m, so the arm's limits do not "
+            "matter in it, and a short move needs an acceleration without bound.",
+            mistakes.Lasting(lambda d, v, a: 5.0 * d),
+            "Write the unit of every number.",
+            cure="Find the width of the trapezoid from v_max, a_max and its area.",
+        ),
+        Wrong(
+            "a duration of distance/v",
+            "The ramps are slower than the cruise, so the motion lasts longer than distance/v.",
+            mistakes.Lasting(lambda d, v, a: d / min(v, sqrt(d * a))),
+            "The area under the speed is the distance.",
+            cure="Add v/a_max, which is half of each ramp, twice.",
+        ),
+        Wrong(
+            "both ramps added to the duration",
+            "You added both ramps in full, but the arm covers distance during them.",
+            mistakes.Lasting(
+                lambda d, v, a: d / min(v, sqrt(d * a)) + 2.0 * min(v, sqrt(d * a)) / a
+            ),
+            "The area under the speed is the distance.",
+            cure="The area under the trapezoid is v (T - v/a_max); solve that for T.",
+        ),
+        Wrong(
+            "a triangle that is too high",
+            "√(2·distance·a_max) is the speed after speeding up over the whole distance, and the "
+            "arm must brake, too.",
+            mistakes.Lasting(
+                lambda d, v, a: d / min(v, sqrt(2.0 * d * a)) + min(v, sqrt(2.0 * d * a)) / a
+            ),
+            "A triangle has two halves.",
+            cure="Only half of the distance is there to speed up: √(distance·a_max).",
+        ),
+        Wrong(
+            "one half of the triangle",
+            "Over a short distance this is the time to speed up; braking takes as long again.",
+            mistakes.Lasting(lambda d, v, a: sqrt(d / a) if d < v * v / a else d / v + v / a),
+            "A triangle has two halves.",
+            cure="Double it where v_max is not reached.",
+        ),
+        Wrong(
+            "one ramp taken for two",
+            "v_max²/(2 a_max) is the distance of one ramp. Speeding up and braking take twice "
+            "that.",
+            mistakes.Lasting(
+                lambda d, v, a: 2.0 * sqrt(d / a) if d < v * v / a / 2.0 else d / v + v / a
+            ),
+            "Both ramps need distance.",
+            cure="The motion is a triangle below v_max²/a_max.",
+        ),
+    ),
+    variants=(variants.duration_by_cases,),
+)
+
 TRAPEZOID = Problem(
     name="trapezoid",
     points=4,
+    core=False,
     outcomes=("motion",),
     asks="Return `(s, ds, dds)` at time `t` for a motion along a path of `distance` metres that "
     "is as fast as `v_max` in m/s and `a_max` in m/s² allow: speed up, cruise, brake.",
@@ -173,68 +273,47 @@ TRAPEZOID = Problem(
     wrong=(
         Wrong(
             "no triangular case",
-            "On a short distance, the ramps of a long one overlap, so s passes 1 or jumps back. "
-            "Use the smaller of v_max and √(distance·a_max) as the top speed.",
+            "On a short distance, the ramps of a long one overlap, so s passes 1 or jumps back.",
             mistakes.always_cruises,
             "A trapezoid whose cruise would last less than zero seconds is a triangle.",
+            cure="Use the smaller of v_max and √(distance·a_max) as the top speed.",
         ),
         Wrong(
             "limits taken for limits of s",
-            "v_max is in m/s and a_max in m/s², but s has no unit. Divide both limits by the "
-            "distance before you use them as limits of s.",
+            "v_max is in m/s and a_max in m/s², but s has no unit.",
             mistakes.limits_on_s,
             "Units: a limit in m/s bounds distance·ds, not ds.",
+            cure="Divide both limits by the distance before you use them as limits of s.",
         ),
         Wrong(
             "metres in place of s",
-            "You returned the distance covered, in metres. s goes from 0 to 1: divide distance "
-            "covered, speed and acceleration by `distance`.",
+            "You returned the distance covered, in metres, but s goes from 0 to 1.",
             mistakes.way_for_s,
             "s has no unit.",
+            cure="Divide distance covered, speed and acceleration by `distance`.",
         ),
         Wrong(
             "a triangle that is too high",
-            "√(2·distance·a_max) is the speed after speeding up over the whole distance. Only "
-            "half of the distance is available for speeding up, because the other half is for "
-            "braking: √(distance·a_max).",
+            "√(2·distance·a_max) is the speed after speeding up over the whole distance, but "
+            "only half of it is available, because the other half is for braking.",
             mistakes.speeds_up_all_the_way,
             "A triangle has two halves.",
-        ),
-        Wrong(
-            "one ramp taken for two",
-            "v_max²/(2 a_max) is the distance of one ramp. Speeding up to v_max and braking "
-            "again takes twice that distance, so the motion is a triangle if the distance is "
-            "shorter than v_max²/a_max.",
-            mistakes.Ramps(reach=0.5),
-            "Both ramps need distance.",
-        ),
-        Wrong(
-            "a duration of distance/v",
-            "The ramps are slower than the cruise, so the motion lasts distance/v + v/a. With "
-            "distance/v alone it ends too early.",
-            mistakes.Ramps(ramp=0.0),
-            "The area under the speed is the distance.",
-        ),
-        Wrong(
-            "both ramps added to the duration",
-            "You added both ramps in full. The area under the trapezoid of the speed is v (T - "
-            "v/a), so T = distance/v + v/a.",
-            mistakes.Ramps(ramp=2.0),
-            "The area under the speed is the distance.",
+            cure="The top speed of the triangle is √(distance·a_max).",
         ),
         Wrong(
             "the cruise begins where the ramp did not end",
-            "At the end of the ramp, the distance covered is v·ramp/2, so the cruise is v (t - "
-            "ramp/2). Your v·t jumps there.",
+            "Your v·t jumps where the cruise begins: at the end of the ramp, the distance "
+            "covered is v·ramp/2.",
             mistakes.Ramps(offset=0.0),
             "Each phase starts with the position and speed at the end of the phase before.",
+            cure="The cruise is v (t - ramp/2).",
         ),
         Wrong(
             "still speeding up in the last phase",
-            "Your dds stays positive while the speed decreases. Braking is a negative "
-            "acceleration.",
+            "Your dds stays positive while the speed decreases.",
             mistakes.Ramps(dds=-1.0),
             "The second derivative is the slope of the first.",
+            cure="Braking is a negative acceleration.",
         ),
     ),
     variants=(variants.trapezoid_by_phases,),
@@ -244,10 +323,9 @@ CIRCLE = Problem(
     name="circle",
     points=4,
     outcomes=("motion",),
-    asks="Return the `lk.Sample` (point and derivatives with respect to `s`) of a level circle. "
-    "It begins at `start`, goes once round the vertical axis through `centre`, "
-    "counter-clockwise seen from above, and comes back to `start` at `s` = 1. It keeps the "
-    "height of `start`.",
+    asks="Return an `lk.Sample`, the point and its derivatives with respect to `s`, of a level circle: from "
+    "`start` once round the vertical axis through `centre`, counter-clockwise seen from above, at "
+    "the height of `start`.",
     answer=answers.circle,
     judge=Close(rtol=1e-6, atol=1e-8, parts=("position", "velocity", "acceleration")),
     trials=(
@@ -308,73 +386,78 @@ CIRCLE = Problem(
         Wrong(
             "the radius measured in space",
             "If the centre is at another height than the start, the distance in space is longer "
-            "than the radius, and the circle misses its own start. Measure the radius in the "
-            "circle's plane. The report's equation 12 has this mistake.",
+            "than the radius, and the circle misses its own start. The report's equation 12 has "
+            "this mistake.",
             mistakes.radius_in_space,
             "A radius is measured in the circle's plane.",
+            cure="Measure the radius in the circle's plane, from x and y alone.",
         ),
         Wrong(
             "the height of the centre",
-            "Your circle jumps to the centre's height. Keep the height of the start.",
+            "Your circle jumps to the centre's height.",
             mistakes.height_of_the_centre,
             "A reference must begin where the arm is.",
+            cure="Keep the height of the start.",
         ),
         Wrong(
             "begins at angle zero",
             "Your circle always begins in the direction of x, wherever the start is, so the arm "
-            "would jump. Turn the spoke that goes to the start.",
+            "would jump.",
             mistakes.starts_at_angle_zero,
             "A reference must begin where the arm is.",
+            cure="Turn the spoke that goes to the start.",
         ),
         Wrong(
             "derivatives with respect to the angle",
-            "These are the derivatives with respect to the angle. With respect to s, the first "
-            "derivative has one more factor 2π, and the second has two.",
+            "These are the derivatives with respect to the angle, not with respect to s.",
             mistakes.rates_without_two_pi,
             "The chain rule again: dφ/ds = 2π.",
+            cure="The first derivative has one more factor 2π, and the second has two.",
         ),
         Wrong(
             "one factor 2π in the acceleration",
-            "Your velocity is right. Its derivative with respect to s brings the factor 2π once more: the "
-            "acceleration has (2π)².",
+            "Your velocity is right, but the inner derivative is missing once in the acceleration.",
             mistakes.one_two_pi_in_the_acceleration,
             "The inner derivative comes out once for each derivative.",
+            cure="The acceleration has (2π)².",
         ),
         Wrong(
             "a clockwise circle",
-            "Seen from above your circle runs clockwise. Angles grow counter-clockwise: θ = θ₀ + "
-            "2πs.",
+            "Seen from above your circle runs clockwise.",
             mistakes.clockwise,
             "Angles about z grow from x to y.",
+            cure="Angles grow counter-clockwise: θ = θ₀ + 2πs.",
         ),
         Wrong(
             "an acceleration that points outwards",
-            "The second derivative should point towards the axis: differentiating a cosine twice "
-            "gives minus a cosine.",
+            "The second derivative should point towards the axis; yours points away from it.",
             mistakes.accelerates_outwards,
             "A point on a circle accelerates towards the centre.",
+            cure="Differentiating a cosine twice gives minus a cosine.",
         ),
         Wrong(
             "the arctangent of y/x",
             "y/x is the same for opposite points, so a start at a smaller x than the centre's is "
-            "moved to the opposite side. Use np.arctan2(y, x), or turn the spoke without any "
-            "angle.",
+            "moved to the opposite side.",
             mistakes.half_an_arctangent,
             "atan2 knows the quadrant, atan does not.",
+            cure="Use np.arctan2(y, x), or turn the spoke without any angle.",
         ),
         Wrong(
             "no start angle in the velocity",
-            "Your point has the right angle, but your velocity does not: it needs θ₀ + 2πs too. "
-            "The report's equations have this mistake.",
+            "Your point has the right angle, but your velocity does not. The report's equations "
+            "have this mistake.",
             mistakes.velocity_from_angle_zero,
             "Differentiating does not change the angle inside the cosine.",
+            cure="The velocity needs θ₀ + 2πs too.",
         ),
         Wrong(
             "x and y exchanged in the arctangent",
-            "Your circle begins elsewhere. np.arctan2 takes y first: the start's angle is "
-            "np.arctan2(y, x), with x and y measured from the centre.",
+            "Your circle begins elsewhere: the arguments of np.arctan2 are exchanged.",
             mistakes.arctangent_of_x_over_y,
             "Evaluate every path at s = 0: it must begin at the start.",
+            cure="np.arctan2 takes y first: np.arctan2(y, x), with x and y measured from the "
+            "centre.",
         ),
     ),
     variants=(variants.circle_by_rotation, variants.circle_tuple),
@@ -387,9 +470,8 @@ COMPOSE = Problem(
     name="compose",
     points=4,
     outcomes=("motion",),
-    asks="Combine a path `path(s)` with a schedule `scaling(t)`: return the `lk.Sample` of "
-    "position, velocity and acceleration at time `t`, with derivatives with respect to "
-    "time.",
+    asks="Combine a path `path(s)` with a schedule `scaling(t)`: return position, velocity and "
+    "acceleration at time `t`.",
     answer=answers.compose,
     judge=Close(rtol=1e-6, atol=1e-9, parts=("position", "velocity", "acceleration")),
     trials=(
@@ -432,56 +514,63 @@ COMPOSE = Problem(
     wrong=(
         Wrong(
             "the term dx·dds left out",
-            "Your acceleration along the path is missing; on a line nothing would remain. The "
-            "product rule has two terms.",
+            "Your acceleration along the path is missing; on a line nothing would remain.",
             mistakes.drops_the_ramp,
             "Product rule: d/dt (dx ds) = ddx ds² + dx dds.",
+            cure="The product rule has two terms: ddx·ds² + dx·dds.",
         ),
         Wrong(
             "ds where ds² belongs",
-            "The centripetal term grows with the square of the speed: write ds². A line cannot "
-            "show this, because its ddx is zero; a circle does.",
+            "The centripetal term grows with the square of the speed. A line cannot show this, "
+            "because its ddx is zero; a circle does.",
             mistakes.forgets_the_square,
             "The inner derivative appears twice.",
+            cure="Write ds².",
         ),
         Wrong(
             "the path evaluated at t",
-            "A path does not depend on time. Evaluate it at s, which the schedule returns.",
+            "A path does not depend on time.",
             mistakes.time_for_s,
             "s says where, t says when.",
+            cure="Evaluate it at s, which the schedule returns.",
         ),
         Wrong(
             "the second derivatives multiplied",
-            "Differentiate dx·ds once more: the product rule gives two terms.",
+            "You multiplied ddx by dds, but the second derivative of a composition is not the "
+            "product of second derivatives.",
             mistakes.schedule_twice,
             "The second derivative of x(s(t)) is ddx·ds² + dx·dds.",
+            cure="Differentiate dx·ds once more: the product rule gives two terms.",
         ),
         Wrong(
             "the term ddx·ds² is missing",
             "The acceleration that bends the path is missing: on a circle, the one towards the "
-            "centre. The product rule has two terms.",
+            "centre.",
             mistakes.Chained(bend=0.0),
             "Product rule: d/dt (dx ds) = ddx ds² + dx dds.",
+            cure="The product rule has two terms: ddx·ds² + dx·dds.",
         ),
         Wrong(
             "the velocity not scaled",
-            "Your velocity is still dx, the derivative with respect to s. With respect to time "
-            "it is dx·ds.",
+            "Your velocity is still dx, the derivative with respect to s.",
             mistakes.Chained(velocity=0.0),
             "Say with respect to which variable each derivative is taken.",
+            cure="With respect to time it is dx·ds.",
         ),
         Wrong(
             "dx·dds with a minus",
-            "The product rule adds its two terms.",
+            "Your two terms have opposite signs.",
             mistakes.Chained(along=-1.0),
             "Product rule: d/dt (dx ds) = ddx ds² + dx dds.",
+            cure="The product rule adds its two terms.",
         ),
         Wrong(
             "dx·dds twice",
-            "The product dx·ds has two factors, so its derivative has two different terms; "
-            "dx·dds occurs once.",
+            "One of your two terms is there twice. The product dx·ds has two factors, so its "
+            "derivative has two different terms.",
             mistakes.Chained(along=2.0),
             "Product rule: d/dt (dx ds) = ddx ds² + dx dds.",
+            cure="dx·dds occurs once.",
         ),
     ),
     variants=(variants.compose_matrix,),
@@ -492,12 +581,10 @@ TOUR = [1.0, 2.0, 0.5]
 SEGMENT_AT = Problem(
     name="segment_at",
     points=3,
-    core=False,
     outcomes=("motion",),
-    asks="Segments of the given `durations` follow one another. Return `(index, local_time)`: "
-    "the index, counted from 0, of the segment that is active at time `t`, and the time "
-    "since this segment began. At the instant where two segments meet, the later one is "
-    "active. Before the start the first is active, and after the end the last.",
+    asks="Return `(index, local_time)`: which segment is active at time `t`, counted from 0, and the "
+    "time since it began. Where two meet, the later one is active; before the start the first, "
+    "after the end the last.",
     answer=answers.segment_at,
     judge=Close(rtol=1e-9, atol=1e-9, parts=("index", "local_time")),
     trials=(
@@ -541,24 +628,25 @@ SEGMENT_AT = Problem(
     wrong=(
         Wrong(
             "the earlier one where two meet",
-            "At the instant where two segments meet, the later one is active, and its local time "
-            "is 0. A segment contains its start but not its end: begun <= t < begun + duration.",
+            "At the instant where two segments meet, your earlier one is still active, but its "
+            "time is over.",
             mistakes.Segments(joint=True),
             "Each interval contains its start but not its end.",
+            cure="A segment contains its start but not its end: begun <= t < begun + duration.",
         ),
         Wrong(
             "the local time stops at the end",
-            "After the end, the last segment is still active and its local time keeps growing: t "
-            "minus the time at which it began.",
+            "After the end, the last segment is still active, but your local time has stopped.",
             mistakes.Segments(local=lambda t, begun, d: min(t - begun, d)),
             "Let the segment itself decide what it does after its end.",
+            cure="It keeps growing: t minus the time at which the segment began.",
         ),
         Wrong(
             "the time since the start of the tour",
-            "The local time is measured from the instant at which the segment began, not from "
-            "the start of the tour.",
+            "This is the time since the start of the tour.",
             mistakes.Segments(local=lambda t, begun, d: t),
             "Say for each time from which instant it is measured.",
+            cure="Measure the local time from the instant at which the segment began.",
         ),
         Wrong(
             "a fraction of the segment's duration",
@@ -568,10 +656,19 @@ SEGMENT_AT = Problem(
         ),
         Wrong(
             "a local time of 0 before the start",
-            "Before the start, the first segment is active and its local time is negative: t "
-            "itself. Yours is 0.",
+            "Before the start, the first segment is active and its local time is negative. Yours "
+            "is 0.",
             mistakes.Segments(local=lambda t, begun, d: max(t - begun, 0.0)),
             "Let the segment itself decide what it does before its start.",
+            cure="It is t itself.",
+        ),
+        Wrong(
+            "np.argmax where nothing is true",
+            "np.argmax gives the index of the first True, and 0 where there is none: after the "
+            "end your first segment is on.",
+            mistakes.argmax_of_ends,
+            "np.argmax of nothing but False is 0.",
+            cure="Treat times after the end apart, or use np.searchsorted.",
         ),
         Wrong(
             "counted from 1",
@@ -586,8 +683,9 @@ SEGMENT_AT = Problem(
 
 PROBLEMS = (
     BANG_BANG,
-    TRAPEZOID,
+    DURATION_FOR,
     CIRCLE,
     COMPOSE,
     SEGMENT_AT,
+    TRAPEZOID,
 )

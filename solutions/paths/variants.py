@@ -32,6 +32,14 @@ def bang_bang_array(t: float, duration: float) -> Any:
     return np.array([s, ds, dds])
 
 
+def duration_by_cases(distance: float, v_max: float, a_max: float) -> Any:
+    """Trapezoid or triangle, each by its own formula."""
+    if distance < v_max**2 / a_max:
+        return 2 * np.sqrt(distance / a_max)
+    cruise = (distance - v_max**2 / a_max) / v_max
+    return np.array(2 * v_max / a_max + cruise)
+
+
 def trapezoid_by_phases(t: float, distance: float, v_max: float, a_max: float) -> Any:
     """Clips the time into the three phases and adds them up."""
     v = min(v_max, (distance * a_max) ** 0.5)

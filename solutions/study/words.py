@@ -33,7 +33,8 @@ def counted(path: Path) -> Counter[str]:
     found, place = Counter[str](), "core"
     for cell in json.loads(path.read_text(encoding="utf-8"))["cells"]:
         text, meta = "".join(cell["source"]), cell["metadata"]
-        place = "appendix" if text.startswith(APPENDIX) else place
+        if text.startswith("## "):
+            place = "appendix" if text.startswith(APPENDIX) else "core"
         if cell["cell_type"] == "code":
             hidden = meta.get("jupyter", {}).get("source_hidden")
             found["folded" if hidden else place] += words(docstrings(text))
