@@ -12,9 +12,9 @@ from itertools import chain
 
 from ...course.authoring.bundle import Bundle
 from ...course.authoring.layout import Course
-from ...course.judges import Measured
+from ...course.judges import Found, Measured
 from ...course.messages import summary, test_line, wrapped
-from ...course.own_arm import DEMO, Found
+from ...course.own_arm import DEMO
 from ...course.serialize import question_data
 from ...course.source import parsed
 from ...course.verdict import Outcome
