@@ -23,8 +23,8 @@ c.Execute.timeout = 120
 # What students wrote is shown to teachers without anything in it that runs.
 c.HTMLExporter.sanitize_html = True
 c.HTMLExporter.filters = {
-    "markdown2html": "labkit.grader.nbgrader.markup.markdown",
-    "clean_html": "labkit.grader.nbgrader.markup.clean",
+    "markdown2html": "labkit.grader.feedback.markdown",
+    "clean_html": "labkit.grader.feedback.clean",
 }
 
 # When work is due and what late work loses stands in course.toml; name a class of your own instead,
@@ -32,7 +32,7 @@ c.HTMLExporter.filters = {
 c.AssignLatePenalties.plugin_class = "labkit.grader.rules.CourseRules"
 
 # formgrader's button and nbgrader's command write the pages that `labkit feedback` writes.
-c.GenerateFeedback.exporter_class = "labkit.grader.feedback.exporter.StudentPage"
+c.GenerateFeedback.exporter_class = "labkit.grader.feedback.StudentPage"
 
 # Students' code never runs in nbgrader's own process: `labkit grade` grades, in a sandbox.
-c.Autograde.sanitize_preprocessors = ["labkit.grader.nbgrader.gradebook.Refused"]
+c.Autograde.sanitize_preprocessors = ["labkit.grader.gradebook.Refused"]

@@ -14,8 +14,7 @@ import nbformat
 from labkit.course.authoring.bundle import Bundle
 from labkit.course.notebook import check_id, grade_id
 from labkit.course.serialize import question_data
-from labkit.grader.nbgrader.gradebook import quiet_database
-from labkit.grader.nbgrader_api import nbgrader_api
+from labkit.grader.gradebook import nbgrader_api, quiet_database
 from labkit.grader.release import generate
 
 HIDDEN = """### BEGIN HIDDEN TESTS

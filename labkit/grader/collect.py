@@ -35,21 +35,12 @@ import msgspec
 
 from ..course.authoring.layout import Course
 from ..errors import LabkitError
-from .atomic import write
 from .clean import clean_line
 from .each import Failure, for_student
-from .lock import locked
+from .files import locked, write
 from .roster import COLUMNS, Roster, read_roster
 from .rules import read_rules
-from .submission import (
-    NOTEBOOK,
-    TIMESTAMP,
-    check_size,
-    digest,
-    read_file,
-    read_stamp,
-    read_time,
-)
+from .submission import NOTEBOOK, TIMESTAMP, check_size, digest, read_file, read_stamp, read_time
 
 SECRET = "submission_secret.txt"
 FOLDER = "attempts"

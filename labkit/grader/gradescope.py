@@ -22,11 +22,11 @@ from ..course.authoring.bundle import Bundle
 from ..course.authoring.layout import Course
 from ..course.messages import summary
 from ..course.own_arm import HANDLES, Arms
-from .atomic import write
 from .clean import clean_line
-from .grading.grade import grade, rejection
-from .grading.plan import imports
-from .grading.results import Result
+from .files import write
+from .grade import grade, rejection
+from .plan import imports
+from .results import Result
 from .sandbox.launch import Sandbox
 from .sandbox.limits import Limits
 from .sandbox.mounts import Isolation

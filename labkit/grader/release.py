@@ -25,9 +25,8 @@ from ..course.notebook import BLANK, by_hand, grade_id, kind, manifest, nbgrader
 from ..course.source import analyse, parsed
 from ..errors import LabkitError
 from .clean import how_many
-from .grading.results import Results
-from .nbgrader.gradebook import open_gradebook
-from .nbgrader_api import nbgrader_api, reason
+from .gradebook import nbgrader_api, open_gradebook, reason
+from .results import Results
 from .roster import lay_arms
 
 FORBIDDEN = (

@@ -24,9 +24,9 @@ from ..course.authoring.layout import Course
 from ..course.own_arm import DEMO, HANDLES, Arms
 from ..course.own_arm import FILE as ARMS
 from ..errors import LabkitError
-from .atomic import write
 from .clean import clean_line, few, from_no_formula, how_many, no_formula, safe_name
-from .nbgrader.gradebook import open_gradebook
+from .files import write
+from .gradebook import open_gradebook
 from .rules import FILE as RULES
 from .rules import read_rules
 from .seeds import key_of

@@ -7,23 +7,19 @@ formgrader shows them, and nbgrader's plugin for late work deducts the penalty.
 
 from __future__ import annotations
 
-import logging
 import math
-import sys
 import tomllib
 from collections.abc import Mapping
 from datetime import UTC, datetime, timedelta
 from pathlib import Path
-from typing import Annotated, Any
+from typing import Annotated
 from zoneinfo import ZoneInfo, ZoneInfoNotFoundError
 
 import msgspec
 from nbgrader.plugins import LateSubmissionPlugin
-from traitlets.utils.importstring import import_item
 
 from ..course.authoring.layout import DEFENCE, Course
 from ..errors import LabkitError
-from .nbgrader_api import nbgrader_api
 
 FILE = "course.toml"
 _Share = Annotated[float, msgspec.Meta(ge=0.0, le=100.0)]
@@ -164,48 +160,6 @@ def rules_in(path: Path) -> Rules:
         says = f"{rules.zone[:60]!r} is not a time zone; write one such as 'Europe/Berlin'"
         raise LabkitError(f"{path}: {says}") from None
     return rules
-
-
-def apply_lateness(course: Course, book: Any, assignment: str) -> None:
-    """Update due date, extensions and penalties in the gradebook to the present rules.
-
-    If the file has no due date, the one that was set in formgrader counts.
-
-    Raises:
-        LabkitError: The rules, or the course's own plugin for late work, cannot be used.
-    """
-    rules, late = read_rules(course), _late_plugin(course)
-    due = rules.due(assignment)
-    for submission in book.assignment_submissions(assignment):
-        if due is not None:
-            submission.assignment.duedate = due.replace(tzinfo=None)
-        if submission.assignment.duedate is None:
-            submission.extension = None  # nbgrader would add it to no date, which raises TypeError
-        elif (course.root / FILE).exists():
-            submission.extension = rules.longer(submission.student.id, assignment)
-        seconds = submission.total_seconds_late
-        for notebook in submission.notebooks:
-            who, score = submission.student.id, notebook.score
-            taken = late.late_submission_penalty(who, score, seconds) if seconds > 0 else None
-            if (notebook.late_submission_penalty or 0.0) != (taken or 0.0):
-                notebook.late_submission_penalty = taken
-    book.db.commit()
-
-
-def _late_plugin(course: Course) -> Any:
-    """The plugin that nbgrader's settings name, which may be a file beside them."""
-    config = nbgrader_api(course).config
-    chosen = config.get("AssignLatePenalties", {}).get("plugin_class", LateSubmissionPlugin)
-    if str(course.root) not in sys.path:
-        sys.path.insert(0, str(course.root))
-    try:
-        plugin = (import_item(chosen) if isinstance(chosen, str) else chosen)(config=config)
-    except ImportError as error:
-        raise LabkitError(
-            f"nbgrader_config.py names {chosen!r} for late work: {error}; put that module beside it"
-        ) from None
-    plugin.log.setLevel(logging.CRITICAL)
-    return plugin
 
 
 class CourseRules(LateSubmissionPlugin):  # type: ignore[misc]

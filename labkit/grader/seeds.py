@@ -8,9 +8,13 @@ from __future__ import annotations
 
 import hmac
 import json
+import secrets
+from collections.abc import Callable
+from functools import partial
 
 from ..course.authoring.layout import PUBLIC_SEED, Course
 from ..errors import LabkitError
+from .files import write
 
 
 def key_of(course: Course, purpose: str) -> str:
@@ -50,3 +54,25 @@ def public_warning(course: Course) -> str:
         f"hidden cases made with the public seed {PUBLIC_SEED} are public: anyone can compute "
         "them; begin a term with: labkit term new"
     )
+
+
+PSEUDONYMS = "course_private/pseudonyms.key"
+"""The key that links pseudonyms to students; it is archived with the term."""
+
+
+def pseudonyms(course: Course) -> Callable[[str], str]:
+    """A function that gives each student a name, which nobody can compute without the key."""
+    file = course.root / PSEUDONYMS
+    if not file.exists():
+        write(file, secrets.token_hex(16) + "\n")
+    return partial(pseudonym, file.read_bytes())
+
+
+def pseudonym(key: bytes, student: str) -> str:
+    """The pseudonym of a student under a term's key."""
+    return f"S-{hmac.new(key, student.encode(), 'sha256').hexdigest()[:8]}"
+
+
+def rank(key: str, student: str, what: str) -> bytes:
+    """The sort key of a thing that is drawn by lot for a student: HMAC-SHA256 under a key."""
+    return hmac.digest(key.encode(), f"{student}/{what}".encode(), "sha256")

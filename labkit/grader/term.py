@@ -15,18 +15,18 @@ from ..course.authoring.layout import Course
 from ..course.own_arm import FILE as ARMS
 from ..course.own_arm import HANDLES
 from ..errors import LabkitError
-from . import collect, pseudonyms, roster
-from .atomic import write
+from . import collect, roster
 from .clean import how_many
+from .files import write
 from .release import release
 from .rules import FILE as RULES
-from .seeds import seed_of
+from .seeds import PSEUDONYMS, seed_of
 from .submission import is_name
 
 PERSONAL_FILES = (
     *("submitted", "autograded", "feedback", "results", "gradebook.db", "build/course/bundle"),
     *("build/course/defence", "build/course/explain"),
-    *(collect.FOLDER, roster.FILE, HANDLES, collect.PARTICIPANTS, pseudonyms.FILE),
+    *(collect.FOLDER, roster.FILE, HANDLES, collect.PARTICIPANTS, PSEUDONYMS),
 )
 """The files that belong to one term, with students' names or keys to them, and hidden cases.
 

@@ -5,14 +5,13 @@ Nobody knows before the deadline which two, because they are drawn under a key o
 
 from __future__ import annotations
 
-import hmac
 import re
 from collections.abc import Collection, Iterable
 from functools import partial
 from typing import Any
 
 from ..course.authoring.layout import Course
-from .seeds import key_of
+from .seeds import key_of, rank
 
 DRAWN = 2
 """The number of whys that a person marks, per student and term."""
@@ -25,11 +24,6 @@ def drawn(
     """The whys that a person marks: first those that are marked already, then by lot."""
     by_lot = sorted(whys, key=partial(rank, key, student))
     return frozenset(sorted(by_lot, key=lambda name: name not in marked)[:DRAWN])
-
-
-def rank(key: str, student: str, what: str) -> bytes:
-    """The sort key of a thing that is drawn by lot for a student: HMAC-SHA256 under a key."""
-    return hmac.digest(key.encode(), f"{student}/{what}".encode(), "sha256")
 
 
 def credit_whys(course: Course, book: Any, assignment: str) -> None:

@@ -5,7 +5,7 @@ import os
 import time
 from contextlib import contextmanager
 
-from labkit.grader.grading.batch import GradeOptions, grade_class
+from labkit.grader.batch import GradeOptions, grade_class
 from labkit.grader.release import release
 from labkit.grader.submission import students
 

@@ -4,7 +4,7 @@ import os
 import shutil
 import time
 
-from labkit.grader.grading.batch import GradeOptions, grade_class
+from labkit.grader.batch import GradeOptions, grade_class
 from labkit.grader.release import release
 from labkit.grader.submission import students
 

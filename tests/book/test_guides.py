@@ -14,7 +14,7 @@ from book_pages import ROOT
 from handmade import put
 
 from labkit.course.authoring.layout import Course
-from labkit.grader.nbgrader.gradebook import open_gradebook
+from labkit.grader.gradebook import open_gradebook
 from labkit.grader.rules import FILE, read_rules
 from labkit.grader.term import PERSONAL_FILES
 from solutions.paths import answers

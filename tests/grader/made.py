@@ -9,10 +9,10 @@ from handmade import NAME, hand_in
 
 from labkit.course.authoring.bundle import Bundle
 from labkit.course.verdict import Difference, Kind, Outcome, TestResult, Verdict
-from labkit.grader.grading.grade import hashes, rejection
-from labkit.grader.grading.results import Answer, Result, Results
-from labkit.grader.marks.table import mark_of
-from labkit.grader.nbgrader.gradebook import record
+from labkit.grader.grade import hashes, rejection
+from labkit.grader.gradebook import record
+from labkit.grader.marks import mark_of
+from labkit.grader.results import Answer, Result, Results
 
 WHY = "why_slower"
 """The text that a person marks if it is drawn; in this class none is drawn."""

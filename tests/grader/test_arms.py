@@ -13,7 +13,7 @@ from labkit.course import my_arm
 from labkit.course.authoring.bundle import Bundle
 from labkit.course.own_arm import FILE, HANDLES, Arms
 from labkit.errors import LabkitError
-from labkit.grader.feedback.explain import explain
+from labkit.grader.explain import explain
 from labkit.grader.release import release
 from labkit.grader.student_zip import remarks
 

@@ -11,7 +11,7 @@ from attacks import CLASSES
 from handmade import FULL, QUICK, raw
 
 from labkit.course.messages import why
-from labkit.grader.grading.grade import grade
+from labkit.grader.grade import grade
 from labkit.grader.sandbox.limits import Limits
 
 FAST = Limits(cell=0.5, call=0.3, question=5.0, wall=30.0)

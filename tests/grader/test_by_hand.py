@@ -20,13 +20,13 @@ from labkit.__main__ import main
 from labkit.course.authoring.bundle import Bundle
 from labkit.course.authoring.layout import Course
 from labkit.errors import LabkitError
+from labkit.grader import gradebook
 from labkit.grader.commands.grading import _on_top
-from labkit.grader.grading.plan import plan
-from labkit.grader.grading.results import Results
-from labkit.grader.marks.mark import MarkLine
-from labkit.grader.nbgrader import gradebook
-from labkit.grader.nbgrader.gradebook import open_gradebook, record
+from labkit.grader.gradebook import open_gradebook, record
+from labkit.grader.marks import MarkLine
+from labkit.grader.plan import plan
 from labkit.grader.release import release
+from labkit.grader.results import Results
 from labkit.grader.sandbox.parse import read
 
 

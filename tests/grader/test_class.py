@@ -20,17 +20,12 @@ from processes import below, child, wait_until_gone
 
 from labkit.__main__ import main
 from labkit.course.authoring.layout import Course
-from labkit.grader.grading.batch import (
-    GradedSubmission,
-    GradeOptions,
-    common_failures,
-    grade_class,
-)
-from labkit.grader.grading.results import Results
-from labkit.grader.marks.table import marks_of
-from labkit.grader.nbgrader import gradebook
-from labkit.grader.nbgrader.gradebook import open_gradebook, record
+from labkit.grader import gradebook
+from labkit.grader.batch import GradedSubmission, GradeOptions, common_failures, grade_class
+from labkit.grader.gradebook import open_gradebook, record
+from labkit.grader.marks import marks_of
 from labkit.grader.release import release
+from labkit.grader.results import Results
 from labkit.grader.submission import students
 from tests.synthetic import differences, make_class
 
@@ -237,7 +232,7 @@ def test_an_interrupt_is_a_line(part, capsys, monkeypatch):
     def stopped(*args, **options):
         raise KeyboardInterrupt
 
-    monkeypatch.setattr("labkit.grader.grading.batch.grade_class", stopped)
+    monkeypatch.setattr("labkit.grader.batch.grade_class", stopped)
     assert main(["grade", NAME, "--course", str(part.root)]) == 130
     assert capsys.readouterr().err == "labkit grade: stopped\n"
 

@@ -17,13 +17,11 @@ from labkit.__main__ import main
 from labkit.course.authoring.layout import DEFENCE
 from labkit.course.marking import try_public
 from labkit.course.question import Loop
-from labkit.grader.defence.draw import ASKED, Asked, draw
-from labkit.grader.defence.page import give_mark, write_page
-from labkit.grader.grading.results import Results
-from labkit.grader.marks.export import of_term, remarks
-from labkit.grader.marks.mark import Mark
-from labkit.grader.marks.table import marks_of
-from labkit.grader.nbgrader.gradebook import record
+from labkit.grader.defence import ASKED, Asked, draw, give_mark, write_page
+from labkit.grader.export import of_term, remarks
+from labkit.grader.gradebook import record
+from labkit.grader.marks import Mark, marks_of
+from labkit.grader.results import Results
 from labkit.grader.roster import Roster, Student, save_roster
 
 

@@ -10,7 +10,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from labkit.grader.feedback.drawing import curve, side_by_side
+from labkit.grader.drawing import curve, side_by_side
 
 pytestmark = pytest.mark.filterwarnings("error")  # an overflow would reach the terminal
 ODD = [0.0, 1e308, -1e308, 5e-324, -5e-324, math.inf, -math.inf, math.nan, 1.0, 1e16]

@@ -15,12 +15,11 @@ from made import NAME, changed, graded, handed_in, result_of
 
 from labkit.__main__ import main
 from labkit.errors import LabkitError
+from labkit.grader import batch, gradebook, results
+from labkit.grader import feedback as feedback
 from labkit.grader.each import Failure, Failures, for_student
-from labkit.grader.feedback import page as feedback
-from labkit.grader.grading import batch, results
-from labkit.grader.grading.results import Results
-from labkit.grader.nbgrader import gradebook
-from labkit.grader.nbgrader.gradebook import open_gradebook, record
+from labkit.grader.gradebook import open_gradebook, record
+from labkit.grader.results import Results
 
 CLASS = ("ada", "bob", "carl")
 

@@ -9,7 +9,7 @@ import pytest
 from handmade import ROOT
 
 from labkit.course.authoring.layout import Course
-from labkit.grader.defence.edits import MOST, edits
+from labkit.grader.defence import MOST, edits
 
 LAW = '''import numpy as np
 

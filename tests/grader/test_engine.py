@@ -17,9 +17,9 @@ from labkit.course.messages import why
 from labkit.course.question import Question, Test
 from labkit.course.source import analyse
 from labkit.course.verdict import Outcome
-from labkit.grader.grading.grade import grade
-from labkit.grader.grading.plan import imports, plan
-from labkit.grader.grading.results import Result
+from labkit.grader.grade import grade
+from labkit.grader.plan import imports, plan
+from labkit.grader.results import Result
 from labkit.grader.sandbox import parse as cells
 
 

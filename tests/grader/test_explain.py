@@ -10,7 +10,7 @@ from handmade import hand_in, put
 from labkit.__main__ import main
 from labkit.course.authoring.bundle import Bundle
 from labkit.errors import LabkitError, UnknownName
-from labkit.grader.feedback.explain import explain
+from labkit.grader.explain import explain
 from labkit.grader.release import release
 
 NAME = "01_curves"

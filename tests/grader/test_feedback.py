@@ -21,14 +21,14 @@ from labkit.course.judges import Gains, Number
 from labkit.course.marking import mark, try_public
 from labkit.course.predictions import Prediction
 from labkit.course.verdict import Misconception, Outcome
-from labkit.grader.feedback.drawing import curve, side_by_side
-from labkit.grader.feedback.page import MEASURES, page
-from labkit.grader.grading import public_evidence
-from labkit.grader.grading.grade import _answer
-from labkit.grader.grading.plan import Plan
-from labkit.grader.grading.results import Result
-from labkit.grader.marks.table import mark_of
+from labkit.grader import evidence
+from labkit.grader.drawing import curve, side_by_side
+from labkit.grader.feedback import MEASURES, page
+from labkit.grader.grade import _answer
+from labkit.grader.marks import mark_of
 from labkit.grader.pages import TEMPLATES
+from labkit.grader.plan import Plan
+from labkit.grader.results import Result
 from labkit.metrics import Summary
 from labkit.replay.motion import unpack
 
@@ -116,7 +116,7 @@ def test_each_run_is_kept_small_and_whole(result):
     case = question.tests[0].cases[0]
     log = case.ask(follow)
     assert run["measures"]["rms_mm"] == pytest.approx(case.measured(log)["rms_mm"], rel=1e-5)
-    assert len(run["motion"]) < public_evidence.MAX_BYTES
+    assert len(run["motion"]) < evidence.MAX_BYTES
     q = unpack(json.loads(run["motion"])["q"])
     assert np.abs(q[-1] - log.q[-1]).max() <= 1e-4
     assert Result.read(result.text()).questions[0].runs == (run,)
@@ -126,8 +126,8 @@ def test_long_motions_are_thinned_until_they_fit():
     """Two minutes of restless motion still fit, with fewer samples a second."""
     t = np.arange(0.0, 120.0, 0.01)
     q = np.random.default_rng(1).normal(0.0, 1.0, (len(t), 7))
-    text = public_evidence.encode_to_fit(public_evidence.Motion("left", t, q))
-    assert 0 < len(text) <= public_evidence.MAX_BYTES
+    text = evidence.encode_to_fit(evidence.Motion("left", t, q))
+    assert 0 < len(text) <= evidence.MAX_BYTES
     assert json.loads(text)["period"] > 1 / 25
 
 
@@ -142,7 +142,7 @@ def test_an_arm_that_ran_away_is_shown_up_to_then():
     assert found.verdict.outcome is Outcome.ERROR
     assert not run["complete"]
     assert not run["measures"]
-    assert len(unpack(json.loads(run["motion"])["q"])) >= public_evidence.MIN_SAMPLES
+    assert len(unpack(json.loads(run["motion"])["q"])) >= evidence.MIN_SAMPLES
     text = page(Result("09_demo", "ada", 0.0, 4.0, 1, HASHES, questions=(found,)))
     assert "It ran away; this is what it did up to then." in text
 

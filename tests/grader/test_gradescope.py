@@ -22,9 +22,9 @@ from labkit.course.authoring.bundle import Bundle
 from labkit.course.cli import FOR_INSTRUCTORS
 from labkit.course.own_arm import HANDLES, Arms
 from labkit.grader import gradescope
+from labkit.grader.grade import grade
 from labkit.grader.gradescope import gradescope_results
-from labkit.grader.grading.grade import grade
-from labkit.grader.grading.results import OTHER_NOTEBOOK
+from labkit.grader.results import OTHER_NOTEBOOK
 from labkit.grader.roster import Roster, Student, save_roster
 from labkit.grader.sandbox.isolation import processes_of
 from labkit.grader.sandbox.launch import Sandbox

@@ -9,10 +9,9 @@ from made import NAME, handed_in
 
 from labkit.__main__ import main
 from labkit.errors import LabkitError
-from labkit.grader import lock
-from labkit.grader.atomic import write
-from labkit.grader.grading.batch import GradeOptions, grade_class
-from labkit.grader.lock import exclusive_run
+from labkit.grader import files as lock
+from labkit.grader.batch import GradeOptions, grade_class
+from labkit.grader.files import exclusive_run, write
 
 
 @pytest.fixture(autouse=True)

@@ -16,13 +16,11 @@ from traitlets.config.loader import PyFileConfigLoader
 
 from labkit.__main__ import main
 from labkit.course.verdict import Outcome
-from labkit.grader.feedback.class_report import report
-from labkit.grader.feedback.page import page
-from labkit.grader.grading.results import Results
-from labkit.grader.marks.mark import MarkLine
-from labkit.grader.marks.table import mark_of
-from labkit.grader.nbgrader.gradebook import record
-from labkit.grader.nbgrader.markup import clean
+from labkit.grader.class_report import report
+from labkit.grader.feedback import clean, page
+from labkit.grader.gradebook import record
+from labkit.grader.marks import MarkLine, mark_of
+from labkit.grader.results import Results
 from labkit.grader.roster import Student
 
 MARKDOWN = [

@@ -13,7 +13,7 @@ from labkit.course.authoring.bundle import Bundle
 from labkit.course.authoring.layout import PUBLIC_SEED, Course
 from labkit.errors import UnknownName
 from labkit.grader import seeds, term
-from labkit.grader.nbgrader.gradebook import open_gradebook
+from labkit.grader.gradebook import open_gradebook
 from labkit.grader.release import prepared, release
 from labkit.grader.roster import Roster, Student, save_roster
 

@@ -11,8 +11,8 @@ from handmade import NAME
 
 from labkit.course.authoring.layout import Course
 from labkit.errors import LabkitError
-from labkit.grader.grading.batch import GradeOptions
-from labkit.grader.grading.results import Results
+from labkit.grader.batch import GradeOptions
+from labkit.grader.results import Results
 from tests.synthetic import expected_file
 from tests.synthetic.__main__ import main
 from tests.synthetic.rehearsal import rehearse

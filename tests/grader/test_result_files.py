@@ -21,13 +21,13 @@ from labkit.__main__ import main
 from labkit.course.authoring.bundle import Bundle
 from labkit.errors import LabkitError
 from labkit.formats import FORMAT, stamp
-from labkit.grader import atomic as module
-from labkit.grader.atomic import write
+from labkit.grader import files as module
 from labkit.grader.clean import clean_data
 from labkit.grader.each import Failure
-from labkit.grader.grading.current_results import current_results
-from labkit.grader.grading.grade import grade
-from labkit.grader.grading.results import Result, Results, engine_files
+from labkit.grader.files import write
+from labkit.grader.grade import grade
+from labkit.grader.marks import current_results
+from labkit.grader.results import Result, Results, engine_files
 
 WRONG = {
     "hashes {}": {"hashes": {}},

@@ -11,7 +11,7 @@ from labkit.__main__ import main
 from labkit.course.own_arm import Arms
 from labkit.errors import LabkitError
 from labkit.grader.clean import LONGEST, safe_name
-from labkit.grader.nbgrader.gradebook import open_gradebook
+from labkit.grader.gradebook import open_gradebook
 from labkit.grader.roster import (
     FILE,
     Roster,

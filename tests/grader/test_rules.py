@@ -13,7 +13,7 @@ from msgspec.structs import fields
 
 from labkit.__main__ import main
 from labkit.errors import LabkitError
-from labkit.grader.nbgrader.gradebook import open_gradebook
+from labkit.grader.gradebook import open_gradebook
 from labkit.grader.rules import Assignment, Extension, Late, Rules, read_rules, rules_in
 
 RULES = f"""

@@ -13,8 +13,8 @@ from labkit.course.calling import NoAnswer
 from labkit.course.judges import MOST_COEFFICIENTS, Ratio
 from labkit.course.messages import why
 from labkit.errors import OutOfRange
-from labkit.grader.grading import grade as checker
-from labkit.grader.grading.grade import grade
+from labkit.grader import grade as checker
+from labkit.grader.grade import grade
 from labkit.grader.sandbox.limits import MAX_REPLY, MAX_VALUES, Limits, TextBudget
 from labkit.grader.sandbox.parse import read
 from labkit.grader.sandbox.session import MAX_LOST, RemoteFunction, Session, Step

@@ -13,10 +13,10 @@ import pytest
 from made import NAME, changed, graded, handed_in, notebook_of, result_of
 
 from labkit.__main__ import main
-from labkit.grader.grading.batch import common_failures
-from labkit.grader.grading.results import OTHER_NOTEBOOK, Results
-from labkit.grader.marks.export import LAYOUTS
-from labkit.grader.nbgrader.gradebook import open_gradebook
+from labkit.grader.batch import common_failures
+from labkit.grader.export import LAYOUTS
+from labkit.grader.gradebook import open_gradebook
+from labkit.grader.results import OTHER_NOTEBOOK, Results
 
 GRADE = f"type: labkit grade {NAME} --student ada"
 

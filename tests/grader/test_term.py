@@ -17,22 +17,16 @@ from labkit.__main__ import main
 from labkit.course.authoring.layout import OUTCOMES
 from labkit.course.serialize import encode
 from labkit.course.verdict import Outcome
+from labkit.grader.batch import GradedSubmission, GradeOptions, changes, grade_class
+from labkit.grader.class_report import report
 from labkit.grader.collect import Participant
-from labkit.grader.feedback.class_report import report
-from labkit.grader.feedback.page import page
-from labkit.grader.grading.batch import (
-    GradedSubmission,
-    GradeOptions,
-    changes,
-    grade_class,
-)
-from labkit.grader.grading.results import Results
-from labkit.grader.marks.export import LAYOUTS, as_csv, left_out
-from labkit.grader.marks.mark import Mark, MarkLine
-from labkit.grader.marks.table import mark_of, marks_of
-from labkit.grader.nbgrader.gradebook import record
-from labkit.grader.pseudonyms import pseudonyms
+from labkit.grader.export import LAYOUTS, as_csv, left_out
+from labkit.grader.feedback import page
+from labkit.grader.gradebook import record
+from labkit.grader.marks import Mark, MarkLine, mark_of, marks_of
+from labkit.grader.results import Results
 from labkit.grader.roster import Student
+from labkit.grader.seeds import pseudonyms
 from labkit.grader.submission import students
 from labkit.grader.term import archive
 from tests.synthetic import make_class

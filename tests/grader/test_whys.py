@@ -12,9 +12,8 @@ from made import NAME, WHY, notebook_of, result_of
 from labkit import LabkitError
 from labkit.__main__ import main
 from labkit.course.notebook import grade_id
-from labkit.grader.grading.results import Results
-from labkit.grader.nbgrader.autograded_notebook import release_source
-from labkit.grader.nbgrader.gradebook import apply_rules, open_gradebook, record
+from labkit.grader.gradebook import apply_rules, open_gradebook, record, release_source
+from labkit.grader.results import Results
 from labkit.grader.whys import DRAWN, drawn
 
 WHYS = [f"why_{k}" for k in range(8)]

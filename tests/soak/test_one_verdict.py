@@ -19,7 +19,7 @@ from labkit.course.authoring.bundle import Bundle
 from labkit.course.authoring.layout import Course
 from labkit.course.handin import submit_check
 from labkit.course.notebook import manifest, source_notebook, verdict_in
-from labkit.grader.grading.grade import grade
+from labkit.grader.grade import grade
 from labkit.grader.sandbox.launch import Sandbox
 from labkit.grader.sandbox.limits import Limits
 from tests.synthetic.inline import inline

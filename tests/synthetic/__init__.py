@@ -23,8 +23,8 @@ from labkit.course.notebook import grade_id
 from labkit.course.predictions import Prediction
 from labkit.course.question import Question
 from labkit.errors import LabkitError
-from labkit.grader.atomic import write
-from labkit.grader.grading.results import Results
+from labkit.grader.files import write
+from labkit.grader.results import Results
 
 from . import kinds
 from .inline import inline

@@ -7,8 +7,8 @@ from functools import partial
 from pathlib import Path
 
 from labkit.course.authoring.layout import PUBLIC_SEED, Course
+from labkit.grader.batch import GradeOptions
 from labkit.grader.each import Failures
-from labkit.grader.grading.batch import GradeOptions
 
 from . import expected_file, make_class
 from .rehearsal import rehearse

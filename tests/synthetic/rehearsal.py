@@ -11,16 +11,15 @@ from pathlib import Path
 from labkit.course.authoring.bundle import Bundle
 from labkit.course.authoring.layout import PUBLIC_SEED, Course
 from labkit.errors import LabkitError
-from labkit.grader.atomic import write
+from labkit.grader.batch import GradeOptions, common_failures, grade_class
+from labkit.grader.class_report import report
 from labkit.grader.collect import collect
 from labkit.grader.each import Failure, Failures
-from labkit.grader.feedback.class_report import report
-from labkit.grader.feedback.page import write_feedback
-from labkit.grader.grading.batch import GradeOptions, common_failures, grade_class
-from labkit.grader.grading.current_results import current_results
-from labkit.grader.marks.export import LAYOUTS, as_csv
-from labkit.grader.marks.table import marks_of
-from labkit.grader.nbgrader.gradebook import record
+from labkit.grader.export import LAYOUTS, as_csv
+from labkit.grader.feedback import write_feedback
+from labkit.grader.files import write
+from labkit.grader.gradebook import record
+from labkit.grader.marks import current_results, marks_of
 from labkit.grader.release import release
 from labkit.grader.roster import Roster, Student, save_roster
 from labkit.grader.submission import students

@@ -17,7 +17,7 @@ from .course import of_course
 from .pages import nobody, tell, to_file, write
 
 if TYPE_CHECKING:
-    from ..marks.mark import Mark
+    from ..marks import Mark
 
 TABLES = ("nbgrader", "questions", "canvas", "moodle", "moodle-worksheet")
 """Layouts of marks."""
@@ -59,8 +59,8 @@ def export(
     The marks are those of an assignment or, without ASSIGNMENT, of the term: every assignment that
     was graded, and the total with the weights of course.toml.
     """
-    from ..marks.export import LAYOUTS, as_csv, of_term, remarks, unmatched
-    from ..marks.table import marks_of
+    from ..export import LAYOUTS, as_csv, of_term, remarks, unmatched
+    from ..marks import marks_of
     from ..roster import idle_extensions
     from ..rules import read_rules
 

@@ -19,7 +19,7 @@ from .course import of_assignment, of_course
 from .pages import one_student, tell
 
 if TYPE_CHECKING:
-    from ..grading.results import Result
+    from ..results import Result
 
 jobs = click.option(
     "--jobs",
@@ -57,9 +57,9 @@ def grade(course: Course, assignment: str, student: str | None, diff: bool, **ho
     a question has other points since, its share of them is compared.
     A notebook of another assignment that was handed in is named at the end, with exit code 1.
     """
-    from ..grading.batch import GradeOptions, changes, common_failures, grade_class
-    from ..grading.results import Results
-    from ..nbgrader.gradebook import record
+    from ..batch import GradeOptions, changes, common_failures, grade_class
+    from ..gradebook import record
+    from ..results import Results
     from ..roster import idle_extensions
 
     options = GradeOptions(**how, tell=partial(print, file=sys.stderr, flush=True))
@@ -98,7 +98,7 @@ def _other_notebooks(results: Iterable[Result]) -> Iterator[Failure]:
 def _on_top(course: Course, assignment: str) -> Iterator[str]:
     """The points by hand, which the printed marks do not include, and who still waits for them."""
     from ...course.authoring.bundle import Bundle
-    from ..nbgrader.gradebook import open_gradebook
+    from ..gradebook import open_gradebook
 
     if by_hand := Bundle.of(course, assignment).by_hand:
         with open_gradebook(course) as book:
@@ -123,7 +123,7 @@ def explain(course: Course, student: str, question: str, assignment: str | None)
     The answer runs once more in the sandbox. You see what the student may be shown, and then,
     for you alone, the hidden case that decided the mark. Numbers and runs are written to a page.
     """
-    from ..feedback.explain import explain
+    from ..explain import explain
 
     print(explain(course, student, question, assignment))
     return 0
@@ -154,8 +154,7 @@ def defence(course: Course, student: str, mark: list[int] | None) -> int:
     as many as there are; for the rest you choose work of theirs to ask about.
     The second side has the answers. Which functions and mistakes follows from a key of the term.
     """
-    from ..defence.draw import ASKED, draw
-    from ..defence.page import give_mark, write_page
+    from ..defence import ASKED, draw, give_mark, write_page
     from ..seeds import public_warning
 
     if mark is not None:

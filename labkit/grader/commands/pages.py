@@ -17,7 +17,7 @@ from ..each import Failure, Failures
 from .course import MARKED_BY, of_assignment
 
 if TYPE_CHECKING:
-    from ..marks.mark import Mark
+    from ..marks import Mark
 
 one_student = click.option("--student", metavar="S", help="Only this student.")
 to_file = click.option(
@@ -48,8 +48,8 @@ def feedback(
     waits.
     """
     from ..collect import for_exchange
-    from ..feedback.page import moodle_zip, write_feedback
-    from ..marks.table import marks_of
+    from ..feedback import moodle_zip, write_feedback
+    from ..marks import marks_of
 
     with Failures() as failures:
         everybody = [mark for mark in marks_of(course, assignment) if not mark.absent]
@@ -83,9 +83,9 @@ def class_report(course: Course, assignment: str, names: bool, to: Path | None) 
     The report counts mistakes by their names. Students have pseudonyms unless you add --names.
     """
     from ...course.authoring.bundle import Bundle
-    from ..feedback.class_report import FEWEST, report
-    from ..marks.table import marks_of
-    from ..pseudonyms import pseudonyms
+    from ..class_report import FEWEST, report
+    from ..marks import marks_of
+    from ..seeds import pseudonyms
 
     with Failures() as failures:
         marks = [mark for mark in marks_of(course, assignment) if not mark.author]

@@ -15,14 +15,14 @@ from ...course.authoring.bundle import Bundle
 from ...course.authoring.layout import Course
 from ...course.own_arm import Arms
 from ...errors import LabkitError
+from ..grade import grade, rejection
+from ..plan import imports
+from ..results import Result
 from ..sandbox.cgroup import MEMORY, limit_memory
 from ..sandbox.launch import Sandbox, SandboxLost
 from ..sandbox.limits import Limits, slowness
 from ..sandbox.mounts import Isolation, NoIsolation
 from ..submission import Submission
-from .grade import grade, rejection
-from .plan import imports
-from .results import Result
 
 T = TypeVar("T")
 TRIES = 2

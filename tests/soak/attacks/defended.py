@@ -21,8 +21,8 @@ from soak.attacks.place import NAME, Place
 
 from labkit.__main__ import main
 from labkit.course.authoring.layout import Course
+from labkit.grader.batch import GradeOptions, grade_class
 from labkit.grader.each import Failure
-from labkit.grader.grading.batch import GradeOptions, grade_class
 from labkit.grader.sandbox.limits import Limits
 
 LIMITS = Limits(cell=2.0, call=1.0, question=8.0, wall=40.0)

@@ -155,7 +155,7 @@ def _plant(course: Course) -> None:
 
 
 def _name_in_the_gradebook(course: Course) -> None:
-    from labkit.grader.nbgrader.gradebook import open_gradebook
+    from labkit.grader.gradebook import open_gradebook
 
     with open_gradebook(course) as book:
         book.update_or_create_student(VICTIM, first_name=CANARY)

@@ -24,9 +24,9 @@ import re
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from typing import Any
 
-from ...course.authoring.layout import DEFENCE
-from ..clean import few, no_formula
-from .mark import Mark
+from ..course.authoring.layout import DEFENCE
+from .clean import few, no_formula
+from .marks import Mark
 
 
 def nbgrader(assignment: str, marks: Sequence[Mark]) -> list[list[Any]]:

@@ -12,9 +12,9 @@ from dataclasses import dataclass, field
 from itertools import chain
 from typing import Any
 
-from ...course.source import analyse, plain
-from ...errors import listed
-from ..sandbox.session import Step
+from ..course.source import analyse, plain
+from ..errors import listed
+from .sandbox.session import Step
 
 Cell = Mapping[str, Any]
 

@@ -10,26 +10,25 @@ from collections.abc import Iterator
 from dataclasses import replace
 from itertools import chain
 
-from ...course.authoring.bundle import Bundle
-from ...course.authoring.layout import Course
-from ...course.judges import Found, Measured
-from ...course.messages import summary, test_line, wrapped
-from ...course.own_arm import DEMO
-from ...course.serialize import question_data
-from ...course.source import parsed
-from ...course.verdict import Outcome
-from ...errors import LabkitError, UnknownName
-from ..atomic import write
-from ..grading.grade import grade
-from ..grading.plan import imports
-from ..grading.results import Result
-from ..grading.worker import in_sandbox
-from ..marks.mark import Mark, MarkLine
-from ..marks.table import marks_of
-from ..sandbox.launch import Sandbox
-from ..sandbox.limits import Limits, slowness
-from ..submission import Submission, none_of
-from .page import page
+from ..course.authoring.bundle import Bundle
+from ..course.authoring.layout import Course
+from ..course.judges import Found, Measured
+from ..course.messages import summary, test_line, wrapped
+from ..course.own_arm import DEMO
+from ..course.serialize import question_data
+from ..course.source import parsed
+from ..course.verdict import Outcome
+from ..errors import LabkitError, UnknownName
+from .feedback import page
+from .files import write
+from .grade import grade
+from .grading.worker import in_sandbox
+from .marks import Mark, MarkLine, marks_of
+from .plan import imports
+from .results import Result
+from .sandbox.launch import Sandbox
+from .sandbox.limits import Limits, slowness
+from .submission import Submission, none_of
 
 _PRIVATE = "this page shows hidden cases, so it is for instructors and not for students"
 

@@ -12,22 +12,25 @@ from typing import TypedDict
 
 import labkit
 
-from ...course.authoring.layout import Course
-from ...course.serialize import read_record, record_data
-from ...course.verdict import Points, Verdict
-from ...errors import LabkitError
-from ...formats import check_stamp, stamp
-from ..atomic import write
-from ..clean import clean_data, clean_line
+from ..course.authoring.layout import Course
+from ..course.serialize import read_record, record_data
+from ..course.verdict import Points, Verdict
+from ..errors import LabkitError
+from ..formats import check_stamp, stamp
+from .clean import clean_data, clean_line
+from .files import write
 
 _LABKIT = Path(labkit.__file__).parent
 OTHER_NOTEBOOK = "this looks like the notebook of another assignment"
-_OF_A_WORKER = ("grading", "sandbox", "atomic.py", "clean.py", "each.py", "submission.py")
+_OF_A_WORKER = {"grading", "sandbox"} | {
+    f"{name}.py"
+    for name in ("clean", "each", "evidence", "files", "grade", "plan", "results", "submission")
+}
 """The parts of the grader that a worker loads."""
 
 
 class Run(TypedDict):
-    """A run of the arm on a public case; see `public_evidence.runs`."""
+    """A run of the arm on a public case; see `evidence.runs`."""
 
     test: str
     says: str
@@ -40,7 +43,7 @@ class Run(TypedDict):
 
 
 class Numbers(TypedDict):
-    """The numbers of an answer and those expected; see `public_evidence.numbers`."""
+    """The numbers of an answer and those expected; see `evidence.numbers`."""
 
     call: str
     expected: list[float]

@@ -20,7 +20,7 @@ from matplotlib.figure import Figure
 from matplotlib.ticker import MaxNLocator
 from numpy.typing import ArrayLike, NDArray
 
-from ..pages import TEMPLATES
+from .pages import TEMPLATES
 
 SIZE = (6.4, 2.8)
 """The size in inches; the page scales a figure to its own width."""

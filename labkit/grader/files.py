@@ -1,14 +1,35 @@
-"""Locks: one run at a time on the results of an assignment."""
+"""Files that are written whole or not at all, and locks: one run at a time."""
 
 from __future__ import annotations
 
 import fcntl
+import glob
+import os
 import time
 from collections.abc import Iterator
 from contextlib import contextmanager
+from functools import partial
 from pathlib import Path
 
 from ..errors import LabkitError
+
+
+def write(path: Path, content: str | bytes) -> None:
+    """Write a file whole or not at all, for its owner alone; delete what a killed run left."""
+    path.parent.mkdir(0o700, parents=True, exist_ok=True)
+    for left in path.parent.glob(f".{glob.escape(path.name)}.*.new"):
+        if not Path("/proc", left.name.split(".")[-2]).exists():
+            left.unlink(missing_ok=True)
+    new = path.with_name(f".{path.name}.{os.getpid()}.new")
+    try:
+        with open(new, "wb", opener=partial(os.open, mode=0o600)) as file:
+            file.write(content.encode() if isinstance(content, str) else content)
+            file.flush()
+            os.fsync(file.fileno())
+        new.replace(path)
+    finally:
+        new.unlink(missing_ok=True)
+
 
 PATIENCE = 2.0
 """Seconds to wait for another run, such as one that was stopped and is about to end."""

@@ -15,28 +15,30 @@ import re
 import zipfile
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import replace
+from html import escape
 from pathlib import Path
 from typing import Any, NamedTuple
 
+import bleach
 import numpy as np
+from jinja2 import pass_context
 from markupsafe import Markup
+from nbconvert import HTMLExporter
 
-from ...course import messages
-from ...course.authoring.layout import Course
-from ...course.messages import is_prediction
-from ...errors import LabkitError
-from ...metrics import SETTLED
-from ...replay.motion import unpack
-from ..atomic import write
-from ..collect import participants
-from ..each import Failure, for_student
-from ..grading.results import Result
-from ..marks.mark import Mark
-from ..marks.table import mark_of
-from ..nbgrader.markup import markdown
-from ..pages import render_page
-from ..rules import read_rules
+from ..course import messages
+from ..course.authoring.layout import Course
+from ..course.messages import is_prediction
+from ..errors import LabkitError
+from ..metrics import SETTLED
+from ..replay.motion import unpack
+from .collect import participants
 from .drawing import curve, side_by_side
+from .each import Failure, for_student
+from .files import write
+from .marks import Mark, mark_of, marks_of
+from .pages import render_page
+from .results import Result
+from .rules import read_rules
 
 MEASURES = {
     "rms_mm": ("position error of the tip, RMS", "mm", 1.0),
@@ -198,3 +200,55 @@ def moodle_zip(course: Course, assignment: str, pages: Iterable[Path], to: Path)
             folder = f"{name}_{who.number}_assignfeedback_file"
             archive.write(page, f"{folder}/{page.name}")
     return len(mine)
+
+
+class StudentPage(HTMLExporter):
+    """Turns an autograded notebook into the page that `labkit feedback` writes."""
+
+    def from_filename(  # type: ignore[override]
+        self, filename: str, resources: dict[str, Any] | None = None, **_: Any
+    ) -> tuple[str, dict[str, Any]]:
+        """The page of a student, and the resources for nbconvert's writer.
+
+        Raises:
+            LabkitError: The student has no mark.
+        """
+        about = dict(resources or {})
+        course, known = Course.here(Path.cwd()), about["nbgrader"]
+        for mark in marks_of(course, known["assignment"], known["student"]):
+            if mark.result is not None and (mark.lines or not mark.missing):
+                about |= {"output_extension": ".html", "outputs": {}}
+                return page(mark.result, mark, read_rules(course).name), about
+            raise LabkitError(f"{mark.student}: {mark.missing}")
+        raise LabkitError(f"there is no mark of {known['student']}")
+
+
+_TAGS = (
+    {"a", "abbr", "b", "blockquote", "br", "code", "del", "div", "em", "hr", "i", "kbd", "p", "pre"}
+    | {"s", "small", "span", "strong", "sub", "sup", "details", "summary"}
+    | {"h1", "h2", "h3", "h4", "h5", "h6", "dd", "dl", "dt", "li", "ol", "ul"}
+    | {"table", "tbody", "td", "tfoot", "th", "thead", "tr"}
+)
+_LINKS = ("http://", "https://", "mailto:", "#")
+"""Others could lead to a page that was handed in."""
+_exporter = HTMLExporter(exclude_anchor_links=True)
+
+
+@pass_context
+def markdown(context: Any, source: str) -> str:
+    """Markdown as HTML of known elements; as it was typed, where it cannot be read."""
+    try:
+        html = str(_exporter.markdown2html(context, source))
+    except Exception:  # such as a picture that was not handed in
+        html = f"<pre>{escape(source)}</pre>"
+    return clean(html)
+
+
+def clean(html: str | bytes) -> str:
+    """HTML with known elements and links alone; anything else is shown as text."""
+    text = html.decode(errors="replace") if isinstance(html, bytes) else html
+    return str(bleach.clean(text, tags=_TAGS, attributes=_is_link))
+
+
+def _is_link(tag: str, name: str, value: str) -> bool:
+    return (tag, name) == ("a", "href") and value.lower().startswith(_LINKS)

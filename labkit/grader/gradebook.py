@@ -5,7 +5,13 @@ Manual grades and comments stay; formgrader finds a notebook to open for every s
 
 from __future__ import annotations
 
+import copy
 import fcntl
+import logging
+import os
+import re
+import sys
+import tomllib
 import warnings
 from collections.abc import Iterable, Iterator, Mapping, Set
 from contextlib import contextmanager, suppress
@@ -13,21 +19,34 @@ from datetime import datetime
 from pathlib import Path
 from typing import Any
 
+import nbformat
+from nbgrader.plugins import LateSubmissionPlugin
 from nbgrader.preprocessors import NbGraderPreprocessor
 from sqlalchemy import text as sql
 from sqlalchemy.exc import DatabaseError, OperationalError, SAWarning
+from traitlets.utils.importstring import import_item
 
-from ...course.authoring.layout import Course
-from ...course.notebook import by_hand, grade_id, nbgrader_info, question_of, read_cells, words_of
-from ...errors import LabkitError
-from ..atomic import write
-from ..each import Failure, for_student
-from ..grading.results import Result, Results
-from ..nbgrader_api import nbgrader_api
-from ..rules import apply_lateness
-from ..submission import Submission, digest, read_stamp, read_time
-from ..whys import credit_whys
-from .autograded_notebook import as_text, in_release_form, release_source, with_verdicts
+from ..course.authoring.layout import Course
+from ..course.messages import summary
+from ..course.notebook import (
+    Notebook,
+    by_hand,
+    grade_id,
+    kind,
+    nbgrader_info,
+    question_of,
+    read_cells,
+    words_of,
+)
+from ..errors import LabkitError
+from .clean import clean_line
+from .each import Failure, for_student
+from .files import write
+from .results import Answer, Result, Results
+from .rules import FILE as RULES
+from .rules import read_rules
+from .submission import Submission, digest, read_stamp, read_time
+from .whys import credit_whys
 
 
 def record(course: Course, assignment: str, results: Iterable[Result]) -> list[str | Failure]:
@@ -70,7 +89,49 @@ def apply_rules(course: Course, book: Any, assignment: str) -> None:
     """
     credit_whys(course, book, assignment)
     _update_times(course, book, assignment)
-    apply_lateness(course, book, assignment)
+    _apply_lateness(course, book, assignment)
+
+
+def _apply_lateness(course: Course, book: Any, assignment: str) -> None:
+    """Update due date, extensions and penalties in the gradebook to the present rules.
+
+    If the file has no due date, the one that was set in formgrader counts.
+
+    Raises:
+        LabkitError: The rules, or the course's own plugin for late work, cannot be used.
+    """
+    rules, late = read_rules(course), _late_plugin(course)
+    due = rules.due(assignment)
+    for submission in book.assignment_submissions(assignment):
+        if due is not None:
+            submission.assignment.duedate = due.replace(tzinfo=None)
+        if submission.assignment.duedate is None:
+            submission.extension = None  # nbgrader would add it to no date, which raises TypeError
+        elif (course.root / RULES).exists():
+            submission.extension = rules.longer(submission.student.id, assignment)
+        seconds = submission.total_seconds_late
+        for notebook in submission.notebooks:
+            who, score = submission.student.id, notebook.score
+            taken = late.late_submission_penalty(who, score, seconds) if seconds > 0 else None
+            if (notebook.late_submission_penalty or 0.0) != (taken or 0.0):
+                notebook.late_submission_penalty = taken
+    book.db.commit()
+
+
+def _late_plugin(course: Course) -> Any:
+    """The plugin that nbgrader's settings name, which may be a file beside them."""
+    config = nbgrader_api(course).config
+    chosen = config.get("AssignLatePenalties", {}).get("plugin_class", LateSubmissionPlugin)
+    if str(course.root) not in sys.path:
+        sys.path.insert(0, str(course.root))
+    try:
+        plugin = (import_item(chosen) if isinstance(chosen, str) else chosen)(config=config)
+    except ImportError as error:
+        raise LabkitError(
+            f"nbgrader_config.py names {chosen!r} for late work: {error}; put that module beside it"
+        ) from None
+    plugin.log.setLevel(logging.CRITICAL)
+    return plugin
 
 
 def _update_times(course: Course, book: Any, assignment: str) -> None:
@@ -245,3 +306,141 @@ class Refused(NbGraderPreprocessor):  # type: ignore[misc]
     def preprocess(self, nb: Any, resources: dict[str, Any]) -> tuple[Any, dict[str, Any]]:
         """Raise a LabkitError."""
         raise LabkitError(f"type: labkit grade {resources['nbgrader']['assignment']}")
+
+
+def in_release_form(source: Notebook, result: Result) -> Notebook:
+    """The release's cells with the student's answers in them, and the student's own cells.
+
+    Args:
+        source: The release, from nbgrader's source folder.
+        result: The result of the submission.
+    """
+    notebook = copy.deepcopy(source)
+    answers = {q.verdict.name: q.source for q in result.questions}
+    extra: dict[str, list[Any]] = {}
+    for number, own in enumerate(result.own):
+        code = own["type"] == "code"
+        make: Any = nbformat.v4.new_code_cell if code else nbformat.v4.new_markdown_cell
+        text = own["source"] if code else as_typed(own["source"])
+        extra.setdefault(own["after"], []).append(make(text, id=f"own-{number:04d}"))
+    for cell in notebook.cells:
+        name = grade_id(cell)
+        if by_hand(cell):
+            text = result.written.get(name, cell.source)
+            if not nbgrader_info(cell)["task"] and text.split() != cell.source.split():
+                cell.source = text  # a space more or less is not yet an answer
+        elif kind(cell) == "answer":
+            cell.source = answers.get(name, "")
+    notebook.cells = extra.get("", []) + [
+        one for cell in notebook.cells for one in (cell, *extra.get(cell["id"], []))
+    ]
+    return notebook
+
+
+def with_verdicts(notebook: Notebook, result: Result) -> Notebook:
+    """The verdicts as the outputs of the checks, in the form that nbgrader reads marks from."""
+    answers = {question.verdict.name: question for question in result.questions}
+    for cell in notebook.cells:
+        if cell.cell_type == "code":
+            cell.outputs, cell.execution_count = [], None
+        if not nbgrader_info(cell).get("grade") or by_hand(cell):
+            continue
+        answer = answers.get(question_of(grade_id(cell)))
+        text = "\n".join(_told(answer)) if answer else result.rejected
+        earned = answer.verdict.earned if answer else 0.0
+        cell.execution_count = 1
+        cell.outputs = [
+            nbformat.v4.new_output("stream", name="stdout", text=text + "\n"),
+            nbformat.v4.new_output(
+                "execute_result", {"text/plain": repr(float(earned))}, execution_count=1
+            ),
+        ]
+    return notebook
+
+
+def as_typed(source: str, language: str = "markdown") -> str:
+    """What a student typed as a block of text, in which no page finds markup to obey."""
+    fence = "`" * (max(map(len, re.findall("`+", source)), default=0) + 3)
+    return f"{fence}{language}\n{source}\n{fence}"
+
+
+def _told(answer: Answer) -> list[str]:
+    """A question's verdict, the verdict first, then why."""
+    return [*summary(answer.verdict), *(f"  Note: {note}." for note in answer.notes)]
+
+
+def release_source(course: Course, assignment: str) -> Notebook:
+    """The release as graders have it; what students write in is as they were given it.
+
+    Raises:
+        LabkitError: A file of the release is damaged.
+    """
+    source, given = (
+        _read(folder / assignment / f"{assignment}.ipynb", assignment)
+        for folder in (course.source, course.release)
+    )
+    blank = {grade_id(cell): cell for cell in given.cells}
+    for cell in source.cells:
+        if nbgrader_info(cell).get("solution"):
+            cell.source, cell.metadata = (blank[grade_id(cell)][x] for x in ("source", "metadata"))
+    return source
+
+
+def _read(path: Path, assignment: str) -> Notebook:
+    try:
+        return nbformat.read(path, as_version=4)
+    except (OSError, ValueError, nbformat.ValidationError) as error:
+        why = clean_line(str(error), 80)
+        remedy = f"type: labkit release {assignment}"
+        raise LabkitError(f"{path} is damaged: {why}; {remedy}") from None
+
+
+def as_text(notebook: Notebook) -> str:
+    """A notebook as the text of its file.
+
+    Raises:
+        UnicodeEncodeError: It holds what no file can hold.
+    """
+    text: str = nbformat.writes(notebook) + "\n"
+    text.encode()
+    return text
+
+
+_CONFIG = "nbgrader_config.py"
+
+
+def nbgrader_api(course: Course) -> Any:
+    """The interface of nbgrader, configured by ``nbgrader_config.py``.
+
+    An archived term has none, so that of the course in which it lies is used.
+
+    Raises:
+        LabkitError: That file cannot be run.
+    """
+    from nbgrader.apps import NbGraderAPI
+    from nbgrader.coursedir import CourseDirectory
+    from traitlets.config import Config
+    from traitlets.config.loader import PyFileConfigLoader
+
+    here = str(Path(sys.executable).parent)  # nbgrader calls programs that lie beside Python
+    if here not in os.environ["PATH"].split(os.pathsep):
+        os.environ["PATH"] = os.pathsep.join([here, os.environ["PATH"]])
+    homes = [x for x in (course.root, *course.root.parents[:2]) if (x / _CONFIG).exists()]
+    try:
+        config = PyFileConfigLoader(_CONFIG, path=str([*homes, course.root][0])).load_config()
+    except tomllib.TOMLDecodeError as error:  # the rules, which it reads
+        raise LabkitError(f"{course.root / 'course.toml'}: {error}; correct that line") from None
+    except (Exception, SystemExit) as error:  # it is a program that the instructor wrote
+        why = clean_line(f"{type(error).__name__}: {error}")
+        raise LabkitError(f"nbgrader_config.py cannot be run: {why}; correct it") from None
+    settings = Config(config)
+    settings.CourseDirectory.root = str(course.root)
+    settings.Application.log_level = logging.CRITICAL
+    return NbGraderAPI(CourseDirectory(config=settings), config=settings)
+
+
+def reason(result: dict[str, Any]) -> str:
+    """Why nbgrader failed: the last exception in its log, or else the log's last line."""
+    lines = [x for x in f"{result.get('log', '')}\n{result.get('error', '')}".splitlines() if x]
+    errors = [x.strip() for x in lines if re.match(r"\s*[\w.]+(Error|Exception)\b", x)]
+    return clean_line((errors or lines or ["nbgrader gave no reason"])[-1])

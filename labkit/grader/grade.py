@@ -12,23 +12,23 @@ from contextlib import closing, suppress
 from dataclasses import replace
 from typing import Any, cast
 
-from ...course.authoring.bundle import Bundle
-from ...course.handin import receipt
-from ...course.marking import PublicResult, all_alike, mark, not_counted, try_public
-from ...course.messages import why_not_counted
-from ...course.question import Question
-from ...course.serialize import read_record, record_data
-from ...course.source import withheld_tools
-from ...course.verdict import Kind, Outcome, Verdict
-from ..clean import clean_data, clean_line, how_many
-from ..sandbox.launch import Sandbox
-from ..sandbox.limits import MAX_TEXT, Limits, TextBudget
-from ..sandbox.protocol import Disconnected, ProtocolError
-from ..sandbox.session import RemoteFunction, Session
-from ..submission import digest
-from . import public_evidence
+from ..course.authoring.bundle import Bundle
+from ..course.handin import receipt
+from ..course.marking import PublicResult, all_alike, mark, not_counted, try_public
+from ..course.messages import why_not_counted
+from ..course.question import Question
+from ..course.serialize import read_record, record_data
+from ..course.source import withheld_tools
+from ..course.verdict import Kind, Outcome, Verdict
+from . import evidence
+from .clean import clean_data, clean_line, how_many
 from .plan import Plan, plan
 from .results import OTHER_NOTEBOOK, Answer, FailedCell, Hashes, OwnCell, Result, engine
+from .sandbox.launch import Sandbox
+from .sandbox.limits import MAX_TEXT, Limits, TextBudget
+from .sandbox.protocol import Disconnected, ProtocolError
+from .sandbox.session import RemoteFunction, Session
+from .submission import digest
 
 _STUDENT_TEXTS = {
     "cells": ("error", "output"),
@@ -222,8 +222,8 @@ def _answer(
     try:
         return replace(
             answer,
-            runs=public_evidence.runs(question, tried),
-            numbers=public_evidence.numbers(question, tried),
+            runs=evidence.runs(question, tried),
+            numbers=evidence.numbers(question, tried),
         )
     except Exception:  # the answer is too odd to be drawn
         return answer

@@ -10,10 +10,10 @@ from typing import Any
 
 import numpy as np
 
-from ...course.marking import PublicResult, PublicRun
-from ...course.question import Question, Tuned
-from ...log import Log
-from ...replay import Motion, motion_of
+from ..course.marking import PublicResult, PublicRun
+from ..course.question import Question, Tuned
+from ..log import Log
+from ..replay import Motion, motion_of
 from .results import Numbers, Run
 
 MAX_BYTES = 60_000

@@ -8,18 +8,18 @@ from collections.abc import Callable, Iterator, Sequence
 from concurrent.futures import FIRST_COMPLETED, wait
 from dataclasses import dataclass, field
 
-from ...course.authoring.bundle import Bundle
-from ...course.authoring.layout import Course
-from ...course.verdict import Outcome
-from ..each import Failure, for_student
-from ..lock import exclusive_run
-from ..sandbox.limits import Limits
-from ..sandbox.mounts import NoIsolation
-from ..submission import Submission
-from .executor import executor
+from ..course.authoring.bundle import Bundle
+from ..course.authoring.layout import Course
+from ..course.verdict import Outcome
+from .each import Failure, for_student
+from .files import exclusive_run
 from .grade import hashes
+from .grading.executor import executor
+from .grading.worker import Task, grade_submission
 from .results import Result, Results
-from .worker import Task, grade_submission
+from .sandbox.limits import Limits
+from .sandbox.mounts import NoIsolation
+from .submission import Submission
 
 FAILURE_RATE_ALERT = 0.3
 """If a larger share of the class fails a test, the run asks whether the test is to blame."""

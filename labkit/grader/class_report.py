@@ -9,18 +9,18 @@ from collections.abc import Callable, Iterator, Mapping, Sequence
 from statistics import mean, median
 from typing import Any, NamedTuple
 
-from ...course.authoring.layout import OUTCOMES
-from ...course.authoring.problem import Problem
-from ...course.judges import Form
-from ...course.messages import why_not_counted
-from ...course.question import Question
-from ...course.verdict import Outcome, Verdict
-from ..clean import clean_line
-from ..each import for_student
-from ..grading.batch import common_failures
-from ..grading.results import Result
-from ..marks.mark import Mark
-from ..pages import render
+from ..course.authoring.layout import OUTCOMES
+from ..course.authoring.problem import Problem
+from ..course.judges import Form
+from ..course.messages import why_not_counted
+from ..course.question import Question
+from ..course.verdict import Outcome, Verdict
+from .batch import common_failures
+from .clean import clean_line
+from .each import for_student
+from .marks import Mark
+from .pages import render
+from .results import Result
 
 SLOW = 30.0
 FEWEST = 5

@@ -1,1 +1,0 @@
-"""An oral examination on a student's own code, with a mistake put into it."""
