@@ -1,44 +1,35 @@
 # %% [markdown]
 # # 02 · The model
 #
-# A controller that knows the arm can do more than one that only sees an error. All that it needs to know is
-# one equation,
+# A controller that knows the arm can do more than one that only sees an error. What it needs is one equation,
 #
 # $$ M(q)\,\ddot q + C(q, \dot q)\,\dot q + g(q) = \tau , $$
 #
-# and one matrix, the Jacobian, which says how the tip moves when the joints do. In this notebook you compute
-# all of them from the arm's seven bodies. Just as important, you learn how to find out whether they are
+# and one matrix, the Jacobian, which says how the tip moves when the joints do. Here you compute
+# them from the arm's seven bodies, and learn how to find out whether they are
 # right. The report that this lab grew out of had no such test; its gravity was off by a factor of thirty, and
 # nobody could tell.
 #
 # | | |
 # |---|---|
-# | **You need** | numpy; vectors, the cross product, derivatives in several variables; notebook 00 or its conventions: 1-D arrays, twists as (v, w), `T_ab` |
-# | **Given** | the simulated arm; where its joints and bodies are at any angles (`model.links`) |
-# | **You write** | the Jacobian, the mass matrix, gravity, the Coriolis matrix, the power balance |
-# | **Time** | core about 2 hours, all about 3.5 hours; 21 points |
-#
-# Questions marked *core* are for everybody. Those marked *extension* take the rest of the time: they earn points
-# too, but no later question depends on them.
-#
-# Every cell runs from the start, solved or not. If your part is missing, a stand-in replaces it and says so.
-# After each stub a check tells you in words what it found. The functions and your prediction are marked; play with
-# everything else as you like.
-
-# %% setup=true
-import labkit as lk
-from labkit.course import check, hint, predict, use
-
-lk.ready()
+# | **You need** | numpy; the cross product, derivatives in several variables; 1-D arrays, twists as (v, w), `T_ab` (notebook 00) |
+# | **Given** | the simulated arm; where its joints and bodies are (`model.links`) |
+# | **You write** | the Jacobian, the mass matrix, gravity; as extensions the Coriolis matrix and the power balance |
+# | **Time** | core 2.5 hours, 13 points; with the extensions 21 points. Stop after 3 hours; what is left is read, not written. |
 
 # %% setup=true
 import matplotlib.pyplot as plt
 import numpy as np
 
+import labkit as lk
+from labkit.course import check, hint, predict, use
+
+lk.ready()
+
 # %% [markdown]
 # ## Seven bodies
 #
-# The arm is seven bodies, each turning about the z axis of its own frame. `model.links(q)` lists them at the
+# Each of the seven bodies turns about the z axis of its own frame. `model.links(q)` lists them at the
 # angles `q`: the mass, the inertia and the pose of each, and how its centre of mass moves.
 
 # %%
@@ -52,28 +43,24 @@ for name, link in zip(names, model.links(q0)):
 # %% [markdown]
 # ## The Jacobian: what one joint does to the tip
 #
-# Freeze all joints but one. Everything beyond this joint $k$ turns about the joint's axis $z_k$, like a door on its
-# hinge. At unit speed, a point of the door at the vector $r$ from the hinge moves with the velocity $z_k \times r$,
-# and the door itself turns with the angular velocity $z_k$. The motions of all joints simply add up,
+# Freeze all joints but one. Everything beyond joint $k$ turns about its axis $z_k$, like a door on its
+# hinge: at unit speed a point at the vector $r$ from the hinge moves with the velocity $z_k \times r$,
+# and the door itself turns with $z_k$. The motions of all joints add up,
 #
 # $$ \begin{pmatrix} \dot p \\ \omega \end{pmatrix} = J(q)\,\dot q, $$
 #
-# so a column of $J$ is what one joint does at unit speed. Derive it: the tip is at $p$, a point on the
-# joint's axis at $p_k$, all in world axes (Siciliano, *Robotics: Modelling,
-# Planning and Control*, section 3.1.3). Beware: several matrices are called "the Jacobian". This one
+# so a column of $J$ is what one joint does at unit speed (Siciliano, *Robotics: Modelling,
+# Planning and Control*, section 3.1.3). The trap: several matrices are called "the Jacobian". This one
 # gives the velocity of the *tip*, in *world* axes.
 
 # %% question="jacobian"
 def jacobian(axes, origins, tip):
-    """The Jacobian of the tip, in world axes.
+    """In world axes.
 
     Args:
-        axes: Unit vectors along the seven joints' axes, in the world, shape (7, 3).
-        origins: A point on each axis, in the world, shape (7, 3), in [m].
-        tip: The tip in the world, shape (3,), in [m].
-
-    Returns:
-        Shape (6, 7): rows 0 to 2 give the tip's velocity, rows 3 to 5 the angular velocity.
+        axes: Unit vectors along the joints' axes, (7, 3).
+        origins: A point on each axis, (7, 3), in [m].
+        tip: The tip, (3,), in [m].
     """
     ### BEGIN SOLUTION
     from solutions.model.answers import jacobian as answer
@@ -83,9 +70,8 @@ def jacobian(axes, origins, tip):
 
 
 # %% [markdown]
-# A Jacobian is a derivative, so you can test it without another Jacobian: move the arm, and look. Here the
-# arm goes round a circle. The velocity of the tip is computed once from its positions, and once from your
-# Jacobian and the joint speeds.
+# A Jacobian is a derivative, so you can test it without another one: move the arm round a circle, and compare
+# the velocity from the tip's places with that from your Jacobian.
 
 # %%
 def jacobian_at(q):
@@ -130,6 +116,9 @@ lk.plotting.show(
     f"{1e3 * np.abs(measured - predicted).max():.2f} mm/s at most."
 )
 
+# %% [markdown]
+# With a right Jacobian the coloured curves cover the grey ones; a stand-in moves two joints only.
+
 # %%
 lk.replay.show(lk.replay.motion_of(log, "A circle, to try the Jacobian on"))
 
@@ -138,28 +127,24 @@ lk.replay.show(lk.replay.motion_of(log, "A circle, to try the Jacobian on"))
 #
 # The kinetic energy of a body is that of its centre of mass plus that of its rotation,
 # $\tfrac12 m |v|^2 + \tfrac12 \omega^T I \omega$. Both $v$ and $\omega$ are linear in the joint speeds,
-# through the Jacobian of that body's centre of mass. Summed over the bodies, the kinetic energy is a
+# through the Jacobian of that body's centre of mass. Summed over the bodies it is a
 # quadratic form, and $M$ is its matrix (Murray, Li and Sastry, *A Mathematical Introduction to Robotic
 # Manipulation*, section 4.3):
 #
 # $$ T = \tfrac12\,\dot q^T M(q)\,\dot q . $$
 #
-# Be careful with the axes. The inertia of a body is tabulated in the body's own axes, where it never changes;
+# The trap is the axes: an inertia is tabulated in the body's own axes, where it never changes;
 # the angular velocity that the Jacobian gives is in world axes.
 
 # %% question="mass_matrix"
 def mass_matrix(masses, inertias, rotations, com_jacobians):
-    """The mass matrix of the arm.
+    """In [kg m^2].
 
     Args:
-        masses: Of the seven links, shape (7,), in [kg].
-        inertias: About each centre of mass, in the link's own axes, shape (7, 3, 3), in [kg m^2].
-        rotations: R_wl, orientation of each link in the world, shape (7, 3, 3).
-        com_jacobians: For each link the velocity of its centre of mass (rows 0 to 2) and its angular
-            velocity (rows 3 to 5), in world axes, for each joint: shape (7, 6, 7).
-
-    Returns:
-        Shape (7, 7), in [kg m^2].
+        masses: (7,), in [kg].
+        inertias: About each centre of mass, in the link's own axes, (7, 3, 3), in [kg m^2].
+        rotations: R_wl, orientation of each link in the world, (7, 3, 3).
+        com_jacobians: Of each centre of mass, rows (v, w) in world axes, (7, 6, 7).
     """
     ### BEGIN SOLUTION
     from solutions.model.answers import mass_matrix as answer
@@ -169,9 +154,8 @@ def mass_matrix(masses, inertias, rotations, com_jacobians):
 
 
 # %% [markdown]
-# Three things must hold for any mass matrix, whatever the arm: it is symmetric, no motion has negative
-# energy, and no motion has *zero* energy, so its smallest eigenvalue is above zero. The picture shows that
-# the inertia depends on the pose: if you stretch the elbow, the shoulder has far more to move.
+# Two things must hold for any mass matrix, whatever the arm: it is symmetric, and no motion has *zero* energy, so its smallest
+# eigenvalue is above zero.
 
 # %%
 def mass_matrix_at(q):
@@ -209,44 +193,41 @@ lk.plotting.show(
 )
 
 # %% [markdown]
+# The inertia depends on the pose: the stretched arm is harder to swing about the shoulder.
+#
 # ## Gravity: what it takes to stay
 #
-# Raise joint $k$ by a little: the potential energy grows by the torque that you have to hold there, times the
-# angle. So $g_k = \partial V / \partial q_k$, and $V$ is the sum of $m\,g_0\,z$ over the bodies, with $g_0$ =
-# 9.81 m/s² and $z$ the height of the centre of mass. You already know how fast that height changes with each
-# joint: it is a row of a Jacobian.
+# Turn joint $k$ by a little: the potential energy grows by the torque that you have to hold there, times the
+# angle, $g_k = \partial V / \partial q_k$. You already know how each centre of mass moves with each
+# joint: it is a Jacobian. The trap: a formula with the height alone works until somebody mounts the arm on a wall.
 
 # %% question="gravity"
-def gravity(masses, com_jacobians):
-    """The torque that holds the arm still against its weight.
+def gravity(masses, com_jacobians, g_w):
+    """In [N m].
 
     Args:
-        masses: Of the seven links, shape (7,), in [kg].
-        com_jacobians: For each link the velocity of its centre of mass (rows 0 to 2) and its angular
-            velocity (rows 3 to 5), in world axes, for each joint: shape (7, 6, 7).
-
-    Returns:
-        Shape (7,), in [N m].
+        masses: (7,), in [kg].
+        com_jacobians: Of each centre of mass, rows (v, w) in world axes, (7, 6, 7).
+        g_w: Acceleration of free fall in world axes, (3,): (0, 0, -9.81) m/s^2 on a level floor.
     """
     ### BEGIN SOLUTION
     from solutions.model.answers import gravity as answer
 
-    return answer(masses, com_jacobians)
+    return answer(masses, com_jacobians, g_w)
     ### END SOLUTION
 
 
 # %% [markdown]
-# The best test is to try it: command your torque and nothing else, and the arm should float where it is. The
-# figure also shows the report's formula, $M J^T (0, 0, 0.981, 0, 0, 0)^T$. In this formula only the tip has
-# weight, and only a tenth of it, and the result does not have the unit of a torque.
+# Command your torque and nothing else, and the arm should float where it is. Beside it is the report's
+# formula, $M J^T (0, 0, 0.981, 0, 0, 0)^T$: only the tip has
+# weight, only a tenth of it, and the result has not the unit of a torque.
 
 # %%
 def gravity_at(q):
-    """Your gravity at the angles q."""
+    """Your gravity at the angles q, on a level floor."""
     parts = model.links(q)
-    return gravity(
-        np.array([part.mass for part in parts]), np.array([part.com_jacobian for part in parts])
-    )
+    masses, jacobians = (np.array([getattr(x, of) for x in parts]) for of in ("mass", "com_jacobian"))
+    return gravity(masses, jacobians, np.array([0.0, 0.0, -9.81]))
 
 
 def half_the_weight(q):
@@ -288,6 +269,10 @@ lk.plotting.show(
     + "."
 )
 
+# %% [markdown]
+# In a third of a second the report's arm has fallen. (The real Baxter adds its own gravity compensation to whatever torque it is sent; there you
+# must add nothing. This simulated arm, `lk.IDEAL`, does not.)
+
 # %% predict="base_joint"
 
 # %%
@@ -308,32 +293,27 @@ lk.replay.show(
 )
 
 # %% [markdown]
-# (The real Baxter adds its own gravity compensation to whatever torque it is sent, so there you
-# must add nothing. This simulated arm, `lk.IDEAL`, does not.)
+# <details><summary>After your prediction: why?</summary>The axis of s0 is vertical, so turning it raises nothing: gravity is a slope, not
+# a load. On a wall it would be different.</details>
+
+# %% [markdown]
+# ## Appendix: two extensions
 #
-# ## Coriolis: what the speed of one joint does to the others
+# No later question depends on them.
 #
-# While the arm moves, $M$ changes under it, and the joints feel each other's speed. These torques are
-# quadratic in $\dot q$ and follow from the derivatives of $M$ alone (Murray, Li and Sastry, eq. 4.23):
+# ### Coriolis: what the speed of one joint does to the others
+#
+# While the arm moves, $M$ changes under it, and the joints feel each other's speed. These torques
+# follow from the derivatives of $M$ alone (Murray, Li and Sastry, eq. 4.23):
 #
 # $$ C_{ij} = \tfrac12 \sum_k \left( \frac{\partial M_{ij}}{\partial q_k}
 # + \frac{\partial M_{ik}}{\partial q_j} - \frac{\partial M_{jk}}{\partial q_i} \right) \dot q_k . $$
 #
-# All you need is a function that returns $M$. Compute its derivatives by central differences: shift one joint
-# by $+h$ and by $-h$, and divide by $2h$.
+# Compute the derivatives by central differences: shift one joint by $+h$ and by $-h$, and divide by $2h$.
 
 # %% question="coriolis"
 def coriolis(mass_matrix, q, dq):
-    """The Coriolis matrix by Christoffel's symbols.
-
-    Args:
-        mass_matrix: A function of q that gives the mass matrix, shape (7, 7).
-        q: Joint angles, shape (7,), in [rad].
-        dq: Joint speeds, shape (7,), in [rad/s].
-
-    Returns:
-        Shape (7, 7), in [kg m^2/s].
-    """
+    """In [kg m^2/s]; mass_matrix(q) is (7, 7), q [rad] and dq [rad/s] are (7,)."""
     ### BEGIN SOLUTION
     from solutions.model.answers import coriolis as answer
 
@@ -342,12 +322,10 @@ def coriolis(mass_matrix, q, dq):
 
 
 # %% [markdown]
-# How would you know that it is right? One famous test is that $\dot M - 2C$ must be skew: then $C\dot q$
-# does exactly the work that the changing $M$ takes up, and no energy is made or lost. Now try the test on
-# $C = \dot M / 2$, a bold guess. It passes, because $\dot M - 2C$ is then zero, and zero is skew. So you need
-# a second test, of the torque itself: Lagrange's equation gives $C\dot q = \dot M \dot q - \nabla T$. A
-# matrix that fails the second test is wrong. A matrix that fails only the first gives the right torque, but
-# cannot be used in the proofs, which need $\dot M - 2C$ to be skew.
+# One famous test is that $\dot M - 2C$ must be skew: then no energy is made or lost. But
+# $C = \dot M / 2$, a bold guess, passes, because zero is skew. The second test is the torque itself: Lagrange's
+# equation gives $C\dot q = \dot M \dot q - \nabla T$. A matrix that fails it is wrong; one that fails only the first cannot be used
+# in proofs.
 
 # %%
 def coriolis_at(q, dq):
@@ -377,8 +355,7 @@ for name, matrix in ((your_C, C(q, dq)), ("half of dM/dt", 0.5 * M_rate)):
     print(f"{name:15}  {np.abs(S + S.T).max():8.1e}      {off:8.1e} N m")
 
 # %% [markdown]
-# Does it matter? The arm makes a quick move under torques computed from the model, once with $C\dot q$
-# and once without. (How such a controller works is notebook 04.)
+# Does it matter? A quick move under torques from the model (notebook 04), with $C\dot q$ and without:
 
 # %%
 def computed_torque(with_coriolis):
@@ -413,28 +390,22 @@ lk.plotting.show(
 )
 
 # %% [markdown]
-# ## The power balance: a test for everything at once
+# ### The power balance: a test for everything at once
 #
-# Energy does not come from nowhere. The arm's energy $T + V$ grows by the power of the motors,
-# $\tau \cdot \dot q$, and shrinks by the power of friction. So
+# The arm's energy $T + V$ grows by the power of the motors, $\tau \cdot \dot q$, and shrinks by the power of friction. So
 #
 # $$ \frac{d}{dt}(T + V) - \tau \cdot \dot q $$
 #
-# is zero for an arm without friction, if masses, inertias, gravity and the log are all right; and with
-# friction it *is* the power of friction. The test gives one number for each moment, and it holds under any
-# controller.
+# is zero for an arm without friction, if masses, inertias, gravity and the log are all right, under any controller; with
+# friction it *is* the power of friction.
 
 # %% question="power_balance"
 def power_balance(log, model):
-    """Growth of the energy less the power of the motors.
+    """In [W], (N,).
 
     Args:
-        log: An lk.Log of a run with torques: t (N,), q, dq, tau (what the motors gave) and command
-            (what they were asked for), each (N, 7).
-        model: The lk.Model of the arm; kinetic_energy(q, dq) and potential_energy(q) are in [J].
-
-    Returns:
-        Shape (N,), in [W].
+        log: lk.Log with torques: t (N,), q, dq, tau (what the motors gave) and command, (N, 7) each.
+        model: lk.Model: kinetic_energy(q, dq) and potential_energy(q) in [J].
     """
     ### BEGIN SOLUTION
     from solutions.model.answers import power_balance as answer
@@ -474,10 +445,7 @@ lk.plotting.show(
 # %% [markdown]
 # ## Hand in
 #
-# Run everything once more from the top (*Kernel, Restart Kernel and Run All Cells*) and save the file. Then
-# run only the last cell once more: it prints a receipt for the saved file; keep it. `!labkit submit-check 02_model.ipynb`
-# in a new cell runs a copy of that file and says what is missing. Hand in the file without renaming it, in the way your course asks. The grader runs your
-# functions on further cases; the text above each stub says what kind of cases.
+# Run all cells, save, and run the last one once more: it prints a receipt.
 
 # %% setup=true
 lk.hand_in("02_model")

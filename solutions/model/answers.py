@@ -27,9 +27,9 @@ def mass_matrix(masses: Any, inertias: Any, rotations: Any, com_jacobians: Any) 
     return M
 
 
-def gravity(masses: Any, com_jacobians: Any) -> Array:
+def gravity(masses: Any, com_jacobians: Any, g_w: Any) -> Array:
     """The slope of the potential energy: what must be held at every joint (MLS eq. 4.27)."""
-    return np.asarray(sum(9.81 * m * J[2] for m, J in zip(masses, com_jacobians, strict=True)))
+    return np.asarray(-sum(m * J[:3].T @ g_w for m, J in zip(masses, com_jacobians, strict=True)))
 
 
 def coriolis(mass_matrix: Callable[[Any], Array], q: Any, dq: Any) -> Array:

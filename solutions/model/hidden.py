@@ -46,10 +46,10 @@ def bodies(q: Any) -> Any:
     )
 
 
-def weights(q: Any) -> Any:
-    """Masses and Jacobians of the links, the arguments of `gravity`."""
+def weights(q: Any, g_w: Any = (0.0, 0.0, -9.81)) -> Any:
+    """Masses and Jacobians of the links and the acceleration of gravity, for `gravity`."""
     masses, _, _, jacobians = bodies(q)
-    return masses, jacobians
+    return masses, jacobians, np.array(g_w)
 
 
 def jacobians(random: Random) -> Iterator[Call]:
@@ -71,9 +71,16 @@ def mass_matrices(random: Random) -> Iterator[Call]:
 
 
 def gravities(random: Random) -> Iterator[Call]:
-    """Any poses."""
+    """Any poses on a level floor."""
+    yield call(*weights(anywhere(random)))
+
+
+def tilted_gravities(random: Random) -> Iterator[Call]:
+    """Any poses, with gravity in any direction and of any size."""
     for _ in range(4):
-        yield call(*weights(anywhere(random)))
+        g_w = random.standard_normal(3)
+        g_w *= random.uniform(1.6, 9.9) / np.linalg.norm(g_w)
+        yield call(*weights(anywhere(random), g_w))
 
 
 def coriolis_any(random: Random) -> Iterator[Call]:

@@ -11,7 +11,7 @@ import numpy as np
 import labkit as lk
 from labkit.shapes import Array
 
-from .answers import coriolis, gravity, mass_matrix, power_balance
+from .answers import coriolis, mass_matrix, power_balance
 
 
 def _columns(axes: Any, arms: Any) -> Array:
@@ -52,16 +52,6 @@ def points_only(masses: Any, inertias: Any, rotations: Any, com_jacobians: Any) 
 def half_of_it(masses: Any, inertias: Any, rotations: Any, com_jacobians: Any) -> Array:
     """Takes the one half of the kinetic energy into the matrix."""
     return 0.5 * mass_matrix(masses, inertias, rotations, com_jacobians)
-
-
-def falls_faster(masses: Any, com_jacobians: Any) -> Array:
-    """The torque of gravity, not the one that balances it."""
-    return -gravity(masses, com_jacobians)
-
-
-def all_at_the_hand(masses: Any, com_jacobians: Any) -> Array:
-    """The whole weight at the last link."""
-    return np.asarray(9.81 * np.sum(masses) * com_jacobians[-1][2])
 
 
 def _slopes(mass_matrix: Callable[[Any], Array], q: Any) -> Array:
@@ -124,11 +114,6 @@ def rows_swapped(masses: Any, inertias: Any, rotations: Any, com_jacobians: Any)
     return mass_matrix(masses, inertias, rotations, np.roll(com_jacobians, 3, axis=1))
 
 
-def without_g(masses: Any, com_jacobians: Any) -> Array:
-    """Kilograms instead of newtons."""
-    return gravity(masses, com_jacobians) / 9.81
-
-
 def all_signs_plus(mass_matrix: Callable[[Any], Array], q: Any, dq: Any) -> Array:
     """The third slope of Christoffel's symbols added, not taken off."""
     D = _slopes(mass_matrix, q)
@@ -148,29 +133,21 @@ class Kinetic:
     """The mass matrix with weighted terms.
 
     Attributes:
-        power: Power of the masses.
         inertia: The inertia in the world's axes, given that in the link's and R.
         mass: Whether the inertia is multiplied with the mass.
         linear: Factor of the linear part.
-        angular: Factor of the angular part.
-        whole: Whether all six rows are multiplied with the mass.
     """
 
-    power: float = 1.0
     inertia: Callable[[Array, Array], Array] = lambda I_l, R: R @ I_l @ R.T
     mass: bool = False
     linear: float = 1.0
-    angular: float = 1.0
-    whole: bool = False
 
     def __call__(self, masses: Any, inertias: Any, rotations: Any, com_jacobians: Any) -> Array:
         """The matrix."""
         M = np.zeros((7, 7))
         for m, I_l, R, J in zip(masses, inertias, rotations, com_jacobians, strict=True):
             turn = J[3:].T @ self.inertia(np.asarray(I_l), np.asarray(R)) @ J[3:]
-            M += self.linear * m**self.power * J[:3].T @ J[:3]
-            M += self.angular * turn * (m if self.mass else 1.0)
-            M += m * J[3:].T @ J[3:] if self.whole else 0.0
+            M += self.linear * m * J[:3].T @ J[:3] + turn * (m if self.mass else 1.0)
         return M
 
 
@@ -186,51 +163,42 @@ def beside_left_out(masses: Any, inertias: Any, rotations: Any, com_jacobians: A
 
 @dataclass(frozen=True)
 class Weights:
-    """Gravity by another row, or with other masses.
+    """Gravity with another torque for each link.
 
     Attributes:
-        row: The row of each Jacobian.
-        mass: The mass of each link, given its mass and all masses.
-        g: The acceleration of gravity.
-        size: Whether the sign is lost.
+        torque: The torques that hold a link, given its mass, all masses, its Jacobian and g.
         last: The link before which the sum ends.
     """
 
-    row: Callable[[Array], Array] = lambda J: J[2]
-    mass: Callable[[float, Any], float] = lambda m, masses: m
-    g: float = 9.81
-    size: bool = False
+    torque: Callable[[float, Any, Array, Array], Array]
     last: int | None = None
 
-    def __call__(self, masses: Any, com_jacobians: Any) -> Array:
+    def __call__(self, masses: Any, com_jacobians: Any, g_w: Any) -> Array:
         """The torques."""
-        parts = [
-            self.g * self.mass(m, masses) * self.row(np.asarray(J))
-            for m, J in zip(masses, com_jacobians, strict=True)
-        ][: self.last]
-        total = np.sum(np.abs(parts) if self.size else parts, axis=0)
-        return np.asarray(total)
+        links = list(zip(masses, com_jacobians, strict=True))[: self.last]
+        return np.asarray(sum(self.torque(m, masses, np.asarray(J), g_w) for m, J in links))
+
+
+def all_at_the_hand(masses: Any, com_jacobians: Any, g_w: Any) -> Array:
+    """The whole weight at the last link."""
+    return np.asarray(-np.sum(masses) * com_jacobians[-1][:3].T @ g_w)
 
 
 @dataclass(frozen=True)
 class Slopes:
-    """Christoffel's symbols with other terms, or other differences.
+    """Christoffel's symbols with other terms.
 
     Attributes:
         terms: Weights of dM_ij/dq_k, dM_ik/dq_j and dM_jk/dq_i.
-        h: The step of the differences.
         along: The index of the speed that multiplies them, k, j or i.
     """
 
     terms: tuple[float, float, float] = (1.0, 1.0, -1.0)
-    h: float = 1e-5
     along: str = "k"
 
     def __call__(self, mass_matrix: Callable[[Any], Array], q: Any, dq: Any) -> Array:
         """The matrix."""
-        h = self.h
-        slopes = [(mass_matrix(q + d) - mass_matrix(q - d)) / (2.0 * h) for d in h * np.eye(7)]
-        D = np.stack(slopes, axis=2)
+        D = _slopes(mass_matrix, q)
         a, b, c = self.terms
         gamma = 0.5 * (a * D + b * D.transpose(0, 2, 1) + c * D.transpose(2, 1, 0))
         return np.asarray(np.einsum(f"ijk,{self.along}->ij", gamma, dq))
@@ -244,14 +212,12 @@ class Balance:
         kinetic: Factor of the kinetic energy.
         potential: Factor of the potential energy.
         power: Factor of the motors' power.
-        growth: The growth of the energy, given the energy and the times.
         by: The factor of the torques, given the log.
     """
 
     kinetic: float = 1.0
     potential: float = 1.0
     power: float = 1.0
-    growth: Callable[[Array, Array], Array] = lambda energy, t: np.gradient(energy, t)
     by: Callable[[lk.Log], Array] = lambda log: log.dq
 
     def __call__(self, log: lk.Log, model: lk.Model) -> Array:
@@ -264,7 +230,7 @@ class Balance:
             ]
         )
         power = np.sum(log.tau * self.by(log), axis=1)
-        return np.asarray(self.growth(energy, log.t) - self.power * power)
+        return np.asarray(np.gradient(energy, log.t) - self.power * power)
 
 
 def sizes_of_power(log: lk.Log, model: lk.Model) -> Array:

@@ -43,14 +43,14 @@ class MassMatrix:
         return total
 
 
-def gravity_as_forces(m: Any, J: Any) -> Any:
-    """Upward forces at the centres, brought to the joints by the transposed Jacobians."""
-    return sum(J[k][:3].T @ np.array([0.0, 0.0, 9.81 * m[k]]) for k in range(7))
+def gravity_joint_by_joint(m: Any, J: Any, g_w: Any) -> Any:
+    """The slope of each height against g, joint by joint."""
+    return [sum(-m[k] * (g_w @ J[k][:3, j]) for k in range(7)) for j in range(7)]
 
 
-def gravity_by_dot(m: Any, J: Any) -> Any:
-    """One product over all links, a list."""
-    return list(9.81 * np.asarray(m) @ np.asarray(J)[:, 2])
+def gravity_by_einsum(m: Any, J: Any, g_w: Any) -> Any:
+    """One sum over links and axes."""
+    return -np.einsum("l,lij,i->j", m, np.asarray(J)[:, :3], g_w)
 
 
 def coriolis_in_loops(mass_matrix: Callable[[Any], Any], q: Any, dq: Any) -> Any:

@@ -242,7 +242,8 @@ def largest_acceleration(duration):
 predict("twice_the_time", truth=largest_acceleration(12.0) / largest_acceleration(6.0))
 
 # %% [markdown]
-# Both terms of the acceleration carry $1/T^2$, whatever the path and the schedule.
+# <details><summary>After your prediction: why?</summary>Both terms of the acceleration carry $1/T^2$, whatever the path
+# and the schedule.</details>
 #
 # ## Several segments
 #
