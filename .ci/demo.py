@@ -97,7 +97,7 @@ def say_where_to_look(seconds: float) -> None:
     ):
         if where.exists():
             print(f"  {what}: {where.relative_to(ROOT)}")
-    explain = ".venv/bin/labkit explain student-001 trapezoid --course build/demo"
+    explain = ".venv/bin/labkit explain 01_paths student-001 trapezoid --course build/demo"
     print(f"Next: `{explain}` says why a mark is what it is,")
     print("`make lab` opens the notebooks, and `make help` lists the rest.")
 

@@ -1,6 +1,6 @@
-"""The program ``labkit``, or ``python -m labkit``, with the commands of students and instructors.
+"""The program ``labkit``, or ``python -m labkit``, with the verbs of students and instructors.
 
-A student's labkit does not include the folder ``grader``, so it lacks the instructor's commands.
+A student's labkit does not include the folder ``grader``, so it lacks the instructor's verbs.
 """
 
 from __future__ import annotations
@@ -9,6 +9,7 @@ import sys
 from collections.abc import Sequence
 from importlib.util import find_spec
 from io import TextIOWrapper
+from pathlib import Path
 
 try:
     import click
@@ -16,61 +17,76 @@ except ModuleNotFoundError:
     sys.exit("labkit: click is missing; type: pip install 'labkit[notebook]'")
 
 from . import __version__
-from .course.cli import submit_check
+from .errors import LabkitError
 
-EXAMPLES = """\b
-examples:
-  labkit submit-check 01_paths.ipynb    before you hand in: run a copy of the notebook
-"""
-EXAMPLES_FOR_INSTRUCTORS = """\
-  labkit release                        make all assignments, for students and graders
-  labkit student-zip                 a zip for students, with a start page
-  labkit grade 01_paths                 grade everything under submitted/
-  labkit report-card                    measure how well checks tell right from wrong
-"""
+FOR_INSTRUCTORS = ("nbgrader", "jupytext", "sqlalchemy")
+"""Packages that a student's environment does not have."""
+
+
+@click.command("submit-check", epilog="example: labkit submit-check 01_paths.ipynb")
+@click.argument("notebook", type=click.Path(path_type=Path))
+def submit_check(notebook: Path) -> int:
+    """Run a copy of your notebook before you hand in."""
+    from .course.handin import submit_check
+
+    print(f"Running a copy of {notebook.name}, which takes as long as Run All ...", flush=True)
+    found = submit_check(notebook)
+    print(found)
+    return 1 if found.problems else 0
 
 
 def program() -> click.Group:
-    """All commands of this installation."""
-    commands: list[click.Command] = [submit_check]
-    examples = EXAMPLES
+    """All verbs of this installation."""
+    verbs: list[click.Command] = [submit_check]
     if find_spec("labkit.grader"):
-        from .grader.commands import authors, course, export, grading, pages, term
+        from .grader.cli import VERBS
 
-        by_time = (course, term, authors, grading, pages, export)
-        commands += [one for module in by_time for one in module.COMMANDS]
-        examples += EXAMPLES_FOR_INSTRUCTORS
+        verbs += VERBS
     group = click.Group(
         "labkit",
+        commands=verbs,
         help="A teaching laboratory for robot control.",
-        epilog=examples,
+        epilog="labkit VERB --help shows an example.",
         context_settings={"help_option_names": ["-h", "--help"]},
         subcommand_metavar="VERB ...",
     )
-    for command in commands:
-        group.add_command(command)
     return click.version_option(__version__, message="labkit %(version)s")(group)
 
 
 def main(words: Sequence[str] | None = None) -> int:
-    """Run a command.
+    """Do what is asked; whatever stops a verb is rendered here, as one sentence.
 
     Args:
         words: The arguments after ``labkit``; by default those of this process.
 
     Returns:
-        The exit code.
+        0; 1 if something is named that needs a look; 2 for wrong use; 130 after Ctrl-C.
     """
     for stream in (sys.stdout, sys.stderr):
         if isinstance(stream, TextIOWrapper):
             stream.reconfigure(errors="backslashreplace")  # a file's name may contain any character
+    words, labkit, code = [*(sys.argv[1:] if words is None else words)], program(), 2
     try:
-        return int(program().main(words, "labkit", standalone_mode=False))
+        return int(labkit.main(words, "labkit", standalone_mode=False))
     except click.ClickException as error:
         error.show()
         return error.exit_code
     except click.Abort:
-        return 130
+        says, code = "stopped", 130
+    except LabkitError as error:
+        says = str(error)
+    except ModuleNotFoundError as error:
+        package = (error.name or "").partition(".")[0]
+        if package not in FOR_INSTRUCTORS:
+            raise
+        says = f"{package} is missing; type: pip install 'labkit[grader]'"
+    except OSError as error:  # a folder that does not exist, a full disk
+        where = "" if error.filename is None else f"{error.filename}: "
+        says = f"{where}{error.strerror or error}"
+    name = next((word for word in words if word in labkit.commands), "")
+    said = "".join(x if x.isprintable() or x == "\n" else "\ufffd" for x in f"{name}: {says}")
+    print(f"labkit {said}", file=sys.stderr)
+    return code
 
 
 if __name__ == "__main__":

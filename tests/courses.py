@@ -26,3 +26,10 @@ def synthetic(root):
     (root / "solutions").symlink_to(SYNTHETIC)
     shutil.copy(ROOT / "nbgrader_config.py", root)
     return Course(root)
+
+
+def rejected_below(question):
+    """The points below which a wrong answer must stay: half, or just more than one large part."""
+    weights = [test.weight for test in question.tests]
+    share = max(weights) / sum(weights)
+    return (share + 1e-9 if 0.5 < share <= 0.67 else 0.5) * question.points

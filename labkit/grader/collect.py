@@ -11,25 +11,26 @@ Moodle writes ``NAME_PARTICIPANT_assignsubmission_file`` and then ``/FILE`` or `
 underscore in NAME (github.com/moodle/moodle, ``mod/assign/classes/downloader.php``).  Canvas writes
 ``NAME_[LATE_]USER_ATTACHMENT_FILE`` (github.com/instructure/canvas-lms, ``lib/content_zipper.rb``);
 NAME or FILE may hold numbers too, and what could be read in two ways is left.
+
+A student's own process makes the folder ``USER+ASSIGNMENT+TIME+RANDOM`` of the exchange, so USER is
+only a claim: the folder must belong to that user of this machine.  The exchange identifies a
+hand-in by a secret that came with it (``nbgrader.exchange``).
 """
 
 from __future__ import annotations
 
-import lzma
 import os
 import pwd
 import re
 import stat
-import struct
 import zipfile
-import zlib
 from collections.abc import Callable, Iterable, Iterator, Sequence
-from contextlib import ExitStack
 from dataclasses import dataclass, replace
 from datetime import UTC, datetime
 from functools import partial
 from pathlib import Path
 from typing import Any, NamedTuple
+from zoneinfo import ZoneInfo
 
 import msgspec
 
@@ -37,7 +38,7 @@ from ..course.authoring.layout import Course
 from ..errors import LabkitError
 from .clean import clean_line
 from .each import Failure, for_student
-from .files import locked, write
+from .files import write
 from .roster import COLUMNS, Roster, read_roster
 from .rules import read_rules
 from .submission import NOTEBOOK, TIMESTAMP, check_size, digest, read_file, read_stamp, read_time
@@ -46,23 +47,16 @@ SECRET = "submission_secret.txt"
 FOLDER = "attempts"
 PARTICIPANTS = "course_private/lms.json"
 """Moodle's participants by assignment and student; their numbers go back with marks and pages."""
+LONGEST = 1000
+"""The longest path of a file in a download."""
 _MOODLE = re.compile(
     r"(?P<name>[^_/]*)_(?P<number>0|[1-9][0-9]{0,18})_assignsubmission_"
     r"(?P<kind>[a-z]+)(?:_?/(?:[^/]+/)*|_)(?P<file>[^/]+)"
 )
 _CANVAS = re.compile(r"(?<!_LATE)(?=_(?P<late>LATE_)?(?P<user>[0-9]+)_[0-9]{3,}_(?P<file>[^/]+)$)")
 """Each place where a user's and an attachment's number may be; attachments have large numbers."""
-_OF_A_MAC = re.compile(r"(^|/)(__MACOSX/|\.DS_Store$|\._[^/]*$)")
-_REPEATED = re.compile(r" ?[(-](\d{1,9})\)?\.ipynb$")
+_REPEATED = re.compile(r" ?[(-]\d{1,9}\)?\.ipynb$")
 """What a browser or a platform adds to the name of a file that is handed in again."""
-_DAMAGED = (
-    *(zipfile.BadZipFile, zlib.error, lzma.LZMAError, struct.error),
-    *(OSError, EOFError, RuntimeError, ValueError, IndexError),
-)
-_PARTS = {"**": ".*", "*": "[^/]*"}
-LONGEST = 1000
-"""The longest path of a file in a download."""
-_NOBODY = "their names do not say who handed them in"
 
 
 class Participant(NamedTuple):
@@ -87,7 +81,7 @@ class File:
         late: Whether the platform marks it as late.
         moodle: Moodle's participant; None elsewhere.
         refused: Why it is not taken; "" if it can be.
-        secret: Reads the secret by which the exchange knows the hand-in.
+        folder: The hand-in's folder in the exchange; None elsewhere.
     """
 
     label: str
@@ -100,7 +94,7 @@ class File:
     late: bool = False
     moodle: Participant | None = None
     refused: str = ""
-    secret: Callable[[], bytes | None] = lambda: None
+    folder: Path | None = None
 
 
 class Taken(NamedTuple):
@@ -121,7 +115,7 @@ def collect(
     source: Path,
     *,
     named: str | None = None,
-    at: datetime | None = None,
+    at: str | None = None,
     unverified: bool = False,
 ) -> Iterator[Taken]:
     """Collect notebooks from a download; collecting it again changes nothing.
@@ -141,38 +135,35 @@ def collect(
     Raises:
         LabkitError: There is no roster, or the source is not of these kinds or holds nothing.
     """
-    roster = read_roster(course)
+    roster, rules = read_roster(course), read_rules(course)
+    when = read_time(at, ZoneInfo(rules.zone)) if at else None
+    if at and (when is None or when > datetime.now(UTC)):
+        raise LabkitError(f"{at!r} is no time, or in the future; write 2026-11-02 23:59")
     if not roster.students:
         raise LabkitError("there is no list of students yet; first type: labkit roster LIST.csv")
-    if not (source.is_file() or source.is_dir()):  # a device or pipe may never end
+    if source.is_file():
+        files = [*in_zip(source, named)]
+    elif source.is_dir():  # a device or a pipe may never end
+        found = in_folder(source, named) if named else in_exchange(source, assignment, unverified)
+        files = [*found]
+    else:
         raise LabkitError(f"{source} is neither a file nor a folder; give the download as it is")
-    busy = "another command is collecting; wait for it to end"
-    with locked(course.root / "course_private" / ".collecting", busy), ExitStack() as stack:
-        if source.is_file():
-            files = [*in_zip(stack.enter_context(open_zip(source)), source, named)]
-        elif named:
-            files = [*in_folder(source, named)]
-        else:
-            files = [*in_exchange(source, assignment, unverified)]
-        if named:  # a clone or a folder of mails holds other assignments too
-            others = {f"{x}.ipynb" for x in course.names() if x != assignment}
-            files = [x for x in files if _REPEATED.sub(".ipynb", Path(x.label).name) not in others]
-        if not files:
-            raise LabkitError(
-                f"nothing in {source} was handed in for {assignment}; files that come from no "
-                "platform need --named, such as --named '{login}/*.ipynb'"
-            )
-        mine, left = _by_owner(course, assignment, roster, files)
-        for student, theirs in sorted(mine.items()):
-            kept = _keep(course, assignment, student, theirs, at)
-            done: list[Taken] | Failure = for_student(student, list, kept)
-            if isinstance(done, Failure):
-                done = [Taken(student, "", f"not taken; {done.why}", fine=False)]
-            yield from done
-        for why, labels in left.items():
-            yield Taken("", ", ".join(labels), f"left there; {why}", fine=False)
-        if read_rules(course).due(assignment) and not any(x.exact or at for x in files):
-            yield Taken("", "", "no hand-in times in it, so nobody is late; --at TIME gives one")
+    if named:  # a clone or a folder of mails holds other assignments too
+        others = {f"{x}.ipynb" for x in course.names() if x != assignment}
+        files = [x for x in files if _REPEATED.sub(".ipynb", Path(x.label).name) not in others]
+    if not files:
+        raise LabkitError(f"nothing in {source} is for {assignment}; other files need --named")
+    mine, left = _by_owner(course, assignment, roster, files)
+    for student, theirs in sorted(mine.items()):
+        kept = _keep(course, assignment, student, theirs, when)
+        done: list[Taken] | Failure = for_student(student, list, kept)
+        if isinstance(done, Failure):
+            done = [Taken(student, "", f"not taken; {done.why}", fine=False)]
+        yield from done
+    for why, labels in left.items():
+        yield Taken("", ", ".join(labels), f"left there; {why}", fine=False)
+    if rules.due(assignment) and not any(x.exact or when for x in files):
+        yield Taken("", "", "no hand-in times in it, so nobody is late; --at TIME gives one")
 
 
 def _by_owner(
@@ -188,18 +179,17 @@ def _by_owner(
         if owner and not file.refused:
             mine.setdefault(owner.id, []).append(file)
         else:
-            why = f"no one student of the roster has this {file.column}" if file.column else _NOBODY
+            why = f"no one student of the roster has this {file.column or 'name'}"
             left.setdefault(file.refused or why, []).append(file.label)
     for student, theirs in [*mine.items()]:
         called = {x.moodle.number: x.moodle for x in theirs if x.moodle}
-        before = recorded.get(student)
-        numbers = {*called, before.number} if called and before else {*called}
-        of_others = {one.number for name, one in recorded.items() if name != student}
-        if len(numbers) > 1 or numbers & of_others:
-            why = f"Moodle's numbers {', '.join(sorted(numbers))} and {student} do not match"
+        whose = {one.number: name for name, one in recorded.items()}
+        numbers = sorted({*called, *(n for n, name in whose.items() if called and name == student)})
+        if len(numbers) > 1 or any(whose.get(n, student) != student for n in numbers):
+            why = f"Moodle's numbers {', '.join(numbers)} and {student} do not match"
             left.setdefault(why, []).extend(x.label for x in mine.pop(student))
         elif called:
-            recorded[student] = next(iter(called.values()))
+            (recorded[student],) = called.values()
     if recorded:
         data = msgspec.json.encode(known | {assignment: recorded}, order="sorted")
         write(course.root / PARTICIPANTS, msgspec.json.format(data, indent=1) + b"\n")
@@ -226,47 +216,46 @@ def _keep(
     course: Course, assignment: str, student: str, theirs: Sequence[File], at: datetime | None
 ) -> Iterator[Taken]:
     """Keep one student's files, and let the newest count."""
-    kept, folder = (
-        course.root / base / student / assignment for base in (FOLDER, course.submitted.name)
-    )
+    kept, folder = course.root / FOLDER / student / assignment, course.submitted / student
+    folder /= assignment
     if any(x.is_symlink() for x in (folder.parent, folder, kept.parent, kept)):
         raise LabkitError(f"{folder} or {kept} is a link; put a folder there")
-    read: list[tuple[tuple[datetime, bool, int], File, bytes]] = []
+    read: list[tuple[datetime, bool, File]] = []
     for file in theirs:
         if not file.exact and (at or file.late):
             file = replace(file, when=at or file.when, exact=True)
-        number = _REPEATED.search(file.name)
-        plain = _REPEATED.sub(".ipynb", file.name) == f"{assignment}.ipynb"
-        try:
-            if not file.name.lower().endswith(".ipynb"):
-                raise LabkitError("it is no notebook")
-            read.append(((file.when, plain, int(number[1]) if number else 0), file, file.read()))
-        except LabkitError as error:
-            yield Taken(student, file.name, f"not taken; {error}", fine=False)
+        if file.name.lower().endswith(".ipynb"):
+            plain = _REPEATED.sub(".ipynb", file.name) == f"{assignment}.ipynb"
+            read.append((file.when, plain, file))
+        else:
+            yield Taken(student, file.name, "not taken; it is no notebook", fine=False)
     if not read:
         return
-    *earlier, (_, file, data) = sorted(read, key=lambda one: one[0])
-    known = {path.stem[-16:] for path in kept.glob("*.ipynb")}
-    for _, one, old in earlier:
-        _store(kept, one.when, old)
+    *earlier, (_, _, file) = sorted(read, key=lambda one: one[:2])
+    for _, _, one in earlier:
+        _store(kept, one.when, one.read())
         yield Taken(student, one.name, f"kept, but {file.name} counts")
-    path = folder / f"{assignment}.ipynb"
+    data, path = file.read(), folder / f"{assignment}.ipynb"
     there = read_file(path) if path.exists() else b""
     before = (read_time(read_stamp(folder)) or _written(path)) if there else file.when
     _store(kept, file.when, data)
-    if there == data:
-        says = "there already"
-        if file.when >= before and (secret := file.secret()):
-            write(folder / SECRET, secret)  # of the hand-in that a student asks about
-    elif there and digest(there)[:16] not in known and digest(data)[:16] in known:
-        says = f"kept, but a person put another {path.name} into submitted/, which counts"
-    elif file.when < before:
-        says = f"kept, but the one of {before:%Y-%m-%d %H:%M} UTC counts"
-    else:
+    if there and there != data and file.when <= before:
+        yield Taken(student, file.name, f"kept, but the one of {before:%Y-%m-%d %H:%M} UTC counts")
+        return
+    newer = there != data or file.when >= before  # of equal ones students ask about the newest
+    if newer and (there != data or file.folder):
+        beside = {TIMESTAMP: str(file.when).encode() if file.exact else None}
+        beside[SECRET] = read_secret(file.folder)
         if there:
             _store(kept, before, there)
-        _install(folder, path, file, data)
-        says = "taken" + ", in place of an earlier one, which is kept" * bool(there)
+        write(path, data)
+        os.utime(path, (file.when.timestamp(), file.when.timestamp()))
+        for name, content in beside.items():
+            if content is None:
+                (folder / name).unlink(missing_ok=True)
+            else:
+                write(folder / name, content)
+    says = "there already" if there == data else "taken"
     yield Taken(student, file.name, says + ", late" * file.late)
 
 
@@ -279,18 +268,6 @@ def _store(kept: Path, when: datetime, data: bytes) -> None:
     name = digest(data)[:16]
     if not any(kept.glob(f"*-{name}.ipynb")):
         write(kept / f"{when.astimezone(UTC):%Y-%m-%dT%H%M%SZ}-{name}.ipynb", data)
-
-
-def _install(folder: Path, path: Path, file: File, data: bytes) -> None:
-    """Put a notebook where nbgrader reads it, with its time and its secret."""
-    beside = {TIMESTAMP: str(file.when).encode() if file.exact else None, SECRET: file.secret()}
-    write(path, data)
-    os.utime(path, (file.when.timestamp(), file.when.timestamp()))
-    for name, content in beside.items():
-        if content is None:
-            (folder / name).unlink(missing_ok=True)
-        else:
-            write(folder / name, content)
 
 
 def reading(entry: str) -> dict[str, Any]:
@@ -314,81 +291,61 @@ def reader(pattern: str) -> Callable[[str], dict[str, Any]]:
     Raises:
         LabkitError: The pattern does not name exactly one column.
     """
-    parts = re.split(r"(\{\w+\}|\*\*|\*)", pattern)
-    columns = [part[1:-1] for part in parts if part.startswith("{")]
-    if len(columns) != 1 or columns[0] not in {*COLUMNS, "name"}:
+    before, column, *after = re.split(r"\{(\w+)\}", pattern) + [""]
+    if len(after) != 2 or column not in {*COLUMNS, "name"}:
         raise LabkitError(f"{pattern!r} needs one column of the roster, such as {{login}}, once")
-    form = ("(?P<who>[^/]+?)" if x[:1] == "{" else _PARTS.get(x, re.escape(x)) for x in parts)
-    whole = re.compile("".join(form), re.IGNORECASE)
+    parts = [re.escape(x).replace(r"\*", "[^/]*") for x in (before, after[0])]
+    whole = re.compile("([^/]+?)".join(parts), re.IGNORECASE)
 
     def read(path: str) -> dict[str, Any]:
         match, name = whole.fullmatch(path), clean_line(Path(path).name)
-        about = {"column": columns[0], "name": name}
-        return about | {"value": clean_line(match["who"], 200)} if match else {}
+        return {"column": column, "value": clean_line(match[1], 200), "name": name} if match else {}
 
     return read
 
 
-def open_zip(path: Path) -> zipfile.ZipFile:
-    """Open a zip.
+def in_zip(source: Path, named: str | None) -> Iterator[File]:
+    """The files of a zip, with the times at which the download shows them.
 
     Raises:
         LabkitError: It is damaged, or no zip.
     """
-    try:
-        return zipfile.ZipFile(path)
-    except _DAMAGED as error:
-        raise LabkitError(f"{path} is no zip, or damaged: {clean_line(str(error))}") from None
-
-
-def in_zip(archive: zipfile.ZipFile, source: Path, named: str | None) -> Iterator[File]:
-    """The files of a zip, with the times at which the download shows them."""
     read = reader(named) if named else reading
+    try:
+        archive = zipfile.ZipFile(source, metadata_encoding="utf-8")
+    except (zipfile.BadZipFile, ValueError, OSError) as error:
+        raise LabkitError(f"{source} is no zip, or damaged: {clean_line(str(error))}") from None
     for entry in archive.infolist():
-        name = _name(entry)
-        if not entry.is_dir() and not _OF_A_MAC.search(name[-LONGEST:]):
+        name = entry.orig_filename
+        if not entry.is_dir():
             refused = _refused(entry, name)
             about = {"refused": refused} if refused else read(name)
             label, when = clean_line(name[-LONGEST:])[-120:], _when(entry, _written(source))
             yield File(label, when, partial(_read, archive, entry), **about)
 
 
-def _name(entry: zipfile.ZipInfo) -> str:
-    """The entry's name; most programs write UTF-8 without saying so."""
-    if entry.flag_bits & 0x800:
-        return entry.orig_filename
-    try:
-        return entry.orig_filename.encode("cp437", "replace").decode()
-    except UnicodeDecodeError:
-        return entry.orig_filename
-
-
 def _refused(entry: zipfile.ZipInfo, name: str) -> str:
     """Why an entry is refused, whoever owns it; "" if it is not."""
     if stat.S_ISLNK(entry.external_attr >> 16) or entry.flag_bits & 1:
         return "they are links, or locked with a password"
-    if "\\" in name or "\0" in name or {"", ".", ".."} & set(name.split("/")):
-        return "their names lead out of the download"
-    return "their names are too long" if len(name) > LONGEST else ""
+    if len(name) > LONGEST or set(name) & set("\\\0") or {"", ".", ".."} & set(name.split("/")):
+        return "their names are too long, or lead out of the download"
+    return ""
 
 
 def _when(entry: zipfile.ZipInfo, made: datetime) -> datetime:
-    """An entry's time, which zips store as local time without a zone."""
+    """An entry's time, which zips store as local time without a zone; 1980 is none."""
     try:
-        when = datetime(*entry.date_time)
+        return datetime(*entry.date_time).astimezone(UTC) if entry.date_time[0] > 1980 else made
     except ValueError:
         return made
-    return made if when == datetime(1980, 1, 1) else when.astimezone(UTC)
 
 
 def _read(archive: zipfile.ZipFile, entry: zipfile.ZipInfo) -> bytes:
     """Unpack an entry in memory up to the size limit, whatever size it states."""
     check_size(entry.file_size, NOTEBOOK)
-    try:
-        with archive.open(entry) as file:
-            data = file.read(NOTEBOOK * 2**20 + 1)
-    except _DAMAGED as error:
-        raise LabkitError(f"damaged: {clean_line(str(error))}") from None
+    with archive.open(entry) as file:
+        data = file.read(NOTEBOOK * 2**20 + 1)
     check_size(len(data), NOTEBOOK)
     return data
 
@@ -398,7 +355,7 @@ def in_folder(folder: Path, named: str) -> Iterator[File]:
     read = reader(named)
     for top, folders, names in os.walk(folder):
         folders[:] = sorted(x for x in folders if not x.startswith("."))
-        for name in sorted(x for x in names if not x.startswith(".")):
+        for name in sorted(names):
             path = Path(top, name)
             label = str(path.relative_to(folder))
             about = read(label)
@@ -416,51 +373,46 @@ def in_exchange(folder: Path, assignment: str, unverified: bool) -> Iterator[Fil
         unverified: Whether to take folders of users whom this machine does not know.
     """
 
-    def of(path: Path, user: str, stated: str) -> Iterator[File]:
-        label, when = clean_line(path.name), read_time(stated)
-        refused = _not_theirs(user, path, unverified)
-        notebooks = [] if refused else sorted(path.glob("*.ipynb"))
+    def of(path: Path, user: str, stated: str) -> list[File]:
+        when, label = read_time(stated), clean_line(path.name)
+        _check_owner(user, path, unverified)
+        column, notebooks = "email" if "@" in user else "login", sorted(path.glob("*.ipynb"))
         if when is None or not notebooks:
-            why = refused or "they state no time, or hold no notebook"
-            yield File(label, datetime.now(UTC), bytes, refused=why)
-            return
-        for notebook in notebooks:
-            column = "email" if "@" in user else "login"
-            about: dict[str, Any] = {"column": column, "value": user, "exact": True}
-            about |= {"name": clean_line(notebook.name), "secret": partial(read_secret, path)}
-            yield File(label, when, partial(read_file, notebook), **about)
+            raise LabkitError("they state no time, or hold no notebook")
+        first = File(label, when, bytes, column, user, exact=True, folder=path)
+        named = [(clean_line(one.name), partial(read_file, one)) for one in notebooks]
+        return [replace(first, name=name, read=read) for name, read in named]
 
     for path in sorted(folder.iterdir()):
         user, name, stated, *_ = (*path.name.rsplit("+", 3), "", "")
         if name == assignment:
-            found: list[File] | Failure = for_student(user, list, of(path, user, stated))
+            found = for_student(user, of, path, user, stated)
             if isinstance(found, Failure):
-                label, now = clean_line(path.name), datetime.now(UTC)
-                found = [File(label, now, bytes, refused=found.why)]
+                now = datetime.now(UTC)
+                found = [File(clean_line(path.name), now, bytes, refused=found.why)]
             yield from found
 
 
-def _not_theirs(user: str, path: Path, unverified: bool) -> str:
-    """Why a folder does not belong to the user in its name; "" if it does."""
-    if path.is_symlink() or not path.is_dir() or not os.access(path, os.R_OK | os.X_OK):
-        return "they are links, or cannot be read"
+def _check_owner(user: str, path: Path, unverified: bool) -> None:
+    """Raise a LabkitError unless a folder belongs to the user in its name."""
+    if path.is_symlink() or not path.is_dir():
+        raise LabkitError("they are links")
     try:
-        known = pwd.getpwnam(user).pw_uid
+        if path.lstat().st_uid != pwd.getpwnam(user).pw_uid:
+            raise LabkitError("another user than the one in the name owns them")
     except (KeyError, ValueError):
-        return "" if unverified else "this machine does not know these users; see --unverified"
-    if path.lstat().st_uid == known:
-        return ""
-    return "another user than the one in the name owns them; possibly an attempt to cheat"
+        if not unverified:
+            raise LabkitError("this machine does not know these users; see --unverified") from None
 
 
-def read_secret(folder: Path) -> bytes | None:
+def read_secret(folder: Path | None) -> bytes | None:
     """The secret beside a submission; None if it did not come through the exchange.
 
     Raises:
         LabkitError: The file is a link, or too large.
     """
-    path = folder / SECRET
-    return read_file(path, 1) if os.path.lexists(path) else None
+    path = folder and folder / SECRET
+    return read_file(path, 1) if path and os.path.lexists(path) else None
 
 
 def for_exchange(course: Course, assignment: str, pages: Iterable[Path]) -> list[bool | Failure]:
@@ -479,8 +431,7 @@ def for_exchange(course: Course, assignment: str, pages: Iterable[Path]) -> list
         secret = read_secret(submitted)
         if secret is not None:
             (page.parent / SECRET).write_bytes(secret)
-            stamp = submitted / TIMESTAMP
-            (page.parent / TIMESTAMP).write_bytes(read_file(stamp, 1) if stamp.exists() else b"")
+            (page.parent / TIMESTAMP).write_text(read_stamp(submitted))
         return secret is not None
 
     of = {page: page.parents[1].name for page in pages}

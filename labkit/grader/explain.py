@@ -8,7 +8,6 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import replace
-from itertools import chain
 
 from ..course.authoring.bundle import Bundle
 from ..course.authoring.layout import Course
@@ -33,7 +32,7 @@ from .submission import Submission, none_of
 _PRIVATE = "this page shows hidden cases, so it is for instructors and not for students"
 
 
-def explain(course: Course, student: str, question: str, assignment: str | None = None) -> str:
+def explain(course: Course, assignment: str, student: str, question: str) -> str:
     """Explain to the instructor why an answer has its mark.
 
     The answer is tried again with all hidden cases shown, and a page is written with any numbers
@@ -41,20 +40,23 @@ def explain(course: Course, student: str, question: str, assignment: str | None 
 
     Args:
         course: The course.
+        assignment: The assignment.
         student: The student who gave the answer.
         question: The name of the question.
-        assignment: The assignment, needed only if several have a question of this name.
 
     Raises:
         UnknownName: No question of this name was released.
         LabkitError: There is no mark to explain.
         NoIsolation: No sandbox can be made on this machine.
     """
-    bundle = _bundle(course, question, assignment)
-    name = bundle.data["assignment"]
-    mark = next(iter(marks_of(course, name, student)), None)
-    if question in _by_hand(bundle):
+    name, bundle = assignment, Bundle.of(course, assignment)
+    asked = [q["name"] for q in bundle.data["questions"]]
+    by_hand = [cell["grade_id"] for cell in bundle.data["cells"] if "points" in cell]
+    if question in by_hand:
         raise LabkitError(f"a person marks {question}, in formgrader: Manual Grading, {name}")
+    if question not in asked:
+        raise UnknownName("question", question, [*asked, *by_hand])
+    mark = next(iter(marks_of(course, name, student)), None)
     if mark is None or mark.result is None:
         why = (mark and mark.missing) or none_of(course, name, student)
         raise LabkitError(f"there is no mark to explain: {why}")
@@ -157,22 +159,3 @@ def _grade_again(course: Course, student: str, bundle: Bundle) -> Result:
         return grade(data, student, bundle, sandbox, Limits().scaled(slowness()), note)
 
     return in_sandbox(again, course, imports(bundle.data["cells"]))
-
-
-def _bundle(course: Course, question: str, assignment: str | None) -> Bundle:
-    """The bundle that has the question."""
-    names = [assignment] if assignment else [x.stem for x in sorted(course.bundle.glob("*.json"))]
-    bundles = [Bundle.of(course, name) for name in names]
-    asked = [[*(q["name"] for q in b.data["questions"]), *_by_hand(b)] for b in bundles]
-    here = [b for b, questions in zip(bundles, asked, strict=True) if question in questions]
-    if not here:
-        raise UnknownName("question", question, dict.fromkeys(chain(*asked)))
-    if len(here) > 1:
-        several = ", ".join(b.data["assignment"] for b in here)
-        raise LabkitError(f"{several} each have a question {question}; name one with --assignment")
-    return here[0]
-
-
-def _by_hand(bundle: Bundle) -> list[str]:
-    """The questions that a person marks."""
-    return [cell["grade_id"] for cell in bundle.data["cells"] if "points" in cell]

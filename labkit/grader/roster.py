@@ -30,11 +30,8 @@ from .gradebook import open_gradebook
 from .rules import FILE as RULES
 from .rules import read_rules
 from .seeds import key_of
-from .submission import check_size
 
 FILE = "course_private/roster.csv"
-LARGEST = 20
-"""The largest list that is read, in [MiB]."""
 HEADS = {
     "login": "login, username, user name, sis login id, anmeldename, benutzername",
     "id_number": "id number, sis user id, student number, student id, matrikelnummer, id-nummer, "
@@ -225,14 +222,13 @@ def _read_table(path: Path) -> tuple[list[str], list[tuple[int, list[str]]]]:
     """
     if not path.is_file():
         raise LabkitError(f"there is no file {path}")
-    check_size(path.stat().st_size, LARGEST)
     data = path.read_bytes()
     try:
         text = data.decode("utf-16" if data[:2] in (b"\xff\xfe", b"\xfe\xff") else "utf-8-sig")
     except UnicodeDecodeError:
         raise LabkitError(f"{path} is not in UTF-8; save it as CSV in UTF-8") from None
     first = text.partition("\n")[0][:10_000]
-    mark = max(",;\t", key=lambda x: len(_columns(next(csv.reader([first], delimiter=x), []))))
+    mark = max(",;\t", key=lambda x: len(_columns(first.strip().split(x))))
     lines = csv.reader(io.StringIO(text, newline=""), delimiter=mark, strict=True)
     try:
         rows = [(lines.line_num, [clean_line(cell, 200) for cell in row]) for row in lines]
@@ -249,32 +245,26 @@ def _merged(before: Roster, rows: Sequence[tuple[int, Student]]) -> tuple[Roster
     students = {one.id: one for one in before.students}
     names, listed = Counter(same_name(row.name) for _, row in rows), set[str]()
     for line, row in rows:
-        found = [x for x in students.values() if any(x.agrees(row))]
-        alike = [x for x in students.values() if same_name(x.name) == same_name(row.name) != ()]
-        alike = [x for x in alike if not found and not x.agrees(row)]
-        if len(found) + len(alike) > 1 or (alike and names[same_name(row.name)] > 1):
-            people = " or ".join(map(str, (*found, *alike)))
-            raise LabkitError(f"line {line} of the list could be {people}; correct the list")
-        one = next(iter((*found, *alike)), None) or Student(_folder(row, names, students))
-        said = {k: v for k, v in asdict(row).items() if v}
-        if one.first_name and one.last_name and not said.get("first_name"):
-            said.pop("last_name", None)
-        new = replace(one, **said)
-        if one.id in listed and new != one:
-            raise LabkitError(f"line {line} of the list is {one} again, and differs; correct it")
-        students[one.id] = new
+        name = same_name(row.name)
+        found = [x for x in students.values() if any(x.agrees(row))] or [
+            x for x in students.values() if same_name(x.name) == name != () and not x.agrees(row)
+        ]
+        people = [*map(str, found)]
+        if len(found) > 1 or (found and not any(found[0].agrees(row)) and names[name] > 1):
+            raise LabkitError(f"line {line} of the list could be {few(people)}; correct the list")
+        if found and found[0].id in listed:
+            raise LabkitError(f"line {line} of the list is {people[0]} again; correct the list")
+        one = found[0] if found else Student(_folder(row, students))
+        students[one.id] = replace(one, **{k: v for k, v in asdict(row).items() if v})
         listed.add(one.id)
     return Roster(tuple(students.values())), listed
 
 
-def _folder(row: Student, names: Counter[tuple[str, ...]], students: Mapping[str, Student]) -> str:
+def _folder(row: Student, students: Mapping[str, Student]) -> str:
     """The name of a new student's folder: the login or, without one, the name."""
     there = {id.casefold() for id in students}
     plain = safe_name(row.login or row.name)
-    others = filter(None, (row.email.partition("@")[0], row.id_number, row.lms_user_id))
-    alone = row.login or names[same_name(row.name)] == 1
-    found: Iterator[str] = chain([plain] * bool(alone), (safe_name(f"{plain}-{x}") for x in others))
-    found = chain(found, (f"{plain}-{k}" for k in count(2)))
+    found = chain([plain], (f"{plain}-{k}" for k in count(2)))
     return next(x for x in found if x.casefold() not in there)
 
 

@@ -1,8 +1,4 @@
-"""The folder for students, without answers, as a zip or beside a private repository.
-
-This repository publishes the answers; hidden cases prevent hard-coding, but not copying.  A course
-that must prevent copying gives its students a repository without answers.
-"""
+"""What students are given: a zip of notebooks, labkit without the grader, and a start page."""
 
 from __future__ import annotations
 
@@ -13,7 +9,7 @@ import subprocess
 import sys
 import tempfile
 import zipfile
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 from pathlib import Path
 
 import jupytext
@@ -23,7 +19,6 @@ from ..course.authoring.layout import Course
 from ..errors import LabkitError
 from .pages import render
 from .release import FORBIDDEN
-from .roster import without_arms
 
 NOT_FOR_STUDENTS = ("labkit/grader", "labkit/course/authoring")
 """The parts of labkit that students do not get."""
@@ -40,57 +35,49 @@ PLACES = {
 """The places of those files of ``STUDENT`` that do not belong at the top."""
 
 
-def student_zip(course: Course, names: Sequence[str], to: Path, book: str | None = None) -> Path:
+def student_zip(
+    course: Course, names: Sequence[str], to: Path, book: str | None = None
+) -> tuple[str, ...]:
     """Write the zip that students get.
 
     Args:
-        course: The course; its assignments must be released.
-        names: The assignments to include; none means all that are released.
+        course: The course.
+        names: The assignments to include; none means all that are released, in a term those of it.
         to: The file to write.
         book: The address of the book; None includes the book itself, if it is built.
 
     Returns:
-        ``to``.
+        The assignments in it.
 
     Raises:
         LabkitError: An assignment is not released, or holds an answer, or the course is not the
             whole repository, or the wheel could not be built.
     """
-    with tempfile.TemporaryDirectory() as folder:
-        top = Path(folder) / "baxter-lab"
-        student_folder(course, names, top, book)
-        to.parent.mkdir(parents=True, exist_ok=True)
-        with zipfile.ZipFile(to, "w", zipfile.ZIP_DEFLATED) as archive:
-            for path in sorted(top.rglob("*")):
-                if path.is_file():
-                    archive.write(path, path.relative_to(folder))
-    return to
-
-
-def remarks(course: Course, names: Sequence[str]) -> Iterator[str]:
-    """A sentence for each thing that a zip with these notebooks lacks."""
-    there = [name for name in names if (course.release / name).is_dir()]
-    old = [name for name in there if not (course.bundle / f"{name}.json").exists()]
-    if old and course.term.exists():
-        yield f"not released in this term: {', '.join(old)}; first run: labkit release NAME"
-    if says := without_arms(course, there):
-        yield says
-
-
-def student_folder(
-    course: Course, names: Sequence[str], top: Path, book: str | None = None
-) -> None:
-    """Write what students get to the new folder ``top``; see `student_zip`."""
     check_repository(course.root)
-    names = names or sorted(path.name for path in course.release.iterdir() if path.is_dir())
+    there = sorted(path.name for path in course.release.iterdir() if path.is_dir())
+    if course.term.exists():
+        there = [name for name in there if (course.bundle / f"{name}.json").exists()]
     for name in names:
         course.notebook_source(name)
-        if not (course.release / name).is_dir():
-            raise LabkitError(f"{name} is not released; first run: labkit release {name}")
+        if name not in there:
+            raise LabkitError(f"{name} is not released in this term; type: labkit release {name}")
+    with tempfile.TemporaryDirectory() as folder:
+        top = Path(folder) / "baxter-lab"
+        _fill(course, names or there, top, book)
+        to.parent.mkdir(parents=True, exist_ok=True)
+        with zipfile.ZipFile(to, "w", zipfile.ZIP_DEFLATED) as archive:
+            for path in sorted(filter(Path.is_file, top.rglob("*"))):
+                archive.write(path, path.relative_to(folder))
+    return tuple(names or there)
+
+
+def _fill(course: Course, names: Sequence[str], top: Path, book: str | None) -> None:
+    """Write what students get to the new folder ``top``."""
+    for name in names:
         shutil.copytree(course.release / name, top / "assignments" / name)
         text = (top / "assignments" / name / f"{name}.ipynb").read_text(encoding="utf-8")
         if leak := next((word for word in FORBIDDEN if word in text), None):
-            raise LabkitError(f"{name} holds {leak!r}; first run: labkit release {name}")
+            raise LabkitError(f"{name} holds {leak!r}; type: labkit release {name}")
     for path in filter(Path.is_file, (course.root / STUDENT).iterdir()):
         place = top / PLACES.get(path.name, path.name)
         place.parent.mkdir(exist_ok=True)
@@ -101,9 +88,8 @@ def student_folder(
         shutil.copytree(course.root / BOOK, top / "book")
         book = "book/index.html"
     wheel(course.root, top)
-    (top / "START.html").write_text(
-        render("start.html.j2", names=names, book=book), encoding="utf-8"
-    )
+    start = render("start.html.j2", names=names, book=book)
+    (top / "START.html").write_text(start, encoding="utf-8")
     _start_here(top / "assignments", names, course.root / PICTURE, book)
 
 

@@ -1,4 +1,4 @@
-"""A term: its secret, the record of what was released, its archive, what is deleted."""
+"""A term: its secret, the record of what was released, its archive, what is deleted afterwards."""
 
 from __future__ import annotations
 
@@ -6,8 +6,8 @@ import glob
 import json
 import secrets
 import shutil
-from collections.abc import Iterable
-from datetime import UTC, datetime, timedelta
+from collections.abc import Iterator, Sequence
+from datetime import UTC, datetime
 from pathlib import Path
 from typing import Any
 
@@ -39,15 +39,56 @@ _OF_A_STUDENT = (
 )
 """One student's files and folders within a term."""
 _OF_THE_CLASS = (
-    *(
-        RULES,
-        "gradebook.db",
-        "course_private/*.*",
-        "assignments/*/arms.json",
-        "feedback/*/*/*.html",
-    ),
+    *(RULES, "gradebook.db", "course_private/*.*", "assignments/*/arms.json"),
+    "feedback/*/*/*.html",
 )
 """Files that may name a student beside others."""
+
+
+def new_term(course: Course, names: Sequence[str] = (), even_with_work: bool = False) -> list[str]:
+    """Begin a term: archive the last one, release with a new secret, keep a record.
+
+    The record has the secret of 128 random bits, the date, the archive of the last term, and each
+    bundle's hash, by which every result identifies its release.
+
+    Args:
+        course: The course.
+        names: The assignments to release; all by default.
+        even_with_work: Whether the last term may have students, submissions or marks.
+
+    Returns:
+        Sentences on what was done, with the full marks of each assignment.
+
+    Raises:
+        UnknownName: There is no such assignment.
+        LabkitError: The term under way has students, submissions or marks.
+    """
+    for name in names:
+        course.notebook_source(name)
+    if (there := running(course)) and not even_with_work:
+        raise LabkitError(f"the term under way has {there}; add --yes to archive all this")
+    old = archive(course)
+    record: dict[str, Any] = {
+        "secret": secrets.token_hex(16),
+        "begun": datetime.now(UTC).date().isoformat(),
+        "bundles": {},
+        "archived": old.name if old else "",
+    }
+    _keep(course, record)  # first, so that a failed release is repeated with this secret
+    made = [release(course, name, seed_of(course)) for name in names or course.names()]
+    record["bundles"] = {
+        path.stem: json.loads(path.read_text(encoding="utf-8"))["hash"]
+        for path in sorted(course.bundle.glob("*.json"))
+    }
+    _keep(course, record)
+    says = [f"archived: {old}"] if old else []
+    says += [f"released: {one.name}, maximum {one.points:g}" for one in made]
+    says += [f"{RULES} is as it was; change its dates"] * (course.root / RULES).exists()
+    return [*says, f"the term's secret is in {_TERM}; keep a copy of course_private/"]
+
+
+def _keep(course: Course, record: dict[str, Any]) -> None:
+    write(course.term, json.dumps(record, indent=1) + "\n")
 
 
 def running(course: Course) -> str:
@@ -57,45 +98,6 @@ def running(course: Course) -> str:
     graded = len(list(course.results.glob("*/*.json")))
     counts = ((enrolled, "student"), (submitted, "submission"), (graded, "graded mark"))
     return ", ".join(how_many(n, what) for n, what in counts if n)
-
-
-def new_term(course: Course, names: tuple[str, ...] = ()) -> dict[str, Any]:
-    """Begin a term: archive the last one, release with a new secret, keep a record.
-
-    Args:
-        course: The course.
-        names: The assignments to release; all by default.
-
-    Returns:
-        The record: the secret of 128 random bits, the date, the archive of the last term, and each
-        bundle's hash, by which every result identifies its release.
-
-    Raises:
-        UnknownName: There is no such assignment.
-    """
-    names = names or course.names()
-    for name in names:
-        course.notebook_source(name)
-    old = archive(course)
-    record = {
-        "secret": secrets.token_hex(16),
-        "begun": datetime.now(UTC).date().isoformat(),
-        "bundles": {},
-    }
-    record["archived"] = old.name if old else ""
-    _keep(course, record)  # first, so that a failed release is repeated with this secret
-    for name in names:
-        release(course, name, seed_of(course))
-    record["bundles"] = {
-        path.stem: json.loads(path.read_text(encoding="utf-8"))["hash"]
-        for path in sorted(course.bundle.glob("*.json"))
-    }
-    _keep(course, record)
-    return record
-
-
-def _keep(course: Course, record: dict[str, Any]) -> None:
-    write(course.term, json.dumps(record, indent=1) + "\n")
 
 
 def archive(course: Course) -> Path | None:
@@ -109,10 +111,8 @@ def archive(course: Course) -> Path | None:
     there = [name for name in PERSONAL_FILES if (course.root / name).exists()]
     if not there:
         return None
-    folder = course.root / "course_private" / datetime.now(UTC).strftime("archive-%Y-%m-%d-%H%M%S")
-    while folder.exists():  # two in one second
-        folder = folder.with_name(f"{folder.name}-2")
-    folder.mkdir(parents=True)
+    now = datetime.now(UTC)
+    folder = course.root / "course_private" / now.strftime("archive-%Y-%m-%d-%H%M%S-%f")
     for name in (*there, *[_TERM] * course.term.exists()):
         (folder / name).parent.mkdir(parents=True, exist_ok=True)
         shutil.move(course.root / name, folder / name)
@@ -121,38 +121,42 @@ def archive(course: Course) -> Path | None:
     return folder
 
 
-def ended(course: Course, years: float) -> list[Path]:
-    """The archives that were made at least ``years`` years ago, by the date in their names."""
-    last = (datetime.now(UTC) - timedelta(days=365.25 * years)).date().isoformat()
-    return [x for x in _archives(course) if x.name.removeprefix("archive-")[:10] <= last]
+def forget(course: Course, names: Sequence[str], delete: bool = False) -> Iterator[str]:
+    """List, or delete, the files named after students in all terms; list what else names them.
+
+    Args:
+        course: The course.
+        names: The names of the students' folders.
+        delete: Whether to delete, and not only to list.
+
+    Yields:
+        A sentence for each file or folder.
+
+    Raises:
+        LabkitError: No name is given, or no student can have it.
+    """
+    if not names or any(not is_name(x) or "/" in x or x[:1] in {"", "."} for x in names):
+        raise LabkitError("name the folders of the students, as in submitted/")
+    for student in names:
+        theirs, others = of_student(course, student)
+        for path in theirs:
+            if delete:
+                shutil.rmtree(path) if path.is_dir() and not path.is_symlink() else path.unlink()
+            yield f"{'deleted' if delete else 'would go'}: {path.relative_to(course.root)}"
+        for path in others:
+            yield f"names {student}, delete that by hand: {path.relative_to(course.root)}"
+    yield "delete by hand what lies elsewhere: downloads, tables, zips, backups, the platform"
+    if not delete:
+        yield "nothing is deleted yet; add --yes"
 
 
 def of_student(course: Course, student: str) -> tuple[list[Path], list[Path]]:
-    """What all terms hold about a student: files named after them, and files that name them.
-
-    Raises:
-        LabkitError: No student can have this name.
-    """
-    if not is_name(student) or "/" in student or student[:1] in {"", "."}:
-        raise LabkitError(f"{student!a} is not the name of a student's folder")
+    """What all terms hold about a student: files named after them, and files that name them."""
     theirs, others = list[Path](), list[Path]()
-    for term in (course.root, *_archives(course)):
+    for term in (course.root, *sorted((course.root / "course_private").glob("archive-*"))):
         for pattern in _OF_A_STUDENT:
             theirs += sorted(term.glob(pattern.format(glob.escape(student))))
         shared = [x for pattern in _OF_THE_CLASS for x in sorted(term.glob(pattern))]
         shared = [x for x in shared if not set(theirs) & {x, *x.parents}]
         others += [x for x in shared if student.encode() in x.read_bytes()]
     return theirs, others
-
-
-def delete(paths: Iterable[Path]) -> None:
-    """Delete files and folders; links are deleted, not followed."""
-    for path in paths:
-        if path.is_dir() and not path.is_symlink():
-            shutil.rmtree(path)
-        else:
-            path.unlink(missing_ok=True)
-
-
-def _archives(course: Course) -> list[Path]:
-    return sorted((course.root / "course_private").glob("archive-*"))

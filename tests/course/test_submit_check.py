@@ -11,8 +11,8 @@ from nbformat import v4
 from questions import DOUBLE
 
 from labkit import LabkitError
+from labkit.__main__ import submit_check as command
 from labkit.course import Choose, Prediction, question_data
-from labkit.course.cli import submit_check as command
 from labkit.course.handin import submit_check
 from labkit.course.notebook import FILE, PLACEHOLDER
 from labkit.course.verdict import Outcome

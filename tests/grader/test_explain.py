@@ -32,7 +32,7 @@ def test_the_hidden_case_that_decided_is_laid_open(course, solved, capsys):
     hand_in(course, NAME, "ada", put(solved, "bang_bang", SLIGHTLY_WRONG))
     assert main(["grade", NAME, "--course", str(course.root)]) == 0
     capsys.readouterr()
-    assert main(["explain", "ada", "bang_bang", "--course", str(course.root)]) == 0
+    assert main(["explain", NAME, "ada", "bang_bang", "--course", str(course.root)]) == 0
     out = capsys.readouterr().out
     shown, _, secret = out.partition("do not show it")
     assert "may be shown" in shown and "expected" not in shown
@@ -51,7 +51,7 @@ def test_where_a_visible_case_decided_it_is_said(course, solved, capsys):
     hand_in(course, NAME, "ada", put(solved, "bang_bang", wrong))
     assert main(["grade", NAME, "--course", str(course.root)]) == 0
     capsys.readouterr()
-    assert main(["explain", "ada", "bang_bang", "--course", str(course.root)]) == 0
+    assert main(["explain", NAME, "ada", "bang_bang", "--course", str(course.root)]) == 0
     out = capsys.readouterr().out
     assert (
         "The tests that the student has seen decided this mark" in out
@@ -76,7 +76,7 @@ def test_a_mark_that_was_kept_after_a_test_changed_is_told_as_kept(course, solve
     path.write_text(json.dumps(data | {"hash": "0" * 64}))
     assert main(["grade", *words]) == 0
     assert "kept; --lower lets the mark fall" in capsys.readouterr().out
-    assert main(["explain", "ada", "bang_bang", *words[1:]]) == 0
+    assert main(["explain", NAME, "ada", "bang_bang", *words[1:]]) == 0
     said = " ".join(capsys.readouterr().out.split())
     earns = "has changed: now it earns 0 of 3"
     assert f"Since this mark was made, the release or labkit {earns}" in said
@@ -92,7 +92,7 @@ def test_an_answer_that_python_cannot_read_is_shown_with_the_error_at_its_line(
     hand_in(course, NAME, "ada", put(solved, "bang_bang", broken))
     assert main(["grade", NAME, "--course", str(course.root)]) == 0
     capsys.readouterr()
-    assert main(["explain", "ada", "bang_bang", "--course", str(course.root)]) == 0
+    assert main(["explain", NAME, "ada", "bang_bang", "--course", str(course.root)]) == 0
     said = capsys.readouterr().out
     assert "    return (t / duration  <-- line 2: '(' was never closed\n    print(t)" in said
     written = course.root / "autograded/ada" / NAME / f"{NAME}.ipynb"
@@ -103,9 +103,9 @@ def test_an_answer_that_python_cannot_read_is_shown_with_the_error_at_its_line(
 def test_what_cannot_be_explained_is_a_sentence(course):
     """An unknown question and a student who handed in nothing are named."""
     with pytest.raises(UnknownName, match="band_bang"):
-        explain(course, "ada", "band_bang")
+        explain(course, NAME, "ada", "band_bang")
     with pytest.raises(LabkitError, match="nothing was handed in for 01_curves; type"):
-        explain(course, "ada", "bang_bang")
+        explain(course, NAME, "ada", "bang_bang")
 
 
 @pytest.mark.slow
@@ -117,7 +117,7 @@ def test_nothing_is_promised_where_nothing_was_attempted(course, capsys):
     words = ["--course", str(course.root)]
     assert main(["grade", "02_essays", *words]) == 0
     capsys.readouterr()
-    assert main(["explain", "ada", "my_payload", *words]) == 0
+    assert main(["explain", "02_essays", "ada", "my_payload", *words]) == 0
     said = capsys.readouterr().out
     assert "with any numbers and runs, for you only" in said, "there are none"
     assert "my_payload: not attempted yet" in said and "The answer:\nmy_payload = None" in said

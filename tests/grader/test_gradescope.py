@@ -17,9 +17,8 @@ from autograder import as_root, graded, packed, unpacked
 from handmade import FULL, QUICK, ROOT, add, hand_in, raw
 from made import NAME, WHY, result_of
 
-from labkit.__main__ import main
+from labkit.__main__ import FOR_INSTRUCTORS, main
 from labkit.course.authoring.bundle import Bundle
-from labkit.course.cli import FOR_INSTRUCTORS
 from labkit.course.own_arm import HANDLES, Arms
 from labkit.grader import gradescope
 from labkit.grader.grade import grade

@@ -16,7 +16,7 @@ from labkit.__main__ import main
 from labkit.course.authoring.layout import Course
 from labkit.grader.student_zip import NOT_FOR_STUDENTS, student_zip
 
-pytestmark = pytest.mark.xdist_group("student bundle")
+pytestmark = pytest.mark.xdist_group("student zip")
 
 ALONE = """
 import sys
@@ -48,7 +48,8 @@ def unpacked(released, tmp_path_factory):
     stale = course.root / "build" / "lib" / "labkit" / "gone.py"
     stale.parent.mkdir(parents=True)
     stale.write_text("what an earlier build left")
-    with zipfile.ZipFile(student_zip(course, (), folder / "lab.zip", "book.org")) as archive:
+    assert student_zip(course, (), folder / "lab.zip", "book.org") == ("01_curves",)
+    with zipfile.ZipFile(folder / "lab.zip") as archive:
         archive.extractall(folder)
     (wheel,) = (folder / "baxter-lab").glob("*.whl")
     with zipfile.ZipFile(wheel) as archive:

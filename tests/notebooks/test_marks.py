@@ -5,11 +5,11 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from courses import rejected_below
 
 import labkit as lk
 from labkit.course import Call, Choice, Outcome, fingerprint
 from labkit.course.authoring.layout import Course
-from labkit.course.authoring.report_card import rejected_below
 from labkit.course.marking import mark, recognise
 
 COURSE = Course.here(Path(__file__))
@@ -106,7 +106,7 @@ def test_right_answers_written_otherwise_are_accepted(problem):
 def test_seeds_agree(problem):
     """Every draw of the hidden cases gives the same marks to the answer, mistakes and variants.
 
-    Twenty draws of calls; two where the arm has to run, whose twenty the report card makes.
+    Twenty draws of calls; two where the arm has to run, which takes long.
     """
     draws = 2 if runs_the_arm(problem) else 20
     functions = (problem.answer, *(w.function for w in problem.wrong), *problem.variants)

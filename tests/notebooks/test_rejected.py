@@ -10,12 +10,12 @@ import control
 import cv2
 import numpy as np
 import pytest
+from courses import rejected_below
 from scipy import stats
 
 import labkit as lk
 from labkit.course import Outcome
 from labkit.course.authoring.layout import Course
-from labkit.course.authoring.report_card import rejected_below
 from labkit.course.marking import mark
 from labkit.course.messages import message
 from solutions.comparison.hidden import (

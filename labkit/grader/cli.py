@@ -1,0 +1,542 @@
+"""What an instructor types, in the order of a term: a function for each verb.
+
+A function returns the exit code: 0, or 1 if a person must look at what is named.  What it needs is
+imported when it runs, so that help is quick.
+"""
+
+from __future__ import annotations
+
+import os
+import sys
+from collections.abc import Callable, Iterable
+from dataclasses import replace
+from functools import partial
+from pathlib import Path
+
+import click
+
+from ..course.authoring.layout import DEFENCE, Course
+from ..errors import LabkitError
+from .clean import few, how_many
+from .each import Failure, Failures
+
+PATH = click.Path(path_type=Path)
+VERBS: list[click.Command] = []
+LAYOUTS = ("questions", "nbgrader", "canvas", "moodle", "moodle-worksheet", "gradescope")
+NAMED = ("canvas", "moodle")
+"""Layouts with a column whose name a platform must know."""
+_DEFENCE = f"{DEFENCE} is marked by: labkit defence STUDENT --mark A,B,C"
+
+
+def verb(example: str) -> Callable[[Callable[..., int]], click.Command]:
+    """Make a function the verb of its name, whose help ends with an example."""
+
+    def make(function: Callable[..., int]) -> click.Command:
+        name = function.__name__.replace("_", "-")
+        epilog = f"example: labkit {name} {example}".rstrip()
+        VERBS.append(click.command(name, epilog=epilog)(function))
+        return VERBS[-1]
+
+    return make
+
+
+def _assignment(context: click.Context, _: click.Parameter, name: str | None) -> str:
+    """The name of an assignment that the course has a notebook of."""
+    course: Course = context.params["course"]
+    if name is None:
+        there = {path.name for path in course.submitted.glob("*/*")}
+        handed_in = [x for x in course.names() if x in there]
+        which = ", ".join(handed_in or course.names())
+        raise LabkitError(f"which assignment? {'handed in' if handed_in else 'all'}: {which}")
+    if name == DEFENCE:
+        raise LabkitError(_DEFENCE)
+    course.notebook_source(name)
+    return name
+
+
+def _points(_: click.Context, __: click.Parameter, text: str | None) -> list[int] | None:
+    words = text.split(",") if text else []
+    if not all(word.strip().isdecimal() and len(word) < 9 for word in words):
+        raise click.BadParameter(f"{text} is not a mark; write whole numbers, such as 2,3,1")
+    return [int(word) for word in words] if text else None
+
+
+_course = click.option(
+    "--course",
+    type=PATH,
+    metavar="DIR",
+    is_eager=True,
+    callback=lambda context, option, place: Course.here(place),
+    help="Folder of the course; by default the one you are in.",
+)
+_of_assignment = click.argument("assignment", required=False, callback=_assignment)
+_names = click.argument("names", nargs=-1, metavar="[NAME]...")
+_students = click.option(
+    "--student", multiple=True, metavar="S", help="Only this student; can be given again."
+)
+_to = click.option("--to", type=PATH, metavar="FILE", help="Write to FILE, not to the screen.")
+
+
+def _tell(sentences: Iterable[object], doubtful: bool = False) -> None:
+    """Print sentences as they come."""
+    for sentence in sentences:
+        print(sentence, file=sys.stderr if doubtful else sys.stdout, flush=True)
+
+
+def _write(text: str, to: Path | None) -> None:
+    """Write a text to a file or, without one, to the screen."""
+    if to is None:
+        sys.stdout.write(text)
+    else:
+        to.write_text(text, encoding="utf-8")
+        print(f"written: {to}")
+
+
+# Before the term
+
+
+@verb("")
+def doctor() -> int:
+    """Check whether this machine can grade safely.
+
+    The sandbox is tried from inside. If it cannot be made, what your machine needs is printed.
+    """
+    from .doctor import examine
+
+    bad = False
+    for finding in examine():
+        print(finding, flush=True)
+        bad |= finding.needed and not finding.fine
+    return int(bad)
+
+
+@verb("new 01_paths")
+@click.argument("action", type=click.Choice(["new", "forget"]), metavar="new|forget")
+@_names
+@click.option("--yes", is_flag=True, help="new: even with students; forget: delete, not only list.")
+@_course
+def term(course: Course, action: str, names: tuple[str, ...], yes: bool) -> int:
+    """Begin a term, or delete a student's records.
+
+    \b
+    new     archives the last term in course_private/ and releases each NAME,
+            or all assignments, with a new secret; refuses, without --yes, if
+            the last term has students, submissions or marks
+    forget  lists the folders and files named after each student NAME, in all
+            terms; with --yes it deletes them. It lists what else has the name.
+
+    The law may say how long marks must be kept.
+    """  # noqa: D301
+    from .term import forget, new_term
+
+    _tell(new_term(course, names, yes) if action == "new" else forget(course, names, yes))
+    return 0
+
+
+@verb("01_paths")
+@_names
+@click.option("--plain", type=PATH, metavar="DIR", help="Also write a course for nbgrader alone.")
+@_course
+def release(course: Course, names: tuple[str, ...], plain: Path | None) -> int:
+    """Make the students' notebooks.
+
+    Each NAME is an assignment, such as 01_paths. Without a NAME all assignments are made. If one is
+    refused, the others are still made. A course in DIR is graded by nbgrader's own commands,
+    without a sandbox: its notebooks hold the hidden cases, as nbgrader's hidden tests.
+    """
+    from .plain import write_plain
+    from .release import release
+    from .seeds import public_warning, seed_of
+
+    names, made = names or course.names(), list[str]()
+    for name in names:
+        course.notebook_source(name)
+    with Failures() as failures:
+        for name in names:
+            try:
+                print(release(course, name, seed_of(course)), flush=True)
+                made.append(name)
+            except LabkitError as error:
+                failures.add(f"{name} is not released", [error])
+        if made:
+            _tell(filter(None, [public_warning(course)]))
+            print(f"for students: {course.release}\nfor graders, with hidden cases: {course.build}")
+        if plain and made:
+            write_plain(course, made, plain)
+            print(f"for nbgrader alone, with hidden cases: {plain}")
+    return failures.code
+
+
+@verb("participants.csv --teams Groups")
+@click.argument("file", type=PATH, metavar="LIST.csv")
+@click.option("--teams", metavar="COLUMN", default="", help="The column of LIST.csv with teams.")
+@_course
+def roster(course: Course, file: Path, teams: str) -> int:
+    """Add the students of a list to the roster.
+
+    The list comes from Moodle or Canvas, or is any table with a row for each student. Who has
+    another role is left out, and named. A student keeps the folder of the first list. The students
+    of a team share an arm and hand in one report.
+    """
+    from .roster import import_list
+
+    _tell(import_list(course, file, teams))
+    return 0
+
+
+@verb("--to week1.zip")
+@_names
+@click.option("--to", type=PATH, metavar="FILE", help="By default dist/baxter-lab.zip.")
+@click.option("--book", metavar="ADDRESS", help="Link to the book, instead of packing it.")
+@_course
+def student_zip(course: Course, names: tuple[str, ...], to: Path | None, book: str | None) -> int:
+    """Write the zip that students unpack and start.
+
+    Without a NAME the zip holds every assignment that was released in this term.
+    """
+    from .roster import without_arms
+    from .student_zip import student_zip
+
+    to = to or course.root / "dist" / "baxter-lab.zip"
+    names = student_zip(course, names, to, book)
+    print(f"{to}: {', '.join(names)}; {to.stat().st_size / 1e6:.1f} MB")
+    _tell(filter(None, [without_arms(course, names)]), doubtful=True)
+    return 0
+
+
+# After each deadline
+
+
+@verb("01_paths moodle.zip")
+@_of_assignment
+@click.argument("sources", nargs=-1, required=True, type=PATH, metavar="ZIP|DIR...")
+@click.option("--unverified", is_flag=True, help="Exchange: take what unknown users handed in.")
+@click.option("--named", metavar="PATTERN", help="Such as 'paths-{github}/*.ipynb'.")
+@click.option("--at", metavar="TIME", help="Time of the hand-ins, where the download has none.")
+@_course
+def collect(
+    course: Course,
+    assignment: str,
+    sources: tuple[Path, ...],
+    unverified: bool,
+    named: str | None,
+    at: str | None,
+) -> int:
+    """Collect what students handed in, from any platform.
+
+    A source is a zip from Moodle or Canvas, or the inbound folder of nbgrader's exchange. Clones
+    of GitHub Classroom, and any other folder or zip of files, need --named, which says where in a
+    file's path a column of the roster is. Every notebook that was taken is kept, in attempts/. A
+    file that fits no one student of the roster is named and left, with exit code 1.
+    """
+    from .collect import collect
+
+    found = [x for source in sources for x in collect(course, assignment, source, named=named,
+             at=at, unverified=unverified)]  # fmt: skip
+    _tell(one for one in found if one.fine)
+    _tell((one for one in found if not one.fine), doubtful=True)
+    return int(any(not one.fine for one in found))
+
+
+@verb("01_paths --student ada")
+@_of_assignment
+@_students
+@click.option(
+    "--jobs",
+    type=click.IntRange(min=1),
+    metavar="N",
+    default=lambda: len(os.sched_getaffinity(0)),
+    help="Number of workers; one for each core by default.",
+)
+@click.option("--again", is_flag=True, help="Also grade what is already graded.")
+@click.option("--diff", is_flag=True, help="Change no mark; list the marks that would change.")
+@click.option("--lower", is_flag=True, help="Also record marks that become lower.")
+@click.option("--dask", metavar="ADDRESS", help="A Dask scheduler whose workers see this folder.")
+@click.option(
+    "--unsafe-no-isolation",
+    "isolated",
+    flag_value=False,
+    default=True,
+    help="Without a sandbox: students' code can then read and delete your files.",
+)
+@_course
+def grade(
+    course: Course,
+    assignment: str,
+    student: tuple[str, ...],
+    jobs: int,
+    again: bool,
+    diff: bool,
+    lower: bool,
+    dask: str | None,
+    isolated: bool,
+) -> int:
+    """Grade every submission that is not graded yet.
+
+    Each submission is graded in a sandbox of its own. After you have changed a test and released
+    the assignment, all submissions are graded again. No mark is lowered unless you add --lower; if
+    a question has other points since, its share of them is compared.
+    A notebook of another assignment that was handed in is named at the end, with exit code 1.
+    """
+    from .batch import GradeOptions, changes, common_failures, grade_class
+    from .gradebook import record
+    from .results import Results
+    from .roster import idle_extensions
+    from .submission import misnamed, none_of, students
+
+    say = partial(print, file=sys.stderr, flush=True)
+    options = GradeOptions(
+        jobs=jobs, isolated=isolated, dask=dask, again=again, lower=lower, tell=say
+    )
+    with Failures() as failures:
+        failures.add("ATTENTION", idle_extensions(course))  # an error in the rules stops here
+        found = students(course, assignment)
+        who = [*student] or found
+        if not student:
+            failures.add("not graded", misnamed(course, assignment))
+        if unknown := [x for x in who if x not in found] or [""] * (not who and not failures.code):
+            raise LabkitError(none_of(course, assignment, unknown[0]))
+        graded = grade_class(course, assignment, who, options, change=not diff)
+        done = failures.sift(graded, "not graded")
+        if diff:
+            _tell(changes(list(done)))
+            return failures.code
+        results = []
+        for number, one in enumerate(done, start=1):
+            results.append(one.result)
+            says = f" ({one.says})" if one.says else ""
+            print(f"[{number}/{len(who)}] {one.result}{says}", flush=True)
+            if one.result.unanswered and not one.result.rejected:
+                says = f"{one.result.unanswered}; ask for the right one"
+                failures.add("ATTENTION", [Failure(one.result.student, says)])
+        written = record(course, assignment, results)
+        _tell(failures.sift(written, "not in the gradebook"))
+        everybody = results if student else list(Results(course, assignment))
+        _tell(f"ATTENTION: {says}" for says in common_failures(everybody))
+        if results:
+            _tell(_by_hand(course, assignment))
+            print(f"isolation: {results[-1].isolation}\nresults: {course.results / assignment}")
+    return failures.code
+
+
+def _by_hand(course: Course, assignment: str) -> Iterable[str]:
+    """The points by hand, which the printed marks do not include, and who still waits for them."""
+    from ..course.authoring.bundle import Bundle
+    from .gradebook import open_gradebook
+
+    if by_hand := Bundle.of(course, assignment).by_hand:
+        with open_gradebook(course) as book:
+            found = book.assignment_submissions(assignment)
+            waiting = sum(x.needs_manual_grade for x in found)
+        left = f"{how_many(waiting, 'student')} still to be marked"
+        yield f"not included: {how_many(by_hand, 'point')} by hand; {left}"
+
+
+@verb("01_paths --names")
+@_of_assignment
+@click.option("--names", is_flag=True, help="Show real names; for your eyes only.")
+@_to
+@_course
+def class_report(course: Course, assignment: str, names: bool, to: Path | None) -> int:
+    """Report what the class got right and wrong.
+
+    The report counts mistakes by their names. Students have pseudonyms unless you add --names.
+    """
+    from ..course.authoring.bundle import Bundle
+    from .class_report import FEWEST, report
+    from .marks import marks_of
+    from .seeds import pseudonyms
+
+    with Failures() as failures:
+        marks = [mark for mark in marks_of(course, assignment) if not mark.author]
+        if not any(mark.result for mark in marks):
+            raise _nobody(assignment, next((m.missing for m in marks if m.missing), ""))
+        out = [mark for mark in marks if mark.missing and not mark.lines]
+        failures.add("left out", [Failure(mark.student, mark.missing) for mark in out])
+        problems = {p.name: p for p in course.problems(assignment)}
+        called, fewest = (str, 1) if names else (pseudonyms(course), FEWEST)
+        asked = Bundle.of(course, assignment).questions
+        truths = {p.name: p.truth for p in course.predictions(assignment)}
+        _write(report(assignment, marks, problems, called, fewest, asked, truths), to)
+    return failures.code
+
+
+@verb("01_paths --student ada")
+@_of_assignment
+@_students
+@click.option("--moodle", type=PATH, metavar="ZIP", help="Also write a zip of pages for Moodle.")
+@click.option("--unmarked", is_flag=True, help="Write pages before all is marked by hand.")
+@_course
+def feedback(
+    course: Course,
+    assignment: str,
+    student: tuple[str, ...],
+    moodle: Path | None,
+    unmarked: bool,
+) -> int:
+    """Write a feedback page for each student.
+
+    Some answers are marked by hand, in formgrader. No page is written until they are all marked;
+    the page of one --student waits for the answers of that student alone. With --unmarked no page
+    waits.
+    """
+    from .collect import for_exchange
+    from .feedback import moodle_zip, write_feedback
+    from .marks import marks_of
+
+    with Failures() as failures:
+        everybody = [mark for mark in marks_of(course, assignment) if not mark.absent]
+        marks = [mark for mark in everybody if not student or mark.student in student]
+        if not marks or {*student} - {mark.student for mark in marks}:
+            raise _nobody(assignment)
+        waiting = {mark.author or mark.student: ", ".join(mark.open) for mark in marks if mark.open}
+        if waiting and not unmarked:
+            who = few([f"{student} ({names})" for student, names in waiting.items()])
+            raise LabkitError(f"not marked yet in formgrader: {who}; add --unmarked not to wait")
+        pages = write_feedback(course, assignment, marks)
+        made = list(failures.sift(pages, "no page"))
+        print(f"pages in {course.root / 'feedback'}: {len(made)}")
+        sent = for_exchange(course, assignment, made)
+        if any(list(failures.sift(sent, "not for the exchange"))):
+            print(f"back to the exchange: nbgrader release_feedback {assignment}")
+        if moodle:
+            count = moodle_zip(course, assignment, made, moodle)
+            print(f"for Moodle, {count} of {len(made)}: {moodle}")
+    return failures.code
+
+
+@verb("01_paths --to marks.csv")
+@click.argument("assignment", required=False)
+@click.option(
+    "--layout",
+    type=click.Choice(LAYOUTS),
+    default="questions",
+    help="moodle: for Moodle's gradebook; moodle-worksheet: for the assignment's page in Moodle; "
+    "gradescope: the zip with which Gradescope grades ASSIGNMENT itself.",
+)
+@click.option("--column", metavar="NAME", help="canvas, moodle: its name there: 'Paths (4711)'.")
+@click.option("--absent-zero", is_flag=True, help="Write 0 where nothing was handed in.")
+@_to
+@_course
+def export(
+    course: Course,
+    assignment: str | None,
+    layout: str,
+    column: str | None,
+    absent_zero: bool,
+    to: Path | None,
+) -> int:
+    """Write marks.
+
+    The marks are those of an assignment or, without ASSIGNMENT, of the term: every assignment that
+    was graded, and the total with the weights of course.toml.
+    """
+    from .export import LAYOUTS, as_csv, of_term, remarks, unmatched
+    from .marks import marks_of
+    from .roster import idle_extensions
+    from .rules import read_rules
+
+    if column and layout not in NAMED:
+        raise LabkitError(f"--column is for --layout {' or '.join(NAMED)}, not for {layout}")
+    if assignment is None and layout != "questions":
+        raise LabkitError(
+            f"--layout is for one assignment: labkit export ASSIGNMENT --layout {layout}"
+        )
+    if assignment not in (None, DEFENCE):
+        course.notebook_source(assignment)
+    if layout == "gradescope":
+        return _autograder(course, str(assignment), to)
+    doubts, rules = list(idle_extensions(course)), read_rules(course)
+    names = [x.stem for x in sorted(course.bundle.glob("*.json"))]
+    all_marks = {}
+    for name in [assignment] if assignment else [*names, DEFENCE]:
+        marks = marks_of(course, name)
+        if not all(mark.absent for mark in marks):
+            _tell((f"{name}: {says}" for says in remarks(layout, marks, name)), doubtful=True)
+            zero = [replace(m, raw=0.0) if m.absent and absent_zero else m for m in marks]
+            all_marks[name] = zero
+    if not all_marks:
+        raise _nobody(assignment or "any assignment")
+    everybody = [mark for marks in all_marks.values() for mark in marks]
+    if assignment is None:
+        table = of_term(all_marks, {name: rules.weight(name) for name in all_marks})
+    else:
+        table = LAYOUTS[layout](column or assignment, all_marks[assignment])
+        lost, count = unmatched(layout, all_marks[assignment])
+        doubts += [f"{layout} can find none of the {count} students"] * (0 < count == len(lost))
+        if layout.startswith("moodle"):
+            full = max(mark.points for mark in everybody)
+            _tell([f"in Moodle the maximum of {assignment} must be {full:g}"], doubtful=True)
+    _write(as_csv(table), to)
+    _tell(doubts, doubtful=True)
+    return int(bool(doubts) or any(mark.missing for mark in everybody))
+
+
+def _autograder(course: Course, assignment: str, to: Path | None) -> int:
+    """Write the zip for Gradescope; name the students whose own arm it cannot find."""
+    from .gradescope import autograder
+
+    if to is None:
+        raise LabkitError("name the zip to write: --to FILE")
+    with Failures() as failures:
+        unknown = autograder(course, assignment, to)
+        why = "the roster has no e-mail address, by which Gradescope tells whose arm it is"
+        failures.add("not known to Gradescope", [Failure(x, why) for x in unknown])
+        print(f"written: {to}; it holds the hidden cases, so give it to Gradescope alone")
+    return failures.code
+
+
+def _nobody(assignment: str, why: str = "") -> LabkitError:
+    """The error if nothing is graded yet; ``why`` says why no result can be read."""
+    how = _DEFENCE if assignment == DEFENCE else f"type: labkit grade {assignment}"
+    return LabkitError(f"nobody asked for is graded in {assignment}; {why or how}")
+
+
+# When a student asks, and at the end
+
+
+@verb("01_paths ada bang_bang")
+@_of_assignment
+@click.argument("student")
+@click.argument("question")
+@_course
+def explain(course: Course, assignment: str, student: str, question: str) -> int:
+    """Explain the mark of an answer, with its numbers.
+
+    The answer runs once more in the sandbox. You see what the student may be shown, and then,
+    for you alone, the hidden case that decided the mark. Numbers and runs are written to a page.
+    """
+    from .explain import explain
+
+    print(explain(course, assignment, student, question))
+    return 0
+
+
+@verb("ada --mark 2,3,1")
+@click.argument("student")
+@click.option("--mark", metavar="A,B,C", callback=_points, help="Record 0 to 3 points a question.")
+@_course
+def defence(course: Course, student: str, mark: list[int] | None) -> int:
+    """Print the page of a student's oral examination.
+
+    It asks about three functions of theirs that were accepted, each with a mistake put into it, or
+    as many as there are; for the rest you choose work of theirs to ask about.
+    The second side has the answers. Which functions and mistakes follows from a key of the term.
+    """
+    from .defence import ASKED, draw, give_mark, write_page
+    from .seeds import public_warning
+
+    if mark is not None:
+        give_mark(course, student, mark)
+        print(f"{student}: {how_many(sum(mark), 'point')} for the defence")
+        return 0
+    asked = draw(course, student)
+    path = write_page(course, student, asked)
+    print(f"{', '.join(one.of.question.name for one in asked) or 'no function'}: {path}")
+    if len(asked) < ASKED:
+        print(
+            f"only {how_many(len(asked), 'accepted answer')} can be asked about; choose more work "
+            f"of theirs, and give {ASKED} numbers: labkit defence {student} --mark A,B,C"
+        )
+    _tell(filter(None, [public_warning(course)]))
+    return 0

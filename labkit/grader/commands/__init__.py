@@ -1,1 +1,0 @@
-"""The commands that an instructor types, grouped by when in the term they are used."""
