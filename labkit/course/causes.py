@@ -16,8 +16,9 @@ from typing import Any
 
 import numpy as np
 
+from ..errors import listed
 from ..shapes import Array
-from .judges import accepts, factor, numbers
+from .judges import TipTorque, accepts, factor, numbers
 from .marking import Function, PublicResult, ask
 from .question import Call, Case, Question, Raised
 from .verdict import Kind, Misconception, Outcome, Verdict
@@ -60,8 +61,97 @@ def diagnosed(
         return verdict
     if any(test.difference and test.difference.kind is Kind.TYPE for test in verdict.tests):
         return verdict  # the numbers of another command type reveal nothing
-    says = cause(question, tried.answers, function)
-    return replace(verdict, mistake=Misconception("", says)) if says else verdict
+    answers = tried.answers
+    found = by_terms(question, answers) or observed(question, answers, function)
+    return replace(verdict, mistake=found)
+
+
+_PLAIN = {
+    (0.0, 1.0): "is missing",
+    (-1.0, 1.0): "has the other sign",
+    (1.0, 0.0): "is added",
+    (-1.0, 0.0): "is subtracted",
+}
+"""What is said of a found factor and the right one."""
+MOST_WRONG = 4
+"""The most terms that `by_terms` tells to be wrong; more say nothing to a student."""
+
+
+def by_terms(question: Question, answers: Mapping[Any, Any]) -> Misconception | None:
+    """Which terms of a law have another factor than the right one, in all public calls together.
+
+    The answer's numbers are fitted by the law's terms, and by at most two that are taken for one.
+    """
+    calls = [call for call in question.calls if isinstance(call, Call) and call in answers]
+    if not question.terms or len(calls) < len(question.terms[0].values):
+        return None
+    try:
+        given = np.concatenate([_effect(call, answers[call]) for call in calls])
+        columns = [
+            np.concatenate([_effect(call, x) for call, x in zip(calls, term.values, strict=True)])
+            for term in question.terms
+        ]
+    except (TypeError, ValueError):
+        return None
+    law = [k for k, term in enumerate(question.terms) if term.factor]
+    others = [k for k, term in enumerate(question.terms) if not term.factor]
+    for count in range(3):
+        fits = [
+            _factors_of(question, columns, given, [*law, *x]) for x in combinations(others, count)
+        ]
+        told = [fit for fit in fits if 0 < len(fit) <= MOST_WRONG]
+        if told:
+            wrong = min(told, key=_plainness)
+            return Misconception("", _says(wrong), _cure(wrong))
+    return None
+
+
+def _effect(call: Call, answer: Any) -> Array:
+    """The numbers that count of an answer: of a torque that is judged at the tip, its effect."""
+    found = numbers(answer)
+    if isinstance(call.expected, TipTorque):
+        return np.asarray(call.expected.accelerates @ found)
+    if found.shape != numbers(call.expected).shape or not np.isfinite(found).all():
+        raise ValueError("the answer has another form")
+    return found
+
+
+def _factors_of(
+    question: Question, columns: Sequence[Array], given: Array, which: Sequence[int]
+) -> dict[str, tuple[float, float]]:
+    """The found and the right factor of each wrong term; empty if these terms do not fit."""
+    A = np.stack([columns[k] for k in which], axis=1)
+    size = np.linalg.norm(A, axis=0)
+    if len(given) < 2 * len(which) or not size.all():
+        return {}
+    x, _, rank, _ = np.linalg.lstsq(A / size, given)
+    if rank < len(which) or not _near((A / size) @ x, given):
+        return {}
+    pairs = zip([question.terms[k] for k in which], x / size, strict=True)
+    return {t.name: (float(f), t.factor) for t, f in pairs if abs(f - t.factor) > 1e-4}
+
+
+def _plainness(wrong: Mapping[str, tuple[float, float]]) -> tuple[int, int]:
+    """How many terms are wrong, and how many of their factors are not whole."""
+    return len(wrong), sum(abs(found - round(found)) > 1e-4 for found, _ in wrong.values())
+
+
+def _says(wrong: Mapping[str, tuple[float, float]]) -> str:
+    """How the terms of an answer differ from those of the law."""
+    told = []
+    for name, (found, right) in wrong.items():
+        times = f"counts {found:.3g} times" if right else f"is added {found:.3g} times"
+        plain = (k for k in _PLAIN if k[1] == right and abs(k[0] - found) < 1e-4)
+        told.append(f"{name} {_PLAIN.get(next(plain, (2.0, 2.0)), times)}")
+    return f"Compared with the law, in every call {listed(told)}."
+
+
+def _cure(wrong: Mapping[str, tuple[float, float]]) -> str:
+    """What to do about the terms of an answer."""
+    once = [name for name, (_, right) in wrong.items() if right]
+    never = [name for name, (_, right) in wrong.items() if not right]
+    told = [f"The law has {listed(once)} once."] if once else []
+    return " ".join([*told, *([f"Leave out {listed(never)}."] if never else [])])
 
 
 VARIES = (
@@ -90,21 +180,25 @@ def _varies(question: Question, answers: Mapping[Case, Any], function: Function)
     return False
 
 
-def cause(question: Question, answers: Mapping[Case, Any], function: Function) -> str:
-    """A sentence about what is observed of a wrong answer; "" if nothing explains it."""
+def observed(
+    question: Question, answers: Mapping[Case, Any], function: Function
+) -> Misconception | None:
+    """What is observed of a wrong answer in all calls; None if nothing explains it."""
     calls = [call for call in question.calls if isinstance(call, Call) and call in answers]
     if not calls or len(calls) < len(question.calls) or not question.arguments:
-        return ""
+        return None
     given = [numeric_parts(answers[call]) for call in calls]
     expected = [numeric_parts(call.expected) for call in calls]
     if not any(expected):
-        return ""
+        return None
     alike = all(map(same_form, given, expected))
-    found = related(question, calls, given, expected) if alike else ""
-    return found or _exchanged(question, calls, function)
+    says = related(question, calls, given, expected) if alike else ""
+    return Misconception("", says) if says else _exchanged(question, calls, function)
 
 
-def _exchanged(question: Question, calls: Sequence[Call], function: Function) -> str:
+def _exchanged(
+    question: Question, calls: Sequence[Call], function: Function
+) -> Misconception | None:
     """Which change of its arguments, such as an exchange of two, makes the function right."""
     changed = [dict(exchanges(call, question.arguments)) for call in calls]
     for label in changed[0]:
@@ -112,8 +206,10 @@ def _exchanged(question: Question, calls: Sequence[Call], function: Function) ->
             label in one and accepts(question.judge, try_call(one[label], function), call.expected)
             for one, call in zip(changed, calls, strict=True)
         ):
-            return f"Your function is right in every call if {label} before it is called."
-    return ""
+            says = "In every call two arguments are exchanged, or one is transposed."
+            cure = f"Your function is right if {label} before it is called."
+            return Misconception("", says, cure)
+    return None
 
 
 def exchanges(call: Call, names: Sequence[str]) -> Iterator[tuple[str, Call]]:

@@ -268,6 +268,21 @@ class Mistake(Misconception):
 
 
 @dataclass(frozen=True, eq=False)
+class Term:
+    """A term of a law, or one that is taken for it.
+
+    Attributes:
+        name: The term as a formula.
+        factor: Its factor in the right answer: 1, or 0 if it is only taken for one.
+        values: Its numbers at each public call, in order.
+    """
+
+    name: str
+    factor: float
+    values: tuple[Any, ...]
+
+
+@dataclass(frozen=True, eq=False)
 class Question:
     """One function or value that students write, and how it is marked.
 
@@ -283,6 +298,7 @@ class Question:
         core: Whether it belongs to the core path; else it is an extension.
         outcomes: Learning outcomes of which it is evidence, names of `outcomes.OUTCOMES`.
         arguments: Names of the function's arguments.
+        terms: The terms of which the right answer is the sum, and those that are taken for them.
     """
 
     name: str
@@ -296,6 +312,7 @@ class Question:
     core: bool = True
     outcomes: tuple[str, ...] = ()
     arguments: tuple[str, ...] = ()
+    terms: tuple[Term, ...] = ()
 
     @property
     def calls(self) -> tuple[Call | Choice, ...]:

@@ -26,7 +26,7 @@ from ..recordings import Runner, Trials
 from ..shapes import locked
 from .judges import Judge, Ratio, TipTorque
 from .own_arm import Bug, OwnArm
-from .question import Case, Mistake, Question, Raised, Test
+from .question import Case, Mistake, Question, Raised, Term, Test
 
 DATA = (
     control.State,
@@ -70,7 +70,7 @@ GIVEN = (
 )
 """What a student's function may also be given; each is sent as the arguments that make it."""
 
-QUESTION = (Question, Test, Mistake, Raised, TipTorque, *get_args(Case), *get_args(Judge))
+QUESTION = (Question, Test, Mistake, Term, Raised, TipTorque, *get_args(Case), *get_args(Judge))
 """The other types in a question."""
 
 _MADE_OF: dict[type, Callable[[Any], dict[str, Any]]] = {

@@ -245,7 +245,7 @@ def cure_is_due(verdict: Verdict, function: Any) -> bool:
     tries: dict[str, str] = {}
     with suppress(OSError, ValueError):
         tries |= json.loads(TRIES.read_text(encoding="utf-8"))
-    cause, now = f"{verdict.name}: {known.name}", _text(function)
+    cause, now = f"{verdict.name}: {known.name or known.says}", _text(function)
     first = tries.setdefault(cause, now)
     if first != now:
         tries[cause] = ""

@@ -56,24 +56,6 @@ def plus_in_front(
     return right.workspace_impedance(state, target, model, stiffness=-stiffness, damping=damping)
 
 
-def no_drift(
-    state: lk.State, target: lk.PoseSample, model: lk.Model, *, stiffness: Any, damping: Any
-) -> lk.JointTorque:
-    """Forgets that the tip accelerates even at constant joint speeds."""
-    q, dq = state.q, state.dq
-    tau = right.workspace_impedance(state, target, model, stiffness=stiffness, damping=damping)
-    drift = model.operational_inertia(q) @ model.tip_jacobian_rate(q, dq) @ dq
-    return lk.JointTorque(tau.value + model.tip_jacobian(q).T @ drift)
-
-
-def weightless(
-    state: lk.State, target: lk.PoseSample, model: lk.Model, *, stiffness: Any, damping: Any
-) -> lk.JointTorque:
-    """No gravity."""
-    tau = right.workspace_impedance(state, target, model, stiffness=stiffness, damping=damping)
-    return lk.JointTorque(tau.value - model.gravity(state.q))
-
-
 def springs_inside(
     state: lk.State, target: lk.PoseSample, model: lk.Model, *, stiffness: Any, damping: Any
 ) -> lk.JointTorque:
@@ -87,51 +69,54 @@ def springs_inside(
     )
 
 
-def brakes_the_motion(
+def inverse_for_transpose(
     state: lk.State, target: lk.PoseSample, model: lk.Model, *, stiffness: Any, damping: Any
 ) -> lk.JointTorque:
-    """A damper against the fixed world, not against the target's velocity."""
-    tau = right.workspace_impedance(state, target, model, stiffness=stiffness, damping=damping)
-    pull = damping * np.asarray(target.twist)
-    return lk.JointTorque(tau.value - model.tip_jacobian(state.q).T @ pull)
+    """The pseudo-inverse maps the force, as if it were a speed."""
+    q, dq = state.q, state.dq
+    J, e = model.tip_jacobian(q), lk.se3.pose_error(target.pose, model.pose(q))
+    F = model.operational_inertia(q) @ (target.dtwist - model.tip_jacobian_rate(q, dq) @ dq)
+    F = F + damping * (target.twist - J @ dq) + stiffness * e
+    tau = np.linalg.pinv(J) @ F + model.coriolis(q, dq) @ dq
+    return lk.JointTorque(tau + model.gravity(q))
 
 
-@dataclass(frozen=True)
-class TipLaw:
-    """The impedance with weighted terms; 1 is right, 0 omits a term, -1 reverses it.
-
-    Attributes:
-        feed: Factor of the target's acceleration.
-        drift: Factor of the acceleration J' dq.
-        coriolis: Factor of C.
-        pinv: Whether the pseudo-inverse replaces the transpose.
-        turn_in_tool: Whether the error of orientation is in the tool's axes.
-    """
-
-    feed: float = 1.0
-    drift: float = 1.0
-    coriolis: float = 1.0
-    pinv: bool = False
-    turn_in_tool: bool = False
-
-    def __call__(
-        self,
-        state: lk.State,
-        target: lk.PoseSample,
-        model: lk.Model,
-        *,
-        stiffness: Any,
-        damping: Any,
-    ) -> lk.JointTorque:
-        """The torque."""
-        q, dq, T_wt = state.q, state.dq, model.pose(state.q)
-        J, e = model.tip_jacobian(q), lk.se3.pose_error(target.pose, T_wt)
-        if self.turn_in_tool:
-            e = np.concatenate([e[:3], T_wt[:3, :3].T @ e[3:]])
-        a = self.feed * target.dtwist - self.drift * model.tip_jacobian_rate(q, dq) @ dq
-        F = model.operational_inertia(q) @ a + damping * (target.twist - J @ dq) + stiffness * e
-        tau = (np.linalg.pinv(J) if self.pinv else J.T) @ F
-        return lk.JointTorque(tau + self.coriolis * model.coriolis(q, dq) @ dq + model.gravity(q))
+def tip_terms(
+    state: lk.State, target: lk.PoseSample, model: lk.Model, *, stiffness: Any, damping: Any
+) -> tuple[dict[str, Any], dict[str, Any]]:
+    """The terms of the impedance at the tip, and those that are taken for them."""
+    q, dq, T_wt = state.q, state.dq, model.pose(state.q)
+    J, inertia = model.tip_jacobian(q), model.operational_inertia(q)
+    e, V = lk.se3.pose_error(target.pose, T_wt), J @ dq
+    position, turn = stiffness * [*e[:3], 0, 0, 0], stiffness * [0, 0, 0, *e[3:]]
+    R_tw = T_wt[:3, :3].T
+    place = stiffness * [*R_tw @ e[:3], 0, 0, 0]
+    in_tool = stiffness * [0, 0, 0, *R_tw @ e[3:]]
+    drift, De = model.tip_jacobian_rate(q, dq) @ dq, damping * (target.twist - V)
+    law = {
+        "the spring of the position": J.T @ position,
+        "the spring of the turn": J.T @ turn,
+        "the damper": J.T @ De,
+    }
+    law |= {
+        "the part of the target's acceleration": J.T @ inertia @ target.dtwist,
+        "the part of J̇ q̇": -J.T @ inertia @ drift,
+    }
+    law |= {"the Coriolis torque": model.coriolis(q, dq) @ dq, "the weight": model.gravity(q)}
+    others = {
+        "a damper of the tip's own speed": J.T @ (damping * V),
+        "the spring of the turn in the tool's axes": J.T @ in_tool,
+    }
+    others["the spring of the position in the tool's axes"] = J.T @ place
+    others |= {
+        "the target's acceleration without Λ": J.T @ target.dtwist,
+        "J̇ q̇ without Λ": -J.T @ drift,
+    }
+    others |= {
+        "the damper inside Λ": J.T @ inertia @ De,
+        "the springs inside Λ": J.T @ inertia @ (position + turn),
+    }
+    return law, others
 
 
 @dataclass(frozen=True)

@@ -256,20 +256,6 @@ WORKSPACE_IMPEDANCE = Problem(
             "One convention: e = target - actual, and a plus before every gain.",
         ),
         Wrong(
-            "J̇ q̇ left out",
-            "The tip accelerates even if the joints turn at constant speed (think of a circle). "
-            "Subtract this part, J̇ q̇, before you multiply by Λ.",
-            mistakes.no_drift,
-            "ẍ = J q̈ + J̇ q̇ has two terms.",
-        ),
-        Wrong(
-            "the weight left out",
-            "The weight is missing, and in this question the arm does not carry it. Add g(q) to "
-            "the torque.",
-            mistakes.weightless,
-            "A spring holds a weight only where it is stretched.",
-        ),
-        Wrong(
             "the springs multiplied by Λ",
             "The springs are multiplied by the inertia, so that a stiffness in N/m has no "
             "meaning. Keep springs and dampers outside Λ; inside, the law is computed torque at "
@@ -278,47 +264,14 @@ WORKSPACE_IMPEDANCE = Problem(
             "In an impedance the stiffness is in N/m, outside the inertia.",
         ),
         Wrong(
-            "a damper tied to the room",
-            "The damper brakes all motion, so the tip drags behind a moving target. Damp "
-            "target.twist - J q̇.",
-            mistakes.brakes_the_motion,
-            "What are the two ends of the damper tied to?",
-        ),
-        Wrong(
-            "the target's acceleration left out",
-            "Λ times target.dtwist is missing, so the tip lags behind a target that speeds up. "
-            "Add it.",
-            mistakes.TipLaw(feed=0.0),
-            "What does the motion itself take?",
-        ),
-        Wrong(
-            "J̇ q̇ with the other sign",
-            "J̇ q̇ is the part of the acceleration that comes by itself: subtract it from what "
-            "the joints have to provide.",
-            mistakes.TipLaw(drift=-1.0),
-            "ẍ = J q̈ + J̇ q̇: solve for J q̈.",
-        ),
-        Wrong(
-            "no Coriolis torques",
-            "C q̇ is missing. Add it, although at low speed its effect is hard to see.",
-            mistakes.TipLaw(coriolis=0.0),
-            "A small effect is not zero: try a fast motion.",
-        ),
-        Wrong(
             "a pseudo-inverse for Jᵀ",
             "The pseudo-inverse is for speeds. A force F at the tip takes exactly the joint "
             "torques Jᵀ F.",
-            mistakes.TipLaw(pinv=True),
+            mistakes.inverse_for_transpose,
             "Jᵀ maps forces, J⁺ maps speeds.",
         ),
-        Wrong(
-            "the turn in the tool's axes",
-            "The rotation from tip to target must be in world axes, as the Jacobian is: "
-            "lk.se3.pose_error gives it.",
-            mistakes.TipLaw(turn_in_tool=True),
-            "Error and Jacobian must be in the same axes.",
-        ),
     ),
+    terms=mistakes.tip_terms,
     variants=(
         variants.impedance_by_terms,
         variants.impedance_by_parts,

@@ -105,17 +105,13 @@ class AugmentedLaw:
 
 @dataclass(frozen=True)
 class ComputedLaw:
-    """Computed torque with weighted terms; 1 is right, 0 omits a term, -1 reverses it.
+    """Computed torque with one slip.
 
     Attributes:
-        de: Factor of the error of the speeds.
-        coriolis: Factor of C.
         power: Power of M; -1 is its inverse.
         swapped: Whether kp and kd are exchanged.
     """
 
-    de: float = 1.0
-    coriolis: float = 1.0
     power: int = 1
     swapped: bool = False
 
@@ -134,8 +130,8 @@ class ComputedLaw:
         kp, kd = (kd, kp) if self.swapped else (kp, kd)
         C = model.coriolis(q, dq) @ dq
         a = target.acceleration + kp * (target.position - q)
-        a = a + kd * self.de * (target.velocity - dq)
-        tau = np.linalg.matrix_power(model.mass_matrix(q), self.power) @ a + self.coriolis * C
+        a = a + kd * (target.velocity - dq)
+        tau = np.linalg.matrix_power(model.mass_matrix(q), self.power) @ a + C
         return lk.JointTorque(tau if arm_compensates else tau + model.gravity(q))
 
 
@@ -160,28 +156,54 @@ def everything_at_the_target(
     return lk.JointTorque(tau if arm_compensates else tau + model.gravity(q))
 
 
-def carries_twice(
+def augmented_terms(
     state: lk.State, target: lk.Sample, model: lk.Model, *, kp: Any, kd: Any, arm_compensates: bool
-) -> lk.JointTorque:
-    """Adds gravity to `Model.bias`, which contains it, and forgets the switch."""
-    return right.computed_torque(state, target, model, kp=kp, kd=kd, arm_compensates=False)
+) -> tuple[dict[str, Any], dict[str, Any]]:
+    """The terms of the augmented law, and those that are taken for them."""
+    M, C = model.mass_matrix(state.q), model.coriolis(state.q, state.dq)
+    e, de = target.position - state.q, target.velocity - state.dq
+    law = {
+        "the part of the target's acceleration": M @ target.acceleration,
+        "the Coriolis part": C @ target.velocity,
+    }
+    law |= {"the spring `kp e`": kp * e, "the damper `kd ė`": kd * de}
+    others = {
+        "`C` times the arm's own speed": C @ state.dq,
+        "`kd` times the arm's own speed": kd * state.dq,
+        "`kp e` inside M": M @ (kp * e),
+    }
+    others |= {"`kd ė` inside M": M @ (kd * de), "`kd e`": kd * e, "`kp ė`": kp * de}
+    return _with_weight(law, others, model.gravity(state.q), arm_compensates)
 
 
-def targets_speed_in_coriolis(
+def computed_terms(
     state: lk.State, target: lk.Sample, model: lk.Model, *, kp: Any, kd: Any, arm_compensates: bool
-) -> lk.JointTorque:
-    """C dq_d, which belongs to the augmented law."""
-    q, dq = state.q, state.dq
-    tau = right.computed_torque(state, target, model, kp=kp, kd=kd, arm_compensates=arm_compensates)
-    return lk.JointTorque(tau.value + model.coriolis(q, dq) @ (target.velocity - dq))
+) -> tuple[dict[str, Any], dict[str, Any]]:
+    """The terms of computed torque, and those that are taken for them."""
+    M, C = model.mass_matrix(state.q), model.coriolis(state.q, state.dq)
+    e, de = target.position - state.q, target.velocity - state.dq
+    law = {
+        "the part of the target's acceleration": M @ target.acceleration,
+        "the spring `kp e`": M @ (kp * e),
+        "the damper `kd ė`": M @ (kd * de),
+    }
+    law |= {"the Coriolis torque": C @ state.dq}
+    others = {
+        "`C` times the target's speed": C @ target.velocity,
+        "`kd` times the arm's own speed": M @ (kd * state.dq),
+        "`kp e` outside M": kp * e,
+    }
+    others |= {"`kd ė` outside M": kd * de, "`kd e`": M @ (kd * e), "`kp ė`": M @ (kp * de)}
+    return _with_weight(law, others, model.gravity(state.q), arm_compensates)
 
 
-def no_target_acceleration(
-    state: lk.State, target: lk.Sample, model: lk.Model, *, kp: Any, kd: Any, arm_compensates: bool
-) -> lk.JointTorque:
-    """The target's acceleration left out."""
-    slow = target._replace(acceleration=np.zeros(7))
-    return right.computed_torque(state, slow, model, kp=kp, kd=kd, arm_compensates=arm_compensates)
+def _with_weight(
+    law: dict[str, Any], others: dict[str, Any], g: Any, arm_compensates: bool
+) -> tuple[dict[str, Any], dict[str, Any]]:
+    """The terms, with the weight where the law has it and where it does not."""
+    law["the weight where the arm does not carry it"] = g * (not arm_compensates)
+    others["the weight where the arm carries it"] = g * arm_compensates
+    return law, others
 
 
 def not_a_step(inertia: float, kp: float, kd: float, dt: float) -> Any:

@@ -115,6 +115,7 @@ AUGMENTED_PD = Problem(
         "the weight, which is added under a condition. Two are the springs and the dampers, which "
         "M does not multiply.",
     ),
+    terms=mistakes.augmented_terms,
     wrong=(
         Wrong(
             "the error reversed",
@@ -271,42 +272,6 @@ COMPUTED_TORQUE = Problem(
             "What is to cancel must be evaluated at the same place.",
         ),
         Wrong(
-            "the weight carried twice",
-            "The weight is added although the arm carries it already. inverse_dynamics and bias "
-            "contain g: subtract it where arm_compensates is True.",
-            mistakes.carries_twice,
-            "Know what a library call contains.",
-        ),
-        Wrong(
-            "C times the target's speed",
-            "C dq_d belongs to the augmented law. In computed torque C must cancel the arm's own "
-            "Coriolis torque: multiply C by the arm's own speed.",
-            mistakes.targets_speed_in_coriolis,
-            "Cancel what is there: C(q, dq) dq.",
-        ),
-        Wrong(
-            "the target's acceleration left out",
-            "Without the target's acceleration the arm falls behind while the target speeds up, "
-            "and runs ahead while the target brakes. Add the acceleration before you multiply by "
-            "M. A target at rest does not show this mistake.",
-            mistakes.no_target_acceleration,
-            "Feed-forward.",
-        ),
-        Wrong(
-            "the error of the speeds reversed",
-            "The error of the speeds has the wrong sign, so kd drives the arm. Take target minus "
-            "actual.",
-            mistakes.ComputedLaw(de=-1.0),
-            "One sign for every error.",
-        ),
-        Wrong(
-            "no Coriolis torques",
-            "C times the arm's speed is missing. Add it, although at low speed its effect is hard "
-            "to see.",
-            mistakes.ComputedLaw(coriolis=0.0),
-            "A small effect is not zero: try a fast motion.",
-        ),
-        Wrong(
             "the inverse of M",
             "M itself turns an acceleration into a torque. Do not invert it.",
             mistakes.ComputedLaw(power=-1),
@@ -317,12 +282,6 @@ COMPUTED_TORQUE = Problem(
             "kp multiplies the error of the angles, and kd that of the speeds.",
             mistakes.ComputedLaw(swapped=True),
             "The units tell which is which: kp is in 1/s², kd in 1/s.",
-        ),
-        Wrong(
-            "the Coriolis torques reversed",
-            "Add C q̇: the arm needs this torque, whatever the law.",
-            mistakes.ComputedLaw(coriolis=-1.0),
-            "The law is the equation of motion with another acceleration.",
         ),
         Wrong(
             "the mass matrix where the target is",
@@ -340,6 +299,7 @@ COMPUTED_TORQUE = Problem(
             "A mass matrix couples the joints.",
         ),
     ),
+    terms=mistakes.computed_terms,
     variants=(variants.computed_by_newton_euler, variants.computed_by_bias),
 )
 

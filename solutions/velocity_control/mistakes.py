@@ -60,6 +60,58 @@ class JointLaw:
         return lk.JointVelocity(feed + self.e * kp * e + self.de * kd * de)
 
 
+def joint_terms(
+    state: lk.State, target: lk.Sample, *, kp: Any, kd: Any
+) -> tuple[dict[str, Any], dict[str, Any]]:
+    """The terms of the joint law, and those that are taken for them."""
+    e, de = target.position - state.q, target.velocity - state.dq
+    law = {
+        "the target's speed": target.velocity,
+        "`kp` times the error": kp * e,
+        "`kd` times the rate of the error": kd * de,
+    }
+    others = {
+        "the joints' own speed": state.dq,
+        "`kd` times the joint's own speed": kd * state.dq,
+        "the target's acceleration": target.acceleration,
+    }
+    return law, others | {
+        "`kd` times the error": kd * e,
+        "`kp` times the rate of the error": kp * de,
+    }
+
+
+def workspace_terms(
+    state: lk.State, target: lk.PoseSample, model: lk.Model, *, kp: Any, damping: float
+) -> tuple[dict[str, Any], dict[str, Any]]:
+    """The terms of the workspace law, and those that are taken for them."""
+    T_wt, V_d = model.pose(state.q), target.twist
+    J = model.tip_jacobian(state.q)
+    back = damped_inverse(J, damping)
+    e = lk.se3.pose_error(target.pose, T_wt)
+    in_tool = T_wt[:3, :3].T @ e[3:]
+    position, turn = np.array([*e[:3], 0, 0, 0]), np.array([0, 0, 0, *e[3:]])
+    law = {
+        "the target's linear velocity": back @ [*V_d[:3], 0, 0, 0],
+        "the target's angular velocity": back @ [0, 0, 0, *V_d[3:]],
+    }
+    law |= {
+        "the error of the position": back @ (kp * position),
+        "the error of the turn": back @ (kp * turn),
+    }
+    others = {
+        "the joints' own speed": state.dq,
+        "the tip's own twist": back @ (J @ state.dq),
+        "the target's twist times `kp`": back @ (kp * V_d),
+    }
+    others |= {
+        "the error of the position without `kp`": back @ position,
+        "the error of the turn without `kp`": back @ turn,
+    }
+    others["the error of the turn in the tool's axes"] = back @ (kp * np.array([0, 0, 0, *in_tool]))
+    return law, others
+
+
 def faster_with_d(kp: float, kd: float) -> float:
     """Adds kd to kp, as if D helped P."""
     return kp * (1.0 + kd)
@@ -153,32 +205,12 @@ def body_jacobian(
     return _law(state, target, J, _turn(state, target), kp, damping, 1.0)
 
 
-def position_only(
-    state: lk.State, target: lk.PoseSample, model: lk.Model, *, kp: Any, damping: float
-) -> lk.JointVelocity:
-    """No orientation error; other teams of the report's year set its gains to zero."""
-    return _law(state, target, model.tip_jacobian(state.q), np.zeros(3), kp, damping, 1.0)
-
-
-def no_twist(
-    state: lk.State, target: lk.PoseSample, model: lk.Model, *, kp: Any, damping: float
-) -> lk.JointVelocity:
-    """No feed-forward."""
-    J = model.tip_jacobian(state.q)
-    return _law(state, target, J, _turn(state, target), kp, damping, 0.0)
-
-
 def damping_ignored(
     state: lk.State, target: lk.PoseSample, model: lk.Model, *, kp: Any, damping: float
 ) -> lk.JointVelocity:
     """The plain pseudo-inverse, whatever the damping."""
     J = model.tip_jacobian(state.q)
     return _law(state, target, J, _turn(state, target), kp, 0.0, 1.0)
-
-
-def turned_back(R_wd: Array, R_wt: Array) -> Array:
-    """The rotation from the target to the tip."""
-    return lk.se3.orientation_error(R_wt, R_wd)
 
 
 def sine_of_the_turn(R_wd: Array, R_wt: Array) -> Array:

@@ -82,6 +82,7 @@ JOINT_VELOCITY_PD = Problem(
         "Add three terms of seven numbers each; one of them needs no gain. Return a command, not "
         "an array.",
     ),
+    terms=mistakes.joint_terms,
     wrong=(
         Wrong(
             "a correction of the measured speed",
@@ -430,34 +431,12 @@ WORKSPACE_VELOCITY_PD = Problem(
             "There are three Jacobians; use the one that is in the axes of your error.",
         ),
         Wrong(
-            "the orientation not controlled",
-            "The last three numbers of your error are zero, so the hand keeps any tilt. Fill "
-            "them with orientation_error. Several teams left them out because their orientation "
-            "error was wrong.",
-            mistakes.position_only,
-            "A gain of zero hides a wrong sign.",
-        ),
-        Wrong(
-            "no feed-forward",
-            "The target's twist is missing, so the tip stays behind by about the target's speed "
-            "divided by kp. Add target.twist itself to the correction, not target.dtwist.",
-            mistakes.no_twist,
-            "Feedback waits for an error; feed-forward does not.",
-        ),
-        Wrong(
             "the damping ignored",
             "This is the plain pseudo-inverse: when the elbow is straight, it commands speeds "
             "that no joint can reach. Use the damped inverse.",
             mistakes.damping_ignored,
             "Damping accepts a small error of the tip in exchange for speeds that the joints can "
             "reach.",
-        ),
-        Wrong(
-            "the turn reversed",
-            "This is the turn from the target to the tip. Name the target first: "
-            "orientation_error(R_wd, R_wt), with R_wd on the left of the product.",
-            mistakes.WorkspaceLaw(turn=mistakes.turned_back),
-            "Say from where to where a rotation turns.",
         ),
         Wrong(
             "the sine of the turn",
@@ -481,6 +460,7 @@ WORKSPACE_VELOCITY_PD = Problem(
             "A gain with a unit changes the unit of what it multiplies.",
         ),
     ),
+    terms=mistakes.workspace_terms,
     variants=(variants.WorkspacePD(), variants.workspace_in_tool_axes),
 )
 

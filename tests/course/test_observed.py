@@ -1,5 +1,8 @@
 """What is seen of a wrong answer that no known mistake gives."""
 
+from dataclasses import replace
+from itertools import product
+
 import numpy as np
 import pytest
 from questions import DOUBLE
@@ -7,7 +10,7 @@ from questions import DOUBLE
 import labkit as lk
 from labkit.course import mark
 from labkit.course.authoring.problem import Problem, Trial, call
-from labkit.course.causes import VARIES, diagnosed
+from labkit.course.causes import VARIES, by_terms, diagnosed
 from labkit.course.judges import Close
 from labkit.course.marking import try_public
 from labkit.course.student import Desk
@@ -25,7 +28,9 @@ def states(seed):
     return call(lk.State(0.0, q, dq), lk.Sample(p, v, a), kp=2.0 + seed, kd=0.3)
 
 
-LAW = Problem("law", 1, "Give it.", law, (Trial("any", (states(1), states(2)), weight=1.0),))
+LAW = Problem(
+    "law", 1, "Give it.", law, (Trial("any", tuple(map(states, range(1, 5))), weight=1.0),)
+)
 SCALED = Problem(
     "scaled",
     1,
@@ -49,13 +54,47 @@ def seen(problem, function):
         (lambda state, target, *, kp, kd: -law(state, target, kp=kp, kd=kd), "has the other sign"),
         (
             lambda state, target, *, kp, kd: law(state, target, kp=kd, kd=kp),
-            "`kp` and `kd` are exc",
+            "arguments are exchanged",
         ),
     ],
 )
 def test_the_cause_is_seen_in_the_numbers(function, says):
     """A sign and exchanged gains are told, each in its sentence."""
     assert says in seen(LAW, function)
+
+
+def terms(state, target, *, kp, kd):
+    """The terms of the law, and two that are taken for them."""
+    e, de = target.position - state.q, target.velocity - state.dq
+    return {"P": kp * e, "D": kd * de}, {"own": kd * state.dq, "speed": target.acceleration}
+
+
+def test_each_term_with_another_factor_than_in_the_law_is_told():
+    """Whichever of four terms are missing, reversed, scaled or added, up to all at once."""
+    asked, names, law = (
+        replace(LAW, terms=terms).question(1),
+        ["P", "D", "own", "speed"],
+        (1, 1, 0, 0),
+    )
+
+    def weighted(*args, **kwargs):
+        values = [*terms(*args, **kwargs)[0].values(), *terms(*args, **kwargs)[1].values()]
+        return sum(c * x for c, x in zip(factors, values, strict=True))
+
+    for factors in product((1.0, 0.0, -1.0, 2.5), (1.0, 0.0), (0.0, -1.0), (0.0, 3.0)):
+        found = by_terms(asked, {call: call.ask(weighted) for call in asked.calls})
+        off = [x for x, c, right in zip(names, factors, law, strict=True) if c != right]
+        assert (found is None) == (not off)
+        if found is not None:
+            assert [x for x in names if f" {x} " in found.says] == off
+            assert all(x in found.cure for x in off)
+
+
+def test_an_answer_that_is_no_sum_of_terms_is_left_alone():
+    """A square is no term, and three numbers fit no seven terms."""
+    asked = replace(LAW, terms=terms).question(1)
+    squares = {call: call.expected**2 for call in asked.calls}
+    assert by_terms(asked, squares) is None and by_terms(LAW.question(1), squares) is None
 
 
 def test_of_a_function_with_a_memory_only_that_is_said():

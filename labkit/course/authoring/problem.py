@@ -5,7 +5,7 @@ Evaluating the answer, the mistakes and the hidden cases turns one into a `labki
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import dataclass, replace
 from inspect import signature
 from typing import Any
@@ -14,7 +14,7 @@ import numpy as np
 
 from ..judges import Close, Judge
 from ..marking import fingerprint
-from ..question import Call, Case, Mistake, Question, Test
+from ..question import Call, Case, Mistake, Question, Term, Test
 
 CLOSE = Close()
 
@@ -85,7 +85,9 @@ class Problem:
         variants: Right answers in another form; every one must pass.
         expected: Returns what to compare with, if that is not the answer's own result.
         core: Whether it belongs to the core path; else it is an extension.
-        outcomes: Learning outcomes of which it is evidence, names of `outcomes.OUTCOMES`.
+        outcomes: Learning outcomes of which it is evidence, names of `layout.OUTCOMES`.
+        terms: For a law that is a sum of terms: given the arguments of a call, the terms by their
+            formulas, and those that are taken for them.  They name what `wrong` need not list.
     """
 
     name: str
@@ -101,6 +103,7 @@ class Problem:
     expected: Callable[..., Any] | None = None
     core: bool = True
     outcomes: tuple[str, ...] = ()
+    terms: Callable[..., tuple[Mapping[str, Any], Mapping[str, Any]]] | None = None
 
     def question(self, seed: int) -> Question:
         """The question, with hidden cases drawn from a seed and the mistakes as fingerprints."""
@@ -123,7 +126,16 @@ class Problem:
             Mistake(w.name, w.says, w.cure, fingerprint(plain, w.function)) for w in self.wrong
         )
         names = tuple(signature(self.answer).parameters) if callable(self.answer) else ()
-        return replace(plain, mistakes=tuple(mistakes), arguments=names)
+        return replace(
+            plain, mistakes=tuple(mistakes), arguments=names, terms=tuple(self._terms(plain))
+        )
+
+    def _terms(self, question: Question) -> Iterator[Term]:
+        calls = [case for case in question.calls if isinstance(case, Call)]
+        told = [case.ask(self.terms) for case in calls] if self.terms else []
+        for factor, at in zip((1.0, 0.0), zip(*told, strict=True), strict=False):
+            for name in at[0]:
+                yield Term(name, factor, tuple(np.asarray(x[name], dtype=float) for x in at))
 
     def _test(self, trial: Trial, random: np.random.Generator) -> Test:
         public = (self._with_expected(case, hidden=False) for case in trial.public)

@@ -18,6 +18,7 @@ import numpy as np
 from ...control import JointTorque
 from ...errors import LabkitError
 from ..calling import LocalFunction
+from ..causes import by_terms
 from ..identification import Identification
 from ..judges import Judge, Measured, TipTorque, numbers
 from ..marking import fingerprint, mark, recognise
@@ -94,6 +95,7 @@ def _reasons(problem: Problem, question: Question, text: str | None) -> Iterator
             "than the answer, or withhold the tool that it uses"
         )
     yield from _alike(question, problem)
+    yield from _untold(question)
 
 
 def _alike(question: Question, problem: Problem) -> Iterator[str]:
@@ -119,6 +121,19 @@ def _alike(question: Question, problem: Problem) -> Iterator[str]:
             f"its known mistake {right.name!r} gives the right answers on all public calls; "
             "change a number, or add a call that shows it"
         )
+
+
+def _untold(question: Question) -> Iterator[str]:
+    """Terms of the law which are not told if they count twice."""
+    for term in question.terms:
+        if term.factor:
+            pairs = zip(question.calls, term.values, strict=False)
+            twice = {call: numbers(call.expected) + numbers(x) for call, x in pairs}
+            if by_terms(question, twice) is None:
+                yield (
+                    f"its term {term.name!r} is not told if it counts twice; let the terms add up "
+                    "to the answer, and let each be in a public call without the others"
+                )
 
 
 def _failure(answer: Any) -> str:
