@@ -100,17 +100,19 @@ class Driven:
 
 def check_order(target: object, *controllers: object) -> None:
     """Raise `TypeMismatch` unless all are functions, in the order that `run` and `live` share."""
-    for name, given in (("target", target), *(("controller", law) for law in controllers)):
-        if not callable(given):
-            raise TypeMismatch(f"{name} is {shown(given)}, expected a function; {ORDER}")
-    if not _takes_time(target) and any(map(_takes_time, controllers)):
-        raise TypeMismatch(f"target and controller are swapped; {ORDER}")
+    for name, given, arguments in (
+        ("target", target, ("the time",)),
+        *(("controller", law, ("the state", "the target's sample")) for law in controllers),
+    ):
+        if not callable(given) or not _takes(given, arguments):
+            what = f"expected a function of {' and '.join(arguments)}"
+            raise TypeMismatch(f"{name} is {shown(given)}, {what}; {ORDER}")
 
 
-def _takes_time(function: Any) -> bool:
-    """Whether a function can be called with the time alone, as a target is."""
+def _takes(function: Any, arguments: tuple[str, ...]) -> bool:
+    """Whether a function can be called with these; a dial is an argument more."""
     try:
-        inspect.signature(function).bind(0.0)
+        inspect.signature(function).bind_partial(*arguments)
     except TypeError:
         return False
     except ValueError:  # a built-in function does not say

@@ -49,14 +49,14 @@ def motion_html(
     Raises:
         OutOfRange: The motion is too large for a page.
     """
-    text = motion.to_json(rate)
-    size = len(text.encode())
+    data = motion.data(rate)
+    size = len(compact(data).encode())
     if size > LIMIT:
         raise OutOfRange(
             f"the motion {motion.title!r} is {size / 1000:.0f} kB, more than"
             f" {LIMIT / 1000:.0f} kB: give fewer ghosts, a shorter run or a lower rate"
         )
-    return figure_html(text, motion.description, caption or motion.title, motion.alt, poster, root)
+    return figure_html(data, motion.description, caption or motion.title, poster, root)
 
 
 DEMOS = {
@@ -89,5 +89,4 @@ def demo_html(
     if name not in DEMOS:
         raise UnknownName("demo", name, DEMOS)
     words = DEMOS[name]
-    data = compact({"kind": name, "alt": words})
-    return figure_html(data, words, caption or words, words, poster, root)
+    return figure_html({"kind": name, "alt": words}, words, caption or words, poster, root)

@@ -21,7 +21,7 @@ from PIL import Image
 
 from labkit import Arm, Log, Plant, Table, World, metrics, plotting
 from labkit.replay import Motion, motion_of
-from labkit.replay.player import motion_still
+from labkit.replay.player import still as drawn
 from labkit.tags.camera import Camera, looking_at
 from labkit.tags.drawing import Intrinsics
 
@@ -145,7 +145,7 @@ def replay(log: Log, title: str, caption: str = "", **options: Any) -> HTML:
 
 def poster(motion: Motion) -> str:
     """The first view of a motion, with its paths and the things that it meets, as a data URL."""
-    return _encoded(Image.open(io.BytesIO(motion_still(motion))))
+    return _encoded(Image.open(io.BytesIO(drawn(motion))))
 
 
 def picture(side: str, plant: Plant, q: np.ndarray) -> str:

@@ -11,7 +11,7 @@ from typing import Any
 
 from jinja2 import Environment, FileSystemLoader, StrictUndefined, select_autoescape
 
-from ..replay import recorded_html, viewer_scripts
+from ..replay import figure_html, viewer_scripts
 
 TEMPLATES = Path(__file__).parent / "templates"
 
@@ -50,7 +50,7 @@ def render_page(template: str, style: str = "", *, replays: bool = False, **valu
         scripts=code,
         policy=policy(style, code),
         motion_of=lambda text: json.loads(text or "null"),
-        recorded_html=recorded_html,
+        recorded_html=figure_html,
         **values,
     )
 

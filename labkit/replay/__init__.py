@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from .motion import Motion, motion_of
-from .player import recorded_html, show, viewer_scripts
+from .player import figure_html, show, viewer_scripts
 from .view import live
 
-__all__ = ["Motion", "live", "motion_of", "recorded_html", "show", "viewer_scripts"]
+__all__ = ["Motion", "figure_html", "live", "motion_of", "show", "viewer_scripts"]

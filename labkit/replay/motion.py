@@ -1,4 +1,4 @@
-"""A motion of one arm as data, small enough for a page, with a description from its numbers."""
+"""A motion of one arm and what is around it as data, small enough for a page, and in words."""
 
 from __future__ import annotations
 
@@ -15,25 +15,12 @@ from ..baxter import as_robot
 from ..errors import OutOfRange, listed
 from ..log import Log
 from ..robot import SIDES, Robot
+from ..scene import Spring, Table, Wall
 from ..shapes import Array, as_array
 from ..trajectory import PoseSample
-from .surroundings import drawn_thing
 
-STEPS = {  # resolution of each channel
-    "q": 1e-4,  # rad
-    "target": 1e-4,  # m
-    "target_quaternion": 1e-4,
-    "board": 1e-4,  # m
-    "board_quaternion": 1e-4,
-    "path": 1e-4,  # m
-    "error": 1e-5,  # m
-    "tau": 1e-2,  # N m
-    "force": 1e-2,  # N
-}
-
-STOP, AFTER = 0.02, 0.1
-"""Distance from a limit at which a joint may have met its stop, in [rad], and how long the torque
-sensors feel that, in [s]."""
+STEPS = {"error": 1e-5, "tau": 1e-2, "force": 1e-2}
+"""Resolution of channels, in [m], [N m] and [N]; the others have 1e-4, in [m] or [rad]."""
 
 STILL = 0.005
 """A joint that travels less than this, in [rad], is described as being at rest."""
@@ -58,7 +45,7 @@ class Motion:
         tau: Joint torques, shape (N, n), in [N m].
         force: Force on the tip, shape (N, 3), in [N], in the robot's base; zero where unknown.
         ghosts: Joint angles of other arms by name, each of shape (N, n), in [rad].
-        things: Things around the arm, by name, as `surroundings.drawn_thing` returns them.
+        things: Things around the arm, by name, as `drawn_thing` returns them.
     """
 
     robot: Any
@@ -97,16 +84,13 @@ class Motion:
         times = np.linspace(self.t[0], self.t[-1], count)
 
         def even(x: Array, name: str) -> dict[str, Any]:
-            return pack(x if name == "path" else resampled(x, self.t, times), STEPS[name])
+            even = x if name == "path" else resampled(x, self.t, times)
+            return pack(even, STEPS.get(name, 1e-4))
 
-        channels = {
-            "q": self.q,
-            "target": self.target_position,
-            "target_quaternion": _quaternions(self.target_rotation),
-            "board": self.board_position,
-            "board_quaternion": _quaternions(self.board_rotation),
-            **{name: getattr(self, name) for name in ("path", "error", "tau", "force")},
-        }
+        channels = {name: getattr(self, name) for name in ("q", "path", "error", "tau", "force")}
+        for name in ("target", "board"):
+            channels[name] = getattr(self, f"{name}_position")
+            channels[f"{name}_quaternion"] = _quaternions(getattr(self, f"{name}_rotation"))
         return {
             "kind": "motion",
             "title": self.title,
@@ -118,7 +102,7 @@ class Motion:
             "period": round(float(times[1] - times[0]), 9),
             **{name: even(x, name) for name, x in channels.items() if x is not None},
             "ghosts": {name: even(q, "q") for name, q in self.ghosts.items()},
-            **({"things": dict(self.things)} if self.things else {}),
+            "things": dict(self.things),
         }
 
     def to_json(self, rate: float = 25.0) -> str:
@@ -144,31 +128,19 @@ class Motion:
 
     @cached_property
     def description(self) -> str:
-        """A paragraph about duration, joint travel, errors and torques, all from the arrays."""
+        """A paragraph about joint travel, target, errors and torques, all from the arrays."""
         names = [name.removeprefix(f"{self.robot.name}_") for name in self.robot.joint_names]
         travel = np.ptp(self.q, axis=0)
         most = int(travel.argmax())
-        words = [self.alt]
+        words = [self.alt, f"Joint {names[most]} travels farthest, by {travel[most]:.2f} rad."]
         if travel[most] < STILL:
-            words.append(f"No joint moves by more than {STILL:g} rad.")
-        else:
-            words.append(
-                f"Joint {names[most]} travels farthest, {travel[most]:.2f} rad between"
-                f" {self.q[:, most].min():.2f} and {self.q[:, most].max():.2f} rad."
-            )
+            words[1] = f"No joint moves by more than {STILL:g} rad."
         if self.target_position is not None:
-            ends = [(f"{x.min():.2f}", f"{x.max():.2f}") for x in self.target_position.T]
-            spans = [f"= {a} m" if a == b else f"from {a} to {b} m" for a, b in ends]
-            does = "moves within" if any(a != b for a, b in ends) else "stays at"
-            words.append("The target {} x {}, y {}, z {}.".format(does, *spans))
+            spans = [f"{x.min():.2f} to {x.max():.2f} m" for x in self.target_position.T]
+            words.append("The target is within x {}, y {}, z {}.".format(*spans))
         if self.error is not None:
-            e, peak = np.abs(self.error), int(np.abs(self.error).argmax())
-            words.append(
-                f"Tip error is {_mm(e[0])} at the start, largest at t = {self.t[peak]:.2f} s with"
-                f" {_mm(e[peak])}, and {_mm(e[-1])} at the end."
-                if _mm(e[peak]) != _mm(0.0)
-                else f"Tip error is {_mm(0.0)} throughout."
-            )
+            peak = int(np.abs(self.error).argmax())
+            words.append(f"Tip error is largest at t = {self.t[peak]:.2f} s.")
         if self.tau is not None:
             at, joint = np.unravel_index(np.abs(self.tau).argmax(), self.tau.shape)
             words.append(
@@ -199,8 +171,7 @@ def motion_of(
         reference: Whether to draw an arm that follows perfectly as a ghost, if the target consists
             of joint angles.
         torque: Whether to include the torques, which take the most space.
-        force: Whether to draw the force on the tip as the torque sensors estimated it, except
-            while a joint is at its stop, which its sensor also feels.
+        force: Whether to draw the force on the tip as the torque sensors estimated it.
         things: The `Wall`, `Table` and `Spring` objects of the arm's world.
 
     Returns:
@@ -215,13 +186,13 @@ def motion_of(
         log.t,
         log.q,
         title=title,
-        label=label or log.controller,
+        label=label or log.controller.replace("_", " "),
         target_position=T_wd[:, :3, 3],
         target_rotation=T_wd[:, :3, :3],
         path=T_wd[:: max(1, len(log) // 120), :3, 3],
         error=np.linalg.norm(metrics.tip_error(log)[:, :3], axis=1),
         tau=log.tau if torque else None,
-        force=_felt(log) if force else None,
+        force=metrics.felt_wrench(log)[:, :3] if force else None,
         ghosts=arms,
         things={
             f"{type(x).__name__.lower()} {k}": data
@@ -231,42 +202,44 @@ def motion_of(
     )
 
 
-def _felt(log: Log) -> Any:
-    """Force on the tip, shape (N, 3) in [N], set to zero within `AFTER` of contact with a stop."""
-    from scipy.ndimage import binary_dilation
+def drawn_thing(thing: Any) -> dict[str, Any]:
+    """A wall, a table or a band as plain numbers; empty for things that are not visible."""
+    if isinstance(thing, Wall | Table):
+        size, colour = (list(map(float, x)) for x in (thing.size, thing.colour))
+        about = {"size": size, "colour": colour, "fixed": isinstance(thing, Table)}
+        return placed("face", thing.T_wf) | about
+    if isinstance(thing, Spring):
+        return {"kind": "band", "position": thing.anchor.tolist()}
+    return {}
 
-    room = np.minimum(log.q - log.robot.lower, log.robot.upper - log.q).min(axis=1)
-    ticks = max(1, round(AFTER * len(log) / max(AFTER, float(np.ptp(log.t)))))
-    unknown = binary_dilation(room < STOP, iterations=ticks)
-    return np.where(unknown[:, None], 0.0, metrics.felt_wrench(log)[:, :3])
+
+def placed(kind: str, T: Array) -> dict[str, Any]:
+    """A thing of a kind at a pose, shape (4, 4), as plain numbers."""
+    position, turn = np.round(T[:3, 3], 4).tolist(), np.round(_turns(T[:3, :3]), 4).tolist()
+    return {"kind": kind, "position": position, "quaternion": turn}
 
 
 def pack(x: Array, step: float) -> dict[str, Any]:
     """Convert a channel to multiples of `step`, differenced along its rows, column after column.
 
     Rounding precedes differencing, so the error never exceeds step / 2, however long the channel.
-    Smooth channels are shortest when differenced twice, noisy ones when differenced once.
 
     Args:
         x: Shape (N, k).
         step: Size of one unit.
 
     Returns:
-        {"step", "width": k, "order": 1 or 2, "data": N * k whole numbers}.
+        {"step", "width": k, "data": N * k whole numbers, differenced twice along the rows}.
     """
     whole = np.rint(x / step).astype(np.int64)
-    once = np.diff(whole, axis=0, prepend=0)
-    twice = np.diff(once, axis=0, prepend=0)
-    order, best = min(((1, once), (2, twice)), key=lambda o: int(np.abs(o[1]).sum()))
-    data = best.T.ravel().tolist()
-    return {"step": step, "width": whole.shape[1], "order": order, "data": data}
+    twice = np.diff(np.diff(whole, axis=0, prepend=0), axis=0, prepend=0)
+    return {"step": step, "width": whole.shape[1], "data": twice.T.ravel().tolist()}
 
 
 def unpack(channel: Mapping[str, Any]) -> Array:
     """The inverse of `pack`: shape (N, k)."""
-    whole = np.array(channel["data"], dtype=np.int64).reshape(channel["width"], -1)
-    for _ in range(channel["order"]):
-        whole = np.cumsum(whole, axis=1)
+    twice = np.array(channel["data"], dtype=np.int64).reshape(channel["width"], -1)
+    whole = np.cumsum(np.cumsum(twice, axis=1), axis=1)
     return np.asarray(whole.T * float(channel["step"]), dtype=np.float64)
 
 
@@ -304,7 +277,7 @@ def _quaternions(R: Array | None) -> Array | None:
         return None
     q = _turns(R)
     flips = np.where(np.sum(q[1:] * q[:-1], axis=1) < 0, -1.0, 1.0)
-    return np.asarray(q * np.cumprod([1.0, *flips])[:, None], dtype=np.float64)
+    return np.asarray(q * np.cumprod([1.0, *flips])[:, None])
 
 
 def _turns(R: Array) -> Array:

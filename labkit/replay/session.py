@@ -1,89 +1,241 @@
-"""A live session: one thread that owns the simulator, keeps real time and obeys the page.
+r"""A live session: one thread that drives an arm in real time and obeys the page.
 
-The thread runs the same loop as `run` and reads the messages of the page between two ticks.  Any
-error ends the run with a message and leaves the arm at rest.
+It runs the same loop as `run` and reads the messages of the page between two ticks.  Any error
+ends the run with a message and leaves the arm at rest.  Pause ends the thread, so that other cells
+can use the arm; Start makes a new one.
+
+A hand can pull at the arm anywhere.  It is a spring and a damper between a point of a link and a
+place in the world, as strong as a person's arm at most,
+
+.. math:: f = k\,(x - p) - d\,\dot p, \qquad |f| \le f_{max}, \qquad \tau = J_p^T f ,
+
+or a constant force at that point.
 """
 
 from __future__ import annotations
 
 import inspect
 import re
-import sys
 import threading
 import time
 import traceback
-from collections import deque
 from collections.abc import Callable, Mapping
-from contextlib import suppress
-from dataclasses import dataclass, fields, replace
+from dataclasses import fields, replace
 from pathlib import Path
-from queue import Empty, SimpleQueue
-from statistics import median
-from typing import Any, cast
+from queue import SimpleQueue
+from typing import Any
 
 import numpy as np
 
 from ..arm import Arm
-from ..control import JointTorque
-from ..errors import Diverged, LabkitError
-from ..log import Log
-from ..model import Model
+from ..errors import LabkitError
 from ..plant import Plant
 from ..run import Driven, run_driven
-from ..shapes import Array
-from .hand import Hand
-from .surroundings import Surroundings
+from ..scene import Spring
+from ..shapes import Array, as_array
+from ..trajectory import PoseSample, Sample
+from ..world import World
+from .motion import drawn_thing, placed
 
-LONGEST = 120.0
-"""Longest duration of a run, in [s]; then the next one begins where it ended."""
+STIFFNESS, DAMPING, STRONGEST = 400.0, 12.0, 60.0
+"""Of the hand: its spring, in [N/m], its damper, in [N s/m], and its largest force, in [N]."""
 
-ABSENT = 60.0
-"""Time without a message from any page after which the session pauses, in [s]."""
+STEADY = 1.0
+"""Time after the last message about it at which a hand lets go, in [s]."""
 
-STEP = 0.05
-"""Time by which the button "Step" advances, in [s]."""
+LONGEST, ABSENT = 120.0, 60.0
+"""Times in [s]: of a run, after which the next one begins where it ended; and without a message
+from any page, after which the session pauses."""
 
-FRAME = 1 / 30
-"""Time between two pictures, in [s]."""
+FRAME, LATE = 1 / 30, 0.1
+"""Time between two pictures, in [s]; a loop that is later than the second goes on from there."""
 
-LATE = 0.1
-"""A loop that is late by more than this, in [s], continues from there without catching up."""
+FASTEST = 2.0
+"""Largest speed of dragged walls and bands, in [m/s], so that no wall jumps over the tip."""
 
-PATIENCE = 1.0
-"""A controller that has not returned after this long, in [s], may never return."""
-
-TURN = 5e-4
-"""Switch interval of Python's threads while an arm is live, in [s], lest other cells delay it."""
-
-CALLS = 50
-"""Number of calls by whose median a controller is judged too slow."""
+POINTS = 121
+"""Number of points on the drawn path of the target."""
 
 OF_PLANT = {f.name for f in fields(Plant)} - {"name", "fits", "gravity_compensation"}
 """Names of dials that change the plant."""
 
 _LIBRARY = re.compile(f"^{re.escape(str(Path(__file__).parents[1]))}|site-packages")
-_USUAL = sys.getswitchinterval()
-_LIMIT = "a run ends after {:g} s; at t = {:.0f} s the next one began, which Keep this run keeps"
-_OVER = 10**9  # a tick later than the last of any run
 
 
-@dataclass(frozen=True)
-class Dial:
-    """A number that the user can change.
+class Hand:
+    """A hand beside an arm, which follows the messages of a page.
 
     Attributes:
-        name: Name of a number of `Plant`, or of an argument of a controller.
-        min: Least value.
-        max: Largest value.
-        value: Starting value.
-        unit: Unit of the values.
+        at: Point at which it holds the arm, world axes, shape (3,) in [m]; None while it holds
+            nothing.
+        force: Its force in the last physics step, world axes, shape (3,) in [N].
     """
 
-    name: str
-    min: float
-    max: float
-    value: float
-    unit: str = ""
+    def __init__(self, arm: Arm) -> None:
+        """Make a hand that holds nothing yet; ``arm.world.put(hand)`` puts it beside the arm."""
+        self._arm, self.heard = arm, 0.0
+        self.let_go()
+
+    def let_go(self) -> None:
+        """Let go of the arm."""
+        self.at: Array | None = None
+        self.force: Array = np.zeros(3)
+        self._point: tuple[int, Array] | None = None
+        self._to: Array | None = None
+
+    def push(self, body: int, point: Any, force: Any) -> None:
+        """Push at a point of a body with a constant force.
+
+        Args:
+            body: The body, by the number of its joint; n is the tip's frame.
+            point: Point of the body, in the body's frame, shape (3,) in [m].
+            force: Force, world axes, shape (3,) in [N].
+        """
+        self._point, self._to = (body, as_array(point, (3,), "point")), None
+        self.force = _bounded(as_array(force, (3,), "force"))
+
+    def follow(self, message: Mapping[str, Any]) -> None:
+        """Carry out a message: pull the point ``local`` of ``link`` ``to`` a place, or push it."""
+        self.heard = time.monotonic()
+        if "force" in message:
+            self.push(message["link"], message["local"], message["force"])
+        elif "to" in message:
+            self._point = message["link"], as_array(message["local"], (3,), "point")
+            self._to = as_array(message["to"], (3,), "to")
+        else:
+            self.let_go()
+
+    def seen(self) -> dict[str, Any]:
+        """The hand's action as plain numbers, for the page to draw."""
+        if self.at is None or self._point is None:
+            return {"at": None, "force": None, "link": None}
+        at, force = self.at.round(4).tolist(), self.force.round(3).tolist()
+        return {"at": at, "force": force, "link": self._point[0]}
+
+    def act(self, world: World) -> None:
+        """Pull during the next physics step."""
+        if self._point is None:
+            return
+        _, q, dq, _ = self._arm.truth()
+        self.at, J = self._arm.model.point_on(q, *self._point)
+        if self._to is not None:
+            self.force = _bounded(STIFFNESS * (self._to - self.at) - DAMPING * (J @ dq))
+        self._arm.pull(J.T @ self.force)
+
+
+def _bounded(force: Array) -> Array:
+    return force * min(1.0, STRONGEST / max(1e-9, float(np.linalg.norm(force))))
+
+
+class Surroundings:
+    """The target and the things of an arm's world, which the page shows and moves.
+
+    Attributes:
+        since: The target's time at which the present run began, in [s].
+    """
+
+    def __init__(self, arm: Arm, target: Any) -> None:
+        """Take the target and the things in the world of ``arm``."""
+        self._arm, self._target, self.since = arm, target, 0.0
+        self._shift: Array = np.zeros(3)
+        self._goals: dict[int, Array] = {}
+        duration = getattr(target, "duration", None)
+        self._round = duration if duration and _closed(target, duration) else None
+        self._latest: Any = target(0.0)
+
+    def target(self, t: float) -> Any:
+        """The target, shifted by the user's dragging; a closed path repeats for ever."""
+        t += self.since
+        self._latest = self._target(t % self._round if self._round else t)
+        return self._shifted()
+
+    def _shifted(self) -> Any:
+        sample = self._latest
+        if isinstance(sample, PoseSample) and self._shift.any():
+            pose = np.array(sample.pose)
+            pose[:3, 3] += self._shift
+            sample = sample._replace(pose=pose)
+        return sample
+
+    def wanted(self, sample: Any = None) -> Array | None:
+        """The desired pose of the tip, shape (4, 4); None if the target is only a point."""
+        sample = self._shifted() if sample is None else sample
+        if isinstance(sample, PoseSample):
+            return np.asarray(sample.pose)
+        if isinstance(sample, Sample) and sample.position.size == self._arm.robot.n:
+            return self._arm.model.pose(sample.position)
+        return None
+
+    def path(self) -> list[list[float]]:
+        """Path of a moving target without dragging, in [m]; empty if it is not known in advance."""
+        times = np.linspace(0.0, getattr(self._target, "duration", 0.0), POINTS)
+        poses = [self.wanted(self._target(t)) for t in times] if times[-1] else []
+        places = [T[:3, 3] for T in poses if T is not None]
+        moves = bool(places) and np.ptp(places, axis=0).max() > 1e-3
+        return np.round(places, 4).tolist() if moves else []
+
+    def seen(self) -> dict[str, Any]:
+        """The arm and its surroundings as plain numbers, for the page to draw."""
+        arm, T_wd = self._arm, self.wanted()
+        most = arm.robot.effort * (1.0 - 1e-9)
+        return {
+            "t": round(arm.world.t, 4),
+            "q": arm.truth().q.round(5).tolist(),
+            "error": None if T_wd is None else float(np.linalg.norm(arm.tip()[0] - T_wd[:3, 3])),
+            "spent": np.flatnonzero(np.abs(arm.torque) >= most).tolist(),
+            "things": self.things(),
+        }
+
+    def things(self) -> dict[str, Any]:
+        """The things that the page draws, by name."""
+        found: dict[str, Any] = {}
+        T_wd = self.wanted()
+        if T_wd is not None:
+            about = {"fixed": isinstance(self._latest, Sample), "shift": self._shift.tolist()}
+            found["target"] = placed("target", T_wd) | about
+        for i, thing in enumerate(self._arm.world.things):
+            if data := drawn_thing(thing):
+                found[f"thing {i}"] = data
+        if camera := getattr(getattr(self._target, "lookups", None), "camera", None):
+            lens = camera.intrinsics
+            field = float(np.degrees(2.0 * np.arctan(lens.height / 2.0 / lens.fy)))
+            about = {"field": field, "ratio": lens.width / lens.height, "fixed": True}
+            found["camera"] = placed("camera", camera.T_wc) | about
+        shown: list[Any] = self._arm.world.shown
+        for i, board in enumerate(shown):
+            if hasattr(board, "T_wm"):
+                found[f"tag {i}"] = placed("tag", board.T_wm) | {"size": float(board.tag.paper)}
+        return found
+
+    def move(self, name: str, position: Any) -> None:
+        """Move a thing so that its drawn middle is at ``position``, shape (3,) in [m]."""
+        position = as_array(position, (3,), "position")
+        kind, _, number = name.partition(" ")
+        if kind == "thing":
+            self._goals[int(number)] = position
+        elif kind == "tag":
+            board: Any = self._arm.world.shown[int(number)]
+            T = np.array(board.T_wm)
+            T[:3, 3] = position
+            board.place(T)
+        elif (T_wd := self.wanted()) is not None:
+            self._shift = self._shift + position - T_wd[:3, 3]
+
+    def approach(self, seconds: float) -> None:
+        """Move dragged things towards their goals for ``seconds``, at `FASTEST` at most."""
+        for number, goal in self._goals.items():
+            thing: Any = self._arm.world.things[number]
+            name = "anchor" if isinstance(thing, Spring) else "point"
+            way = goal - getattr(thing, name)
+            share = min(1.0, FASTEST * seconds / max(1e-9, float(np.linalg.norm(way))))
+            moved = replace(thing, **{name: getattr(thing, name) + share * way})
+            self._arm.world.things[number] = moved
+
+
+def _closed(target: Any, duration: float) -> bool:
+    """Whether a target moves and ends where it began."""
+    first, middle, last = (target(t)[0] for t in (0.0, 0.5 * duration, duration))
+    return bool(np.allclose(first, last, atol=1e-6) and not np.allclose(first, middle, atol=1e-6))
 
 
 class Law:
@@ -92,55 +244,29 @@ class Law:
     Attributes:
         name: Name of the selected controller.
         values: Present values of the dials.
-        asked: Latest command of the controller.
-        since: Time at which the present call began, by `time.monotonic`; None between two calls.
     """
 
-    asked: Any = None
-    since: float | None = None
-
-    def __init__(self, laws: Mapping[str, Callable[..., Any]], dials: Mapping[str, Dial]) -> None:
-        """Select the first controller, and set the dials to their starting values."""
-        self._laws, self._took = laws, deque[float](maxlen=CALLS)
-        own = dials.keys() - OF_PLANT
+    def __init__(self, laws: Mapping[str, Callable[..., Any]], values: Mapping[str, float]) -> None:
+        """Select the first controller."""
+        self._laws = laws
+        own = values.keys() - OF_PLANT
         self._takes = {law: [d for d in arguments(f) if d in own] for law, f in laws.items()}
-        self.name = next(iter(laws))
-        self.values = {name: dial.value for name, dial in dials.items()}
+        self.name, self.values = next(iter(laws)), dict(values)
 
     @property
     def __name__(self) -> str:
-        """The controller and its dials, for logs and messages."""
-        return ", ".join([self.name, *(f"{d} {self.values[d]:g}" for d in self._takes[self.name])])
-
-    def dialled(self, usual: Plant) -> Plant:
-        """The usual plant with the values of its dials."""
-        numbers: Any = {name: x for name, x in self.values.items() if name in OF_PLANT}
-        return replace(usual, **numbers, name=f"{usual.name}, dialled")
+        """The selected controller, for messages."""
+        return self.name
 
     def reset(self) -> None:
         """Let the selected controller forget, if it has a memory; `run_driven` calls this."""
-        self._took.clear()
         if reset := getattr(self._laws[self.name], "reset", None):
             reset()
 
     def __call__(self, state: Any, target: Any) -> Any:
         """The selected controller's command."""
-        self.since = began = time.monotonic()
-        try:
-            dials = {d: self.values[d] for d in self._takes[self.name]}
-            self.asked = self._laws[self.name](state, target, **dials)
-        finally:
-            self.since = None
-            self._took.append(time.monotonic() - began)
-        return self.asked
-
-    def check_pace(self, period: float) -> None:
-        """Raise `LabkitError` if half of the latest calls took longer than a period, in [s]."""
-        if len(self._took) == CALLS and median(self._took) > period:
-            raise LabkitError(
-                f"{self.name} takes {1e3 * median(self._took):.1f} ms, but is called every "
-                f"{1e3 * period:g} ms; make it faster, or give live(..., rate=...) a lower rate"
-            )
+        dials = {d: self.values[d] for d in self._takes[self.name]}
+        return self._laws[self.name](state, target, **dials)
 
 
 def arguments(law: Callable[..., Any]) -> tuple[str, ...]:
@@ -151,125 +277,67 @@ def arguments(law: Callable[..., Any]) -> tuple[str, ...]:
         return ()
 
 
-class Session(Driven):
-    """An arm, its controllers and a hand, which run in a separate thread until `close`.
-
-    Attributes:
-        logs: The runs that were kept, in order.
-    """
+class LiveSession(Driven):
+    """An arm, its controllers and a hand; the arm moves in a separate thread until it is paused."""
 
     def __init__(
         self,
         arm: Arm,
         laws: Mapping[str, Callable[..., Any]],
         target: Any,
-        dials: Mapping[str, Dial],
+        dials: Mapping[str, float],
         rate: float,
         show: Callable[[dict[str, Any]], None],
     ) -> None:
         """Make a session that has not begun; ``show`` receives each picture as numbers."""
         super().__init__(arm, rate)
-        self.arm, self._show = arm, show
-        self.law, self.around = Law(laws, dials), Surroundings(arm, target)
-        self.hand, self._pull, self._thread = Hand(arm), Pull(arm), threading.Thread()
-        self._usual, self._q0 = arm.plant, arm.truth().q.copy()
+        self.arm, self._show, self._q0 = arm, show, arm.truth().q.copy()
+        self.law, self.around, self.hand = Law(laws, dials), Surroundings(arm, target), Hand(arm)
         self._inbox: SimpleQueue[dict[str, Any]] = SimpleQueue()
-        self.logs, self.state, self.note = list[Log](), "ready", ""
-        self._within = self._keep = self._over = self._again = False  # of a run
-        self._steps_left, self._heard, self._limit = 0, 0.0, ""
-        self._changes: list[Callable[[], Any]] = []
-        self._began, self._move = 0.0, 0  # of the run in real time; of the hand in the last picture
-        self._pictures = deque([(0.0, 0.0)], maxlen=30)  # when, and what time it was in the world
-
-    # From any thread
+        self._thread, self.state, self.note = threading.Thread(), "ready", ""
+        self._again, self._began, self._drawn, self._heard = False, 0.0, 0.0, 0.0
 
     def tell(self, message: dict[str, Any]) -> None:
-        """Take a message from the page; the thread reads it before its next tick."""
-        if message.get("kind") in (None, "files"):  # not meant for the arm
-            return
-        if self.state == "closed" and self._thread.is_alive():
-            self._thread.join(2 * PATIENCE)  # it is ending and reads no more messages
+        """Take a message from the page; while the arm moves, its thread reads it."""
         self._heard = time.monotonic()
-        self._inbox.put({**message, "heard": self._heard})
+        if self.state == "running":
+            self._inbox.put(message)
+            return
         if self._thread.is_alive():
-            if self.law.since and self._heard - self.law.since > PATIENCE:
-                note = f"{self.law.name} has not returned; does every loop in it end?"
-                self._show({"kind": "note", "note": f"{note} Choose Kernel, Restart Kernel"})
-        elif message["kind"] in ("go", "step"):
+            self._thread.join(1.0)  # it is ending
+        if message.get("kind") == "go":
+            self.state, self.note, self._inbox = "running", "", SimpleQueue()
             self._thread = threading.Thread(target=self._main, name="labkit live", daemon=True)
             self._thread.start()
         else:
-            self._obey()
-            self._change()
-            self._picture()
+            self._obey(message)
+            self._show(self.numbers())
 
     def close(self) -> None:
-        """End the session, which leaves the arm at rest and free for other cells."""
-        self._inbox.put({"kind": "close"})
-        if self._thread.is_alive() and self._thread is not threading.current_thread():
-            self._thread.join(2 * PATIENCE)
-
-    # In the thread
+        """Pause, which leaves the arm at rest and free for other cells."""
+        self._inbox.put({"kind": "pause"})
+        if self._thread.is_alive():
+            self._thread.join(2.0)
 
     def _main(self) -> None:
         world = self.arm.world
         world.put(self.hand)
-        world.owner, self.state = threading.get_ident(), "ready"
-        sys.setswitchinterval(TURN)
+        world.owner = threading.get_ident()
         try:
-            while self.state != "closed":
-                self._one_run()
-            self._picture()
-        finally:
-            sys.setswitchinterval(_USUAL)
-            world.things.remove(self.hand)  # another session may follow with its own hand
-            self.arm.become(self._usual)
-            world.owner = None
-
-    def _one_run(self) -> None:
-        """Run until something ends the run: a dial, another controller, "keep" or an error."""
-        self._change()
-        self._obey(wait=self.state != "running")
-        if self._changes or self.state != "running":
-            return
-        self._within, self._over, self._again, self._keep = True, False, False, False
-        self.plant, self._began = self.arm.plant, time.monotonic()
-        self.around.begin_run()
-        try:
-            log = run_driven(self, self.around.target, self.law, LONGEST)
+            while self.state == "running":  # reset, a dial or another controller begins a new run
+                t0, self._again = world.t, False
+                self.plant, self._began = self.arm.plant, time.monotonic()
+                run_driven(self, self.around.target, self.law, LONGEST)
+                if not self._again:
+                    self.around.since += world.t - t0
         except Exception as error:
-            if self.state != "closed":
-                self._rest(error)
-            return
+            self.arm.recover()
+            self.state, self.note = "stopped", sentence(error)
         finally:
-            self._within = False
-        self._limit = "" if self._over else _LIMIT.format(LONGEST, self.arm.world.t)
-        self.around.go_on(0.0 if self._again else float(log.t[-1]))
-        if self._keep:
-            self.logs.append(log)
-            self._picture()
-
-    def _change(self) -> None:
-        """Apply the pending changes between two runs."""
-        if self._changes:
-            for change in self._changes:
-                change()
-            self._changes.clear()
-            self._picture()
-
-    def _rest(self, error: Exception) -> None:
-        """Bring the arm to rest and say why."""
-        self.hand.let_go()
-        self.arm.recover()
-        if isinstance(error, Diverged):
-            self.logs.append(cast(Log, error.log))
-        self.state, self.note = "stopped", sentence(error)
-        self._picture()
-
-    def begin(self) -> float:
-        """Begin a run; the time since then."""
-        self._pull.begin()
-        return 0.0
+            self.hand.let_go()
+            world.things.remove(self.hand)  # another session may follow with its own hand
+            world.owner = None
+            self._show(self.numbers())
 
     def stop(self) -> None:
         """Stop the arm, unless another run follows immediately."""
@@ -277,189 +345,69 @@ class Session(Driven):
             super().stop()
 
     def advance(self, k: int) -> tuple[int, float, bool]:
-        """Simulate a tick, wait for real time, and read the messages of the page."""
-        self.law.check_pace(self.period)
-        self.hand.tire()
+        """Simulate a tick, wait for real time, and obey the page."""
         self.around.approach(self.period)
         k, t, cut = super().advance(k)
-        if self._steps_left:
-            self._steps_left -= 1
-            self.state = "running" if self._steps_left else "paused"
-        self._pace(t)
-        self._obey()  # after the wait, so that the next tick has the newest messages
-        while self.state == "paused" and not self._over:
-            self._picture()
-            self._obey(wait=True)
-            self._began = time.monotonic() - t
-        return (_OVER if self._over or self.state != "running" else k), t, cut
-
-    def _pace(self, t: float) -> None:
-        """Show a picture if one is due, then wait for real time."""
         now = time.monotonic()
+        if now - self.hand.heard > STEADY:
+            self.hand.let_go()
         if now - self._heard > ABSENT:
-            self.state, self.note = "paused", "nobody looked for a minute"
-        if self.hand.move != self._move or now - self._pictures[-1][0] > FRAME:
-            self._move = self.hand.move
-            self._pictures.append((now, self.arm.world.t))
-            self._picture()
+            self.state, self.note = "ready", "nobody looked for a minute"
+        if now - self._drawn > FRAME:
+            self._drawn = now
+            self._show(self.numbers())
         ahead = self._began + t - time.monotonic()
         if ahead < -LATE:
             self._began -= ahead
+            self.note = f"slower than real time: {self.law.name} or another cell takes too long"
         time.sleep(max(0.0, ahead))
+        over = False  # obey after the wait, so that the next tick has the newest messages
+        while not self._inbox.empty():
+            over |= self._obey(self._inbox.get())
+        if over or self.state != "running":
+            raise KeyboardInterrupt  # as the user does to a run
+        return k, t, cut
 
-    def _obey(self, wait: bool = False) -> None:
-        """Carry out the messages of the page; with `wait`, wait for at least one."""
-        with suppress(Empty):
-            while True:
-                message = self._inbox.get(wait, ABSENT if wait else None)
-                getattr(self, f"_on_{message['kind']}", lambda message: None)(message)
-                wait = False
-
-    def _on_go(self, message: dict[str, Any]) -> None:
-        self.state, self.note, self._limit, self._steps_left = "running", "", "", 0
-        self._pictures = deque([(time.monotonic(), self.arm.world.t)], maxlen=30)
-
-    def _on_pause(self, message: dict[str, Any]) -> None:
-        self.state = "paused" if self.state == "running" else self.state
-
-    def _on_step(self, message: dict[str, Any]) -> None:
-        self._on_go(message)
-        self._steps_left = max(1, round(STEP / self.period))
-
-    def _on_reset(self, message: dict[str, Any]) -> None:
-        self.hand.let_go()
-        self.arm.reset(self._q0)
-        self.around.begin_again()
-        self._over, self._again, self.note = True, True, ""
-        self.state = "running" if self.state == "running" else "ready"
-        self._picture()
-
-    def _on_keep(self, message: dict[str, Any]) -> None:
-        if self._within:
-            self._keep = self._over = True
-        else:
-            self.note = self.note or "there is no run to keep: press Start or Step first"
-            self._picture()
-
-    def _on_close(self, message: dict[str, Any]) -> None:
-        self.hand.let_go()
-        self.state, self.note = "closed", "ended: other cells can use the arm; Start begins again"
-
-    def _on_hand(self, message: dict[str, Any]) -> None:
-        self.hand.follow(message)
-
-    def _on_thing(self, message: dict[str, Any]) -> None:
-        self.around.move(message["name"], message["position"])
-
-    def _on_law(self, message: dict[str, Any]) -> None:
-        self._after(lambda: setattr(self.law, "name", message["name"]))
-
-    def _on_dial(self, message: dict[str, Any]) -> None:
-        self._after(lambda: self._turn(message["name"], float(message["value"])))
-
-    def _after(self, change: Callable[[], Any]) -> None:
-        """Apply a change after the present run, because a run has one controller and one plant."""
-        self._changes.append(change)
-        self._over = True
-
-    def _turn(self, name: str, value: float) -> None:
-        self.law.values[name] = value
-        if name in OF_PLANT:
-            self.arm.become(self.law.dialled(self._usual))
-
-    # What the page draws
-
-    def _picture(self) -> None:
-        if self.state == "running":
-            said = self._pull.look(self.law.asked, self.around.wanted(), self.hand.at is None)
-            self.note = f"{self.law.name} {said}" if said else self._limit
-        self._show(self.numbers())
+    def _obey(self, message: Mapping[str, Any]) -> bool:
+        """Carry out a message of the page; whether it ends a run."""
+        match message.get("kind"):
+            case "pause":
+                self.state = "ready"
+            case "reset":
+                self.hand.let_go()
+                self.arm.reset(self._q0)
+                self.note = ""
+                if hasattr(self.around._target, "duration"):  # a tag's target goes on with its tag
+                    self.around.since, self._again = 0.0, True
+            case "law":
+                self.law.name = message["name"]
+            case "dial":
+                name = message["name"]
+                self.law.values[name] = float(message["value"])
+                if name in OF_PLANT:
+                    number: Any = {name: self.law.values[name]}
+                    self.arm.become(replace(self.arm.plant, **number))
+            case "hand":
+                self.hand.follow(message)
+                return False
+            case "thing":
+                self.around.move(message["name"], message["position"])
+                return False
+            case _:
+                return False
+        return True
 
     def numbers(self) -> dict[str, Any]:
         """The session as the page draws it."""
-        (a, x), (b, y) = self._pictures[0], self._pictures[-1]
-        return {
-            "kind": "frame", "state": self.state, "note": self.note, "law": self.law.name,
-            "pace": round((y - x) / (b - a), 3) if b > a else None,
-            "kept": [round(float(log.t[-1]), 1) for log in self.logs],
-            "move": self.hand.move, **self.around.seen(), **self.hand.seen(),
-        }  # fmt: skip
+        frame = {"kind": "frame", "state": self.state, "note": self.note, "law": self.law.name}
+        return frame | self.around.seen() | self.hand.seen()
 
 
 def sentence(error: Exception) -> str:
     """The reason why the arm stopped, with the student's line that caused it."""
-    what = str(error).replace("error.log", "view.log")
+    what = str(error)
     if not isinstance(error, LabkitError):
         what = f"{type(error).__name__}: {what}"
     steps = traceback.extract_tb((error.__cause__ or error).__traceback__)
     own = [step.line for step in steps if step.line and not _LIBRARY.search(step.filename)]
     return f"{what} (line: {own[-1]})" if own else what
-
-
-FAR = 0.05
-"""Distance of the tip from the target up to which a controller is not judged, in [m]."""
-
-LOOKS = 10
-"""Number of consecutive checks, made 30 times a second, that are judged together."""
-
-WEAK = 2.0
-"""A pull smaller than this, in [N], has no usable direction."""
-
-_SAYS = {
-    1: "pulls the arm away from its target; check the signs of its spring and its damper",
-    2: "pulls along the error as the tool's axes have it; are the error and the Jacobian in the "
-    "same axes?",
-    3: "pulls towards its target, but the arm's weight pulls it elsewhere; does it add gravity?",
-}
-_RIGHT, _CLEAR = 0.7, 0.85  # cosines
-
-
-class Pull:
-    """Checks the direction of a controller's pull repeatedly."""
-
-    def __init__(self, arm: Arm) -> None:
-        """Prepare to check the controller that drives ``arm``."""
-        self._arm = arm
-        self.begin()
-
-    def begin(self) -> None:
-        """Start again, for another controller or another run."""
-        self._looks: deque[list[float]] = deque(maxlen=LOOKS)
-        self._said = ""
-
-    def look(self, asked: Any, T_wd: Array | None, alone: bool) -> str:
-        """Say what is wrong with the controller once that is clear, otherwise nothing.
-
-        Args:
-            asked: The controller's latest command; only torques have a pull.
-            T_wd: Desired pose of the tip, shape (4, 4), if it is known.
-            alone: Whether no hand is pulling as well.
-        """
-        if T_wd is None or not alone or not isinstance(asked, JointTorque):
-            self._looks.clear()
-            return self._said
-        arm, q, tau = self._arm, self._arm.truth().q, asked.value
-        way = T_wd[:3, 3] - arm.tip()[0]
-        if np.linalg.norm(way) < FAR:
-            self.begin()
-            return ""
-        g = arm.model.gravity(q)
-        felt = tip_force(arm.model, q, tau if arm.plant.gravity_compensation else tau - g)
-        in_tool = arm.model.pose(q)[:3, :3].T @ way
-        ways = [(felt, way), (felt, -way), (felt, in_tool), (tip_force(arm.model, q, tau), way)]
-        self._looks.append([_cosine(force, along) for force, along in ways])
-        likely = np.mean(self._looks, axis=0)
-        best = int(likely[1:].argmax()) + 1
-        if len(self._looks) == LOOKS and likely[0] < _RIGHT and likely[best] > _CLEAR:
-            self._said = self._said or _SAYS[best]
-        return self._said
-
-
-def tip_force(model: Model, q: Array, torque: Array) -> Array:
-    """The force at the tip that is equivalent to joint torques, world axes, shape (3,) in [N]."""
-    return np.asarray(np.linalg.lstsq(model.tip_jacobian(q).T, torque, rcond=1e-3)[0][:3])
-
-
-def _cosine(force: Array, way: Array) -> float:
-    size = float(np.linalg.norm(force))
-    return 0.0 if size < WEAK else float(force @ way) / (size * float(np.linalg.norm(way)))

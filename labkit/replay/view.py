@@ -3,33 +3,55 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from dataclasses import asdict
+from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from .. import se3
 from ..arm import Arm
+from ..control import JointTorque
 from ..errors import OutOfRange, TypeMismatch, UnknownName
+from ..model import Model
 from ..plant import EVIDENCE, Plant
 from ..robot import SIDES
 from ..run import check_order, name_of
 from ..shapes import as_number, shown
-from ..trajectory import Target
-from .motion import compact, drawn
+from ..trajectory import Hold, Target
+from .motion import Motion, compact, drawn
 from .player import still
-from .session import OF_PLANT, Dial, Session, arguments
-from .surroundings import faces
+from .session import OF_PLANT, LiveSession, arguments
 
 if TYPE_CHECKING:
     from .widgets import Live
 
-_UNITS = {name: source.unit for name, source in EVIDENCE.items()}
+_SOFT = np.array([300.0] * 3 + [2.0] * 3)  # [N/m] and [N m/rad]
+_DAMPED = 15.0  # [1/s]
+
+
+@dataclass(frozen=True)
+class Dial:
+    """A number that the user can change.
+
+    Attributes:
+        name: Name of a number of `Plant`, or of an argument of a controller.
+        min: Least value.
+        max: Largest value.
+        value: Starting value.
+        unit: Unit of the values.
+    """
+
+    name: str
+    min: float
+    max: float
+    value: float
+    unit: str = ""
 
 
 def live(
     arm: Arm,
-    target: Target,
-    controller: Callable[..., Any] | Mapping[str, Callable[..., Any]],
+    target: Target | None = None,
+    controller: Callable[..., Any] | Mapping[str, Callable[..., Any]] | None = None,
     *,
     rate: float = 200.0,
     title: str = "The arm, live",
@@ -37,26 +59,31 @@ def live(
 ) -> Live:
     """Show an arm in real time that the user can pull with the mouse, by touch or with keys.
 
-    Nothing runs before "Start" is pressed.  From then on the arm belongs to the cell, and its use
-    in other cells raises an error.  If a controller raises, loses the arm or is too slow, the arm
-    is left at rest, and a message beside the picture names the controller.
+    ``lk.live(lk.Arm("left"))`` is a soft arm to play with.  A tag to drag, which the student's
+    own servo follows by the camera's readings::
+
+        readings = lk.TagStream(camera, board.tag, rate=10.0, delay=0.1)
+        lk.live(arm, lk.TagTarget(readings, follower), controller, rate=100.0)
+
+    Nothing runs before "Start" is pressed.  While the arm moves it belongs to the cell, and its use
+    in other cells raises an error; Pause frees it.  If a controller raises, loses the arm or is too
+    slow, the arm is left at rest, and a message beside the picture names the controller.
 
     Args:
         arm: A simulated arm, preferably one made for this cell; it starts where it is.
         target: As for `run`.  A closed path repeats for ever; a target of poses can be dragged,
-            and so can walls, tables, bands and tags.
+            and so can walls, bands and tags.  None is the place where the arm is.
         controller: As for `run`; or several by name, to switch between.  One that has an argument
             with the name of a dial is given the dial's value there: ``law(state, target, Kp)``.
+            None is a spring of 300 N/m from the tip to the target's pose.
         rate: How often the controller is called, in [Hz].
         title: The heading.
         **dials: For each dial a range (low, high) or (low, high, start), and perhaps a unit, as in
             (50.0, 1500.0, 300.0, "N/m").  A number of `Plant`, such as payload, stiction or
-            state_delay, changes the arm itself.
+            state_delay, changes the arm itself; it starts where the arm has it.
 
     Returns:
-        A view to put last in a cell; ``view.log`` is the run that was kept last, ``view.logs`` are
-        all, ``view.close()`` frees the arm.  A run begins with Start, Reset, and each turn of a
-        dial or choice of a controller, and anew after 120 s.
+        A view to put last in a cell; ``view.close()`` pauses it.
 
     Raises:
         TypeMismatch: The arm is not simulated, a controller or the target is not a function, they
@@ -68,74 +95,73 @@ def live(
 
     if not isinstance(arm, Arm):
         raise TypeMismatch(f"arm is {shown(arm)}, expected a simulated lk.Arm")
+    target = Hold(arm.model.pose(arm.truth().q), 1.0) if target is None else target
+    controller = _soft(arm.model) if controller is None else controller
     named = controller if isinstance(controller, Mapping) else {name_of(controller): controller}
     check_order(target, *named.values())
     laws = {str(name): law for name, law in named.items()}
-    found = read_dials(dials, arm.plant, laws)
-    widget = Live()
-    widget.session = Session(arm, laws, target, found, rate, widget.send)
+    found = [read_dial(name, span, arm.plant, laws) for name, span in dials.items()]
+    widget, robot = Live(), arm.robot
+    values = {dial.name: dial.value for dial in found}
+    widget.session = LiveSession(arm, laws, target, values, rate, widget.send)
     widget.on_msg(lambda _, message, __: widget.session.tell(message))
     first = widget.session.numbers()
     widget.data = compact(
         {
             "kind": "live",
             "title": title,
-            "alt": f"{title}: Baxter's {arm.robot.name} arm" if arm.robot.name in SIDES else title,
-            "side": arm.robot.name,
-            **({} if arm.robot.name in SIDES else {"robot": drawn(arm.robot)}),
+            "alt": title,
+            "side": robot.name,
+            **({} if robot.name in SIDES else {"robot": drawn(robot)}),
             "laws": list(laws),
-            "dials": [asdict(dial) for dial in found.values()],
-            "joints": [n.removeprefix(f"{arm.robot.name}_") for n in arm.robot.joint_names],
+            "dials": [vars(dial) for dial in found],
+            "joints": [n.removeprefix(f"{robot.name}_") for n in robot.joint_names],
             "first": first,
             "path": widget.session.around.path(),
         }
     )
-    widget.words = (
-        f"{title}. The controller is {' or '.join(laws)}. Run this cell, press Start, and pull at "
-        "the arm with the mouse or with the buttons below it."
-    )
-    elbow = arm.model.point_on(first["q"], arm.robot.n // 2, np.zeros(3))[0]
-    widget.picture = lambda: still(
-        arm.robot, first["q"], around=elbow[None, :], alone=True, through=faces(first["things"])
-    )
+    widget.words = f"{title}. Run this cell, press Start, and pull at the arm with the mouse."
+    q, things = np.array([first["q"]] * 2), first["things"]
+    widget.picture = lambda: still(Motion(robot, np.array([0.0, 1.0]), q, things=things))
     return widget
 
 
-def read_dials(
-    given: Mapping[str, Any], plant: Plant, laws: Mapping[str, Callable[..., Any]]
-) -> dict[str, Dial]:
-    """The dials by name.
+def _soft(model: Model) -> Callable[..., JointTorque]:
+    """A spring from the tip to the target's pose; speeds die away as fast in all joints."""
 
-    Args:
-        given: For each dial, a range (low, high) or (low, high, start), and perhaps a unit.
-        plant: The plant with the starting values of its dials.
-        laws: The controllers that read the other dials, by name.
+    def soft(state: Any, target: Any) -> JointTorque:
+        q, J = state.q, model.tip_jacobian(state.q)
+        spring = J.T @ (_SOFT * se3.pose_error(target.pose, model.pose(q)))
+        weight = 0.0 if model.plant.gravity_compensation else model.gravity(q)
+        return JointTorque(spring - _DAMPED * model.mass_matrix(q) @ state.dq + weight)
+
+    return soft
+
+
+def read_dial(name: str, span: Any, plant: Plant, laws: Mapping[str, Callable[..., Any]]) -> Dial:
+    """A dial, from its range (low, high) or (low, high, start), and perhaps a unit.
 
     Raises:
-        TypeMismatch: A dial has no range.
-        OutOfRange: A start is outside its range.
-        UnknownName: A dial is neither a number of the plant nor an argument of a controller.
+        TypeMismatch: It has no range.
+        OutOfRange: Its start is outside its range.
+        UnknownName: It is neither a number of the plant nor an argument of a controller.
     """
-    dials = {}
-    for name, span in given.items():
-        try:
-            *numbers, unit = span if isinstance(span[-1], str) else (*span, _UNITS.get(name, ""))
-            low, high, *start = (as_number(x, name) for x in numbers)
-        except (TypeError, ValueError, LookupError):
-            raise TypeMismatch(
-                f"the dial {name} is {shown(span)}; give its range, {name}=(low, high) or "
-                f"{name}=(low, high, start)"
-            ) from None
-        if name in OF_PLANT:
-            own = getattr(plant, name)
-            usual = max(own) if isinstance(own, tuple) else own
-        elif any(name in arguments(law) for law in laws.values()):
-            usual = low
-        else:
-            known = {*OF_PLANT, *(x for law in laws.values() for x in arguments(law)[2:])}
-            raise UnknownName("dial", name, sorted(known))
-        value = start[0] if start else min(max(usual, low), high)
-        if not low <= value <= high or low >= high:
-            raise OutOfRange(f"the dial {name} starts at {value:g}, outside {low:g} to {high:g}")
-        dials[name] = Dial(name, low, high, value, unit)
-    return dials
+    taken = {x for law in laws.values() for x in arguments(law)[2:]}
+    if name not in OF_PLANT | taken:
+        raise UnknownName("dial", name, sorted(OF_PLANT | taken))
+    try:
+        usual = EVIDENCE[name].unit if name in EVIDENCE else ""
+        *numbers, unit = span if isinstance(span[-1], str) else (*span, usual)
+        low, high, *start = (as_number(x, name) for x in numbers)
+    except (TypeError, ValueError, LookupError):
+        raise TypeMismatch(
+            f"the dial {name} is {shown(span)}; give its range, {name}=(low, high) or "
+            f"{name}=(low, high, start)"
+        ) from None
+    value = start[0] if start else low
+    if name in OF_PLANT:
+        own: Any = getattr(plant, name)
+        value = min(max(max(own) if isinstance(own, tuple) else own, low), high)
+    if not low <= value <= high or low >= high:
+        raise OutOfRange(f"the dial {name} starts at {value:g}, outside {low:g} to {high:g}")
+    return Dial(name, low, high, value, unit)

@@ -11,10 +11,8 @@ from typing import Any
 import anywidget
 import traitlets
 
-from ..errors import NothingKept
-from ..log import Log
 from .player import VIEWER, figure_html, filled, in_its_place, viewer_scripts
-from .session import Session
+from .session import LiveSession
 
 
 class Widget(anywidget.AnyWidget):
@@ -65,35 +63,19 @@ class Replay(Widget):
         Args:
             path: The file, with a name that should end in ".html".
         """
-        title, words = escape(str(json.loads(self.data)["title"])), self.words
+        data = json.loads(self.data)
         scripts = "".join(f"<script>{text}</script>\n" for text in viewer_scripts())
-        figure = figure_html(self.data, words, words, words)
-        page = filled("page.html", title=title, figure=figure, scripts=scripts)
+        figure = figure_html(data, self.words, self.words)
+        page = filled("page.html", title=escape(data["title"]), figure=figure, scripts=scripts)
         Path(path).write_text(page, encoding="utf-8")
 
 
 class Live(Widget):
     """Shows a session and passes the user's actions on to it."""
 
-    session: Session
-
-    @property
-    def log(self) -> Log:
-        """The last run that was kept.
-
-        Raises:
-            NothingKept: No run has been kept.
-        """
-        if not self.session.logs:
-            raise NothingKept("no run was kept: press Start, then Keep this run in the view")
-        return self.session.logs[-1]
-
-    @property
-    def logs(self) -> tuple[Log, ...]:
-        """All runs that have been kept."""
-        return tuple(self.session.logs)
+    session: LiveSession
 
     def close(self) -> None:
-        """End the session, which leaves the arm at rest and free for other cells."""
+        """Pause, which leaves the arm at rest and free for other cells."""
         self.session.close()
         super().close()

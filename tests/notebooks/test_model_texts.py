@@ -9,7 +9,7 @@ import pytest
 
 import labkit as lk
 from labkit.course.notebook import WORDS, words_of
-from labkit.replay.hand import STRONGEST, Hand
+from labkit.replay.session import STRONGEST, Hand
 from solutions.torque_control.answers import computed_torque
 from solutions.velocity_control.answers import joint_velocity_pd
 

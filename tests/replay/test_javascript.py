@@ -6,7 +6,6 @@ from pathlib import Path
 import numpy as np
 import pinocchio as pin
 import pytest
-from numpy.polynomial import Polynomial
 from samples import swing
 
 from labkit.replay.motion import unpack
@@ -55,25 +54,6 @@ def test_kinematics_equal_pinocchio(node, baxter, side):
         assert js["w"] == pytest.approx(measure, abs=1e-6)
 
 
-def test_every_joint_frame_equals_pinocchio(node, baxter):
-    """With all 15 joints at random angles each frame agrees to 1e-6."""
-    rng = np.random.default_rng(8)
-    q, data = pin.neutral(baxter), baxter.createData()
-    tree = node("robot.joints")
-    assert len(tree) == 15
-    angles = {j["name"]: rng.uniform(j["lower"], j["upper"]) for j in tree}
-    for name, angle in angles.items():
-        q[baxter.idx_qs[baxter.getJointId(name)]] = angle
-    pin.forwardKinematics(baxter, data, q)
-    for name, frame in node("kinematics.frames(robot, x)", angles).items():
-        if name != "base":
-            T = data.oMi[baxter.getJointId(name)]
-            np.testing.assert_allclose(frame["p"], T.translation, rtol=0, atol=1e-6)
-            np.testing.assert_allclose(
-                np.reshape(frame["R"], (3, 3)), T.rotation, rtol=0, atol=1e-6
-            )
-
-
 def test_logarithm_equals_pinocchio(node):
     """From no turn to 1e-8 rad less than half a turn the vectors come back to 1e-6."""
     rng = np.random.default_rng(9)
@@ -109,20 +89,6 @@ def test_orientation_error_turns_actual_into_target(node):
         assert found["angle"] == pytest.approx(np.linalg.norm(found["log"]))
 
 
-POLYNOMIALS = {"cubic": Polynomial([0, 0, 3, -2]), "quintic": Polynomial([0, 0, 0, 10, -15, 6])}
-
-
-@pytest.mark.parametrize("name", POLYNOMIALS)
-def test_polynomial_scalings_equal_numpy(node, name):
-    """Value, speed and acceleration are NumPy's at 100 times, and the end is exactly 1 at rest."""
-    T, p = 3.7, POLYNOMIALS[name]
-    t = np.linspace(0, T, 101)[:-1]
-    found = np.array(node(f"x.map((t) => scaling.profile('{name}', {T}, t))", t.tolist()))
-    exact = np.column_stack([p(t / T), p.deriv()(t / T) / T, p.deriv(2)(t / T) / T**2])
-    np.testing.assert_allclose(found, exact, rtol=0, atol=1e-12)
-    assert node(f"scaling.profile('{name}', {T}, {T})") == [1, 0, 0]
-
-
 @pytest.mark.parametrize(
     ("expression", "T", "ramp", "a"),
     [
@@ -143,12 +109,6 @@ def test_ramped_scalings_are_their_accelerations_integrated(node, expression, T,
     way = np.concatenate([[0], np.cumsum(0.5 * (first[1:] + first[:-1]) * np.diff(t))])
     np.testing.assert_allclose(found[:, 0], way, rtol=0, atol=1e-5)
     assert found[-1, 0] == pytest.approx(1.0, abs=1e-6)
-
-
-def test_trapezoid_of_a_given_duration(node):
-    """The acceleration for 2 s gives a duration of 2 s."""
-    a = node("scaling.trapezoidAcceleration(0.4, 0.3, 2)")
-    assert node("scaling.trapezoidDuration(0.4, 0.3, x)", a) == pytest.approx(2.0)
 
 
 def test_browser_unpacks_what_python_packs(node):

@@ -2,8 +2,6 @@
 
 import json
 import re
-import sys
-from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -14,7 +12,7 @@ from samples import swing
 
 from labkit.errors import LabkitError
 from labkit.replay import Motion
-from labkit.replay.motion import STEPS, _quaternions, pack, unpack
+from labkit.replay.motion import _quaternions, pack, unpack
 
 
 @given(
@@ -25,22 +23,6 @@ from labkit.replay.motion import STEPS, _quaternions, pack, unpack
 def test_packing_errs_by_half_a_step_at_most(x, step):
     """Packed, written as JSON and read again, numbers are off by half of the step at most."""
     assert np.abs(unpack(json.loads(json.dumps(pack(x, step)))) - x).max() <= step / 2 + 1e-12
-
-
-def test_json_keeps_every_channel():
-    """At 25 Hz each number is off by half a step at most, and the last time is the motion's."""
-    motion = swing(ghosts=2)
-    read = json.loads(motion.to_json(rate=25))
-    times = read["start"] + read["period"] * np.arange(len(unpack(read["q"])))
-    assert times[-1] == pytest.approx(motion.t[-1])
-    for name, rows in {
-        "q": motion.q, "target": motion.target_position,
-        "error": motion.error[:, None], "tau": motion.tau,
-    }.items():  # fmt: skip
-        exact = np.column_stack([np.interp(times, motion.t, c) for c in rows.T])
-        assert np.abs(unpack(read[name]) - exact).max() <= STEPS[name] / 2 + 1e-9, name
-    assert np.abs(unpack(read["path"]) - motion.path).max() <= STEPS["path"] / 2 + 1e-9
-    assert list(read["ghosts"]) == list(motion.ghosts)
 
 
 @pytest.mark.parametrize("ghosts", [0, 2, 4])
@@ -91,24 +73,3 @@ def test_wrong_input_is_named(change, sentence):
     good = {"robot": "left", "t": np.linspace(0, 1, 5), "q": np.zeros((5, 7))}
     with pytest.raises(LabkitError, match=sentence):
         Motion(**(good | change))
-
-
-def test_importing_replay_does_not_import_the_widgets():
-    """After the import of labkit.replay, anywidget is not loaded."""
-    import subprocess
-
-    code = "import sys; import labkit.replay; print('anywidget' in sys.modules)"
-    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
-    assert done.stdout.strip() == "False"
-
-
-def test_what_stays_is_told_in_one_number():
-    """A range whose ends are equal is one value, and a joint at rest travels nowhere."""
-    still = np.tile([0.641, 0.43, 0.03], (2, 1))
-    rest = Motion("left", np.array([0.0, 1.0]), np.zeros((2, 7)), target_position=still)
-    assert rest.description.endswith(
-        "No joint moves by more than 0.005 rad. The target stays at x = 0.64 m, y = 0.43 m, "
-        "z = 0.03 m."
-    )
-    line = replace(rest, target_position=still + [[0.0, 0.0, 0.0], [0.1, 0.0, 0.0]])
-    assert "moves within x from 0.64 to 0.74 m, y = 0.43 m, z = 0.03 m." in line.description

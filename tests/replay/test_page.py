@@ -2,7 +2,6 @@
 
 import base64
 import json
-import re
 from dataclasses import replace
 from html.parser import HTMLParser
 from io import BytesIO
@@ -10,7 +9,6 @@ from io import BytesIO
 import numpy as np
 import pytest
 from figures.embed import (
-    demo_html,
     motion_html,
     shared_files,
 )
@@ -18,10 +16,9 @@ from PIL import Image
 from samples import swing
 
 import labkit as lk
-from labkit.errors import OutOfRange, TypeMismatch, UnknownName
-from labkit.replay import motion_of, show
-from labkit.replay.motion import unpack
-from labkit.replay.player import motion_still
+from labkit.errors import TypeMismatch
+from labkit.replay import show
+from labkit.replay.player import still
 
 
 class Reader(HTMLParser):
@@ -61,30 +58,11 @@ def test_titles_cannot_break_out():
     assert json.loads(page.data)["title"] == motion.title
 
 
-def test_too_large_a_motion_is_refused():
-    """A minute with four ghosts is refused, and the error suggests a lower rate."""
-    with pytest.raises(OutOfRange, match="lower rate"):
-        motion_html(swing(60.0, ghosts=4))
-
-
 def test_viewer_and_robot_are_small():
     """All files that pages share have 2.5 MB at most."""
     files = shared_files()
     assert sum(p.stat().st_size for p in files.values()) <= 2_500_000
     assert {"boot.js", "viewer.js", "robot.js"} <= set(files)
-
-
-@pytest.mark.parametrize("name", ["scaling", "jacobian", "rotation"])
-def test_demos_describe_themselves(name):
-    """The data in a demo's page say which of the three it is."""
-    page = Reader(demo_html(name))
-    assert json.loads(page.data)["kind"] == name
-
-
-def test_an_unknown_demo_is_a_sentence():
-    """A misspelt name is refused, and the error lists those that exist."""
-    with pytest.raises(UnknownName, match="'jacobian'"):
-        demo_html("jacobean")
 
 
 def test_the_widget_sends_the_files_when_asked_and_keeps_them_out_of_its_state():
@@ -131,24 +109,6 @@ def test_a_saved_run_is_one_file_with_all_that_plays_it(tmp_path):
     assert motion.title in text
 
 
-def test_what_was_met_is_drawn_named_and_felt():
-    """A wall, a table and a spring go with the motion and into its picture; so does the force."""
-    arm = lk.Arm("left", world=lk.World(things=[lk.Table(), lk.Spring([0.6, 0.4, 0.3], 100.0)]))
-    there = lk.Hold(arm.model.pose(arm.state().q), 0.1)
-    wall = lk.Wall(there(0.0).pose[:3, 3] + [0.1, 0.0, 0.0], [-1.0, 0.0, 0.0], size=(0.2, 0.2))
-    things = [wall, *arm.world.things]
-    log = lk.run(arm, there, lambda state, target: lk.JointTorque(np.zeros(7)), 200.0, 0.1)
-    motion = motion_of(log, "Met", force=True, things=things)
-    assert list(motion.things) == ["wall 1", "table 2", "spring 3"]
-    assert "beside it wall 1, table 2 and spring 3" in motion.alt
-    data = motion.data()
-    assert data["things"]["wall 1"]["position"] == pytest.approx(wall.point, abs=1e-4)
-    assert unpack(data["force"]).shape[1] == 3
-    pictures = [Image.open(BytesIO(show(x).picture())) for x in (motion, motion_of(log, "Alone"))]
-    drawn = [(np.array(p)[:, :, :3] == [87, 96, 106]).all(axis=2).sum() for p in pictures]
-    assert drawn[0] > 100 > drawn[1]
-
-
 def test_a_still_shows_what_the_viewer_shows():
     """See-through arms, the faces of walls, and the largest force with its newtons."""
     plain = replace(swing(1.0, ghosts=0), path=None)
@@ -159,7 +119,7 @@ def test_a_still_shows_what_the_viewer_shows():
             "size": [0.2, 0.2], "colour": [0.2, 0.8, 0.2, 1.0]}  # fmt: skip
 
     def drawn(motion):
-        return np.array(Image.open(BytesIO(motion_still(motion)))).astype(int)
+        return np.array(Image.open(BytesIO(still(motion)))).astype(int)
 
     def reddish(pixels):
         return (pixels == [179, 0, 27, 255]).all(axis=2).sum()
@@ -176,50 +136,3 @@ def test_a_still_shows_what_the_viewer_shows():
         assert reddish(seen) > 100, "the path is still there"
     at, last = (drawn(replace(plain, force=f)) for f in (force, np.roll(force, 100, axis=0)))
     assert (at != last).any(), "the arm stands where the force is largest"
-
-
-def test_the_still_of_a_live_arm_shows_the_arm_alone_and_its_wall():
-    """As the view does when it opens."""
-    robot = lk.robot("left")
-    T = lk.Model(robot).pose(robot.ready)
-    wall = lk.Wall(T[:3, 3] + [0.1, 0, 0], [-1.0, 0.0, 0.0], size=(0.3, 0.3), colour=(0, 0, 1, 1))
-    with lk.Arm(robot, q0=robot.ready, world=lk.World(things=[wall])) as arm:
-        view = lk.live(arm, lk.Hold(T, 1.0), lk.control.hold(robot.ready))
-        pixels = np.array(Image.open(BytesIO(view.picture()))).astype(int)
-    assert ((pixels[:, :, 2] > 100) & (pixels[:, :, 0] == 0) & (pixels[:, :, 3] > 0)).sum() > 500
-    assert (pixels[:, 520:, 3] == 0).all(), "no body beside the shoulder"
-
-
-def test_a_joint_at_its_stop_is_no_force_on_the_tip():
-    """A law with a wrong sign throws the arm against its stops; the push on it was 10 N."""
-    model = lk.Model("left")
-    ready = model.robot.ready
-    T = model.pose(ready)
-
-    def wrong(state, target):
-        J, pull = model.tip_jacobian(state.q), 300.0 * (T[:3, 3] - model.pose(state.q)[:3, 3])
-        return lk.JointTorque(model.gravity(state.q) - J[:3].T @ pull - 2.0 * state.dq)
-
-    things = [lk.Push((0.0, 10.0, 0.0), duration=2.0)]
-    plant = lk.Plant(armature=0.05, viscous=0.7)
-    with lk.Arm("left", plant, q0=ready, world=lk.World(things=things)) as arm:
-        log = lk.run(arm, lk.Hold(T, 2.0), wrong)
-    assert np.linalg.norm(lk.metrics.felt_wrench(log)[:, :3], axis=1).max() > 100.0
-    told = re.search(r"up to (\d+) N act on the tip", motion_of(log, "Thrown", force=True).alt)
-    assert 10 <= int(told[1]) < 20
-
-
-def test_a_run_of_one_tick_is_refused_in_a_sentence_with_its_force_too():
-    """As where no force is asked for; a controller that fails at once leaves such a log."""
-    ready = lk.robot("left").ready
-    with lk.Arm("left", q0=ready) as arm:
-        log = lk.run(arm, lk.Hold(lk.Model().pose(ready), 0.0), lk.control.hold(ready))
-    with pytest.raises(OutOfRange, match="t has 1 times, and a motion needs at least two"):
-        motion_of(log, "Short", force=True)
-
-
-def test_a_wall_that_reaches_behind_the_eye_is_left_out_of_the_picture():
-    """However large the things are, there is a picture."""
-    wall = {"kind": "face", "position": [0.7, 0.4, 0.0], "quaternion": [0, 0.7071, 0, 0.7071],
-            "size": [50.0, 50.0], "colour": [0.5, 0.5, 0.5, 1.0]}  # fmt: skip
-    assert show(replace(swing(1.0), things={"wall 1": wall})).picture()[1:4] == b"PNG"

@@ -1,4 +1,4 @@
-(()=>{var a=`.lk-embed, .lk-player, .lk-demo {
+(()=>{var i=`.lk-embed, .lk-player, .lk-demo {
   --lk-text: #1f2328; --lk-quiet: #57606a; --lk-edge: #b6bec8; --lk-face: #ffffff; --lk-sky: #e9edf2;
   --lk-grid: #c3cad3; --lk-accent: #0a5aa6; --lk-trace: #b3001b; --lk-path: #1f2328;
   --lk-line-0: #b3001b; --lk-line-1: #0a5aa6; --lk-line-2: #a35200; --lk-line-3: #1a7f4b;
@@ -27,9 +27,6 @@ html[data-theme="dark"] .cell_output .text_html:has(.lk-embed) { /* the theme ma
 .lk-canvas { display: block; width: 100%; height: auto; aspect-ratio: 16 / 10; max-height: 480px; touch-action: pan-y; cursor: grab; }
 .lk-canvas.lk-grab { touch-action: none; cursor: default; }
 .lk-canvas.lk-over { cursor: grab; }
-.lk-inset { position: absolute; top: 0.5rem; right: 0.5rem; width: 30%; max-width: 220px; aspect-ratio: 1; border: 1px solid var(--lk-quiet); border-radius: 6px; pointer-events: none; }
-.lk-inset[hidden] { display: none; }
-.lk-canvas:active { cursor: grabbing; }
 .lk-overlay { position: absolute; inset: 0; overflow: hidden; pointer-events: none; }
 .lk-tag { position: absolute; top: 0; left: 0; padding: 0 0.35rem; border-radius: 4px; font-size: 0.78rem; white-space: nowrap;
   background: var(--lk-face); color: var(--lk-text); border: 1px solid var(--lk-edge); }
@@ -50,25 +47,24 @@ html[data-theme="dark"] .cell_output .text_html:has(.lk-embed) { /* the theme ma
 .lk-canvas:focus-visible { outline-offset: -3px; }
 .lk-play { min-width: 4.6rem; font-weight: 600; }
 .lk-icon { min-width: 2rem; padding: 0.1rem 0.3rem; }
-.lk-gap { flex: 0 0 0.6rem; }
+.lk-more { border-top: 1px solid var(--lk-edge); color: var(--lk-text); }
+.lk-more > summary { padding: 0.3rem 0.75rem; cursor: pointer; }
 .lk-say { margin: 0; padding: 0.45rem 0.75rem; border-bottom: 1px solid var(--lk-edge); color: var(--lk-text); }
-.lk-beside .lk-say { min-height: 2.8em; } /* two lines, so that the buttons do not move when a sentence appears */
-.lk-beside .lk-say[hidden] { display: block; visibility: hidden; }
 .lk-say[hidden], .lk-dials[hidden] { display: none; }
 .lk-say.lk-alarm { border-left: 5px solid var(--lk-trace); font-weight: 600; }
 .lk-player:has(> .lk-beside) { container-type: inline-size; }
-@container (min-width: 44rem) { .lk-beside { display: grid; grid-template-columns: 3fr 2fr; } } /* the curve beside the picture */
+@container (min-width: 44rem) { /* the curve beside the picture */
+  .lk-beside { display: grid; grid-template-columns: 3fr 2fr; grid-template-rows: auto 1fr; }
+  .lk-beside > :nth-child(2) { grid-row: span 2; }
+}
 .lk-beside > div { min-width: 0; }
-.lk-beside > div:has(> .lk-livedials) { container-type: inline-size; } /* the dials fit into their column, not into the view */
 .lk-livedials { padding: 0.1rem 0.75rem 0.4rem; }
-.lk-live .lk-choice label { flex-basis: auto; }
 .lk-live button[aria-pressed="true"] { background: var(--lk-accent); color: var(--lk-face); }
 .lk-live button:disabled { opacity: 0.55; cursor: default; }
 .lk-check[hidden] { display: none !important; }
 .lk-check { display: flex; align-items: center; gap: 0.3rem; white-space: nowrap; font-size: 0.9rem; }
-.lk-choice.lk-magnify label { flex-basis: auto; }
 .lk-choice[hidden] { display: none; }
-.lk-word, .lk-unit, .lk-speed { color: var(--lk-quiet); }
+.lk-word, .lk-unit, .lk-speed, .lk-dial output { color: var(--lk-quiet); }
 .lk-speed { display: flex; align-items: center; gap: 0.4rem; white-space: nowrap; }
 .lk-legend { display: flex; flex-wrap: wrap; gap: 0.1rem 1.2rem; list-style: none; margin: 0; padding: 0.1rem 0.75rem; font-size: 0.85rem; color: var(--lk-text); }
 .lk-legend li { margin: 0; display: flex; align-items: center; gap: 0.4rem; }
@@ -101,16 +97,10 @@ html[data-theme="dark"] .cell_output .text_html:has(.lk-embed) { /* the theme ma
 .lk-demo fieldset.lk-dials { grid-template-columns: repeat(auto-fit, minmax(min(100%, 14rem), 1fr)); }
 fieldset .lk-dial label { flex-basis: 2.6rem; }
 .lk-dial input[type="range"] { flex: 1 1 5rem; min-width: 4rem; }
+.lk-dial output { min-width: 2.6rem; text-align: right; font-variant-numeric: tabular-nums; }
+.lk-bar .lk-choice label { flex-basis: auto; }
 .lk-dial .lk-unit { flex: 0 0 1.9rem; font-size: 0.85rem; line-height: 1.1; }
-.lk-end { flex: none; color: var(--lk-quiet); font-size: 0.85rem; }
-.lk-livedials.lk-dials { grid-template-columns: repeat(auto-fit, minmax(min(100%, 20rem), 1fr)); }
-.lk-livedials .lk-dial :is(label, .lk-unit) { flex-basis: auto; white-space: nowrap; }
-.lk-livedials .lk-dial label { min-width: 5rem; }
-@container (max-width: 24rem) { /* the name gets a row of its own, so that box and unit are not cut */
-  .lk-livedials .lk-dial { flex-wrap: wrap; }
-  .lk-livedials .lk-dial > label:first-child { flex-basis: 100%; }
-  .lk-livedials .lk-dial > input[type="range"] { flex-basis: 4rem; }
-}
+.lk-livedials .lk-dial label { flex: 0 0 5.5rem; }
 .lk-choice select { flex: 1 1 auto; min-width: 0; }
 .lk-scroll { overflow-x: auto; container-type: inline-size; }
 .lk-table { border-collapse: collapse; font-variant-numeric: tabular-nums; font-size: 0.85rem; margin: 0.4rem 0; width: auto; }
@@ -121,15 +111,12 @@ fieldset .lk-dial label { flex-basis: 2.6rem; }
   .lk-canvas { aspect-ratio: 1; }
   .lk-beside .lk-canvas { aspect-ratio: 16 / 11; }
   .lk-range { flex-basis: 100%; order: -1; }
-  .lk-speed { margin-left: auto; }
   .lk-word { display: none; }
-  .lk-gap { flex-basis: 100%; height: 0; } /* views in one row, moves in the next */
-  .lk-bar .lk-number { width: 4.6rem !important; }
-  .lk-speed label { position: absolute; width: 1px; height: 1px; overflow: hidden; clip-path: inset(50%); } /* a screen reader still reads the name */
+    .lk-speed label { position: absolute; width: 1px; height: 1px; overflow: hidden; clip-path: inset(50%); } /* a screen reader still reads the name */
   .lk-table :is(th, td) { padding-inline: 0.3rem; }
 }
 @media print { /* the last frame and the plots are printed; what was never loaded is printed as its picture or text */
   .lk-bar, .lk-load, .lk-dial { display: none !important; }
   .lk-player, .lk-demo { break-inside: avoid; }
 }
-`;function r(){if(globalThis.labkitStyled)return;let e=new CSSStyleSheet;e.replaceSync(a),document.adoptedStyleSheets=[...document.adoptedStyleSheets,e],globalThis.labkitStyled=!0}var n=document.currentScript.src.split("?")[0].replace(/[^/]*$/,""),m=matchMedia("(max-width: 500px)"),p={};function o(e){return p[e]??=new Promise((l,i)=>{let t=document.createElement("script");t.src=e,t.addEventListener("load",l),t.addEventListener("error",()=>i(new Error(`${e} is missing`))),document.head.append(t)})}var c=globalThis.labkitLoad=async()=>(await Promise.all([o(`${n}viewer.js`),o(`${n}robot.js`)]),globalThis.labkitViewer);async function s(e){if(e.dataset.mounted)return;e.dataset.mounted="1",e.querySelector(".lk-load")?.remove();let l=JSON.parse(e.querySelector('script[type="application/json"]').textContent);try{let{mount:i}=await c(),t=document.createElement("div");e.insertBefore(t,e.querySelector("figcaption")),i(t,l),t.querySelector(".lk-note")&&e.classList.add("lk-flat")}catch(i){delete e.dataset.mounted,console.error(i)}}function b(e){let l=document.createElement("button");l.type="button",l.className="lk-load",l.textContent="Tap to load the interactive view",l.addEventListener("click",()=>s(e).then(()=>e.querySelector("button, input, select")?.focus())),e.insertBefore(l,e.querySelector("figcaption"))}function d(){if(globalThis.labkitStarted)return;globalThis.labkitStarted=!0,r();let e=new IntersectionObserver(l=>{for(let{isIntersecting:i,target:t}of l)i&&(e.unobserve(t),s(t))},{rootMargin:"400px"});for(let l of document.querySelectorAll(".lk-embed"))m.matches?b(l):e.observe(l)}document.readyState==="loading"?document.addEventListener("DOMContentLoaded",d):d();})();
+`;function r(){if(globalThis.labkitStyled)return;let e=new CSSStyleSheet;e.replaceSync(i),document.adoptedStyleSheets=[...document.adoptedStyleSheets,e],globalThis.labkitStyled=!0}var o=document.currentScript.src.split("?")[0].replace(/[^/]*$/,""),m=matchMedia("(max-width: 500px)"),p={};function n(e){return p[e]??=new Promise((l,a)=>{let t=document.createElement("script");t.src=e,t.addEventListener("load",l),t.addEventListener("error",()=>a(new Error(`${e} is missing`))),document.head.append(t)})}var c=globalThis.labkitLoad=async()=>(await Promise.all([n(`${o}viewer.js`),n(`${o}robot.js`)]),globalThis.labkitViewer);async function s(e){if(e.dataset.mounted)return;e.dataset.mounted="1",e.querySelector(".lk-load")?.remove();let l=JSON.parse(e.querySelector('script[type="application/json"]').textContent);try{let{mount:a}=await c(),t=document.createElement("div");e.insertBefore(t,e.querySelector("figcaption")),a(t,l),t.querySelector(".lk-note")&&e.classList.add("lk-flat")}catch(a){delete e.dataset.mounted,console.error(a)}}function b(e){let l=document.createElement("button");l.type="button",l.className="lk-load",l.textContent="Tap to load the interactive view",l.addEventListener("click",()=>s(e).then(()=>e.querySelector("button, input, select")?.focus())),e.insertBefore(l,e.querySelector("figcaption"))}function d(){if(globalThis.labkitStarted)return;globalThis.labkitStarted=!0,r();let e=new IntersectionObserver(l=>{for(let{isIntersecting:a,target:t}of l)a&&(e.unobserve(t),s(t))},{rootMargin:"400px"});for(let l of document.querySelectorAll(".lk-embed"))m.matches?b(l):e.observe(l)}document.readyState==="loading"?document.addEventListener("DOMContentLoaded",d):d();})();

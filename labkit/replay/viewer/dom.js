@@ -41,39 +41,26 @@ export const unique = (stem) => `lk-${stem}-${++count}`;
 
 export const reducedMotion = () => matchMedia("(prefers-reduced-motion: reduce)").matches;
 
-/** Call `apply` when a box changes, when it is left with a number other than `known()`, and on Enter. */
-export function entered(box, apply, known) {
-  const changed = () => { if (box.value !== known()) apply(); };
-  box.addEventListener("change", changed);
-  box.addEventListener("blur", changed); // retyping the old number is not a change for a browser
-  box.addEventListener("keydown", (event) => { if (event.key === "Enter") apply(); });
-}
-
-/**
- * A slider with a box for a number beside it; `oninput` receives the value, and `ends` shows the limits.
- */
-export function dial({ label, unit = "", ends = false, min, max, step, value, digits = 3, oninput }) {
+/** A slider; `oninput` receives the value, which stands in a box for a number, or beside it if not `typed`. */
+export function dial({ label, unit = "", typed = true, min, max, step, value, digits = 3, oninput }) {
   const id = unique("dial");
   const show = (x) => String(+Number(x).toFixed(digits));
-  const words = (x) => `${show(x)}${unit && ` ${unit}`}`;
   const range = h("input", { type: "range", id, min, max, step });
-  const number = h("input", { type: "number", "aria-label": `${label}, typed`, min, max, step: "any" });
+  const number = typed ? h("input", { type: "number", "aria-label": `${label}, typed`, min, max, step: "any" }) : h("output", { for: id });
   const get = () => +range.value;
   const set = (x) => {
     range.value = x;
     number.value = show(get());
-    range.setAttribute("aria-valuetext", words(get()));
+    range.setAttribute("aria-valuetext", `${show(get())}${unit && ` ${unit}`}`);
   };
   const changed = () => { set(get()); oninput?.(get()); };
   range.addEventListener("input", changed);
-  entered(number, () => {
-    set(Number.isFinite(number.valueAsNumber) ? number.valueAsNumber : get());
-    oninput?.(get());
-  }, () => show(get()));
+  number.addEventListener("change", () => {
+    if (Number.isFinite(number.valueAsNumber)) set(number.valueAsNumber);
+    changed();
+  });
   set(value ?? min);
-  const end = (x) => (ends ? [h("span", { class: "lk-end" }, show(x))] : []);
-  const element = h("div", { class: "lk-dial" },
-    h("label", { for: id }, label), end(min), range, end(max), number, h("span", { class: "lk-unit" }, unit));
+  const element = h("div", { class: "lk-dial" }, h("label", { for: id }, label), range, number, h("span", { class: "lk-unit" }, unit));
   return { element, get, set };
 }
 

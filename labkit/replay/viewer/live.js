@@ -2,16 +2,13 @@
 // this script draws it and sends the input of the pointer, the keys and the dials.
 import { Picture } from "./picture.js";
 import { Plot } from "./plots.js";
-import { choice, dial, entered, h, steady } from "./dom.js";
+import { choice, dial, h, steady } from "./dom.js";
 import { line } from "./marks.js";
-import { sight } from "./sight.js";
+import { more, sight } from "./sight.js";
 
 const NEWTON = 0.006; // length of an arrow for 1 N, in metres
 const BEAT = 60; // ms between two messages while something is held
-const SLOW = 100; // ms between two runs of a timer, above which the kernel is asked to wait longer for the hand
 const AXES = [["+x", [1, 0, 0]], ["−x", [-1, 0, 0]], ["+y", [0, 1, 0]], ["−y", [0, -1, 0]], ["+z", [0, 0, 1]], ["−z", [0, 0, -1]]];
-const STALE = 400; // ms that a hand holds without a force before the page says why
-const TOLD = 3; // s of the arm's time during which the page says that a run was kept
 const MOST = 60; // N, the limit of a push or a pull
 const SHOWN = 10; // seconds of the curves
 const LOOK = 2000; // ms between two checks that the kernel still exists
@@ -24,7 +21,7 @@ const spoken = (link) => (/^(tip|elbow)/.test(link) ? `the ${link}` : `joint ${l
 export class LiveArm {
   /** link: {send(message), hear(f), cut()}, the connection to the kernel; without it the picture does not move. */
   constructor(host, data, robot, link) {
-    Object.assign(this, { host, data, link, robot: data.robot ?? robot, held: null, moves: 0, rows: [], frames: 0, beaten: 0, slow: 0, felt: steady() });
+    Object.assign(this, { host, data, link, robot: data.robot ?? robot, held: null, rows: [], felt: steady() });
     this.element = h("div", { class: "lk-player lk-live", role: "group", "aria-label": data.title });
     this.stagebox = h("div", { class: "lk-stage" });
     this.note = h("p", { class: "lk-say", hidden: true });
@@ -32,14 +29,12 @@ export class LiveArm {
     this.status = h("p", { class: "lk-hidden", role: "status" });
     this.picture = new Picture(this.stagebox, `${data.title}. Drag the arm or a thing to pull it, or drag elsewhere to turn the view`);
     this.times = 1; // the error is drawn this many times as large
-    this.sight = sight(this.picture, { whole: !this.robot.arm, camera: !!data.first.things.camera,
-      magnify: (k) => { this.times = k; this.draw(this.frame); } });
+    this.sight = sight(this.picture, { whole: !this.robot.arm, magnify: (k) => { this.times = k; this.draw(this.frame); } });
     this.plot = new Plot({ title: "Distance from the target [mm]", xName: "time [s]", zero: true, least: 1, ...this.curve() });
-    const seen = h("div", {}, this.stagebox, this.note, this.buttons());
-    const told = h("div", {}, h("div", { class: "lk-plots" }, this.plot.element), this.readout, this.dials());
-    this.element.append(h("p", { class: "lk-title" }, data.title));
-    if (data.by) this.element.append(h("p", { class: "lk-say" }, data.by));
-    this.element.append(h("div", { class: "lk-beside" }, seen, told), this.sight.element, this.hand(), this.status);
+    const seen = h("div", {}, this.stagebox, this.buttons());
+    const told = h("div", {}, h("div", { class: "lk-plots" }, this.plot.element), this.readout, this.dials(), this.note);
+    this.element.append(h("p", { class: "lk-title" }, data.title), h("div", { class: "lk-beside" }, seen, told),
+      more(this.hand(), this.sight.element), this.status);
     host.append(this.element);
     if (this.picture.works) this.furnish();
     else {
@@ -50,13 +45,7 @@ export class LiveArm {
     this.show(data.first);
     if (!link) { this.say(`This arm needs a running kernel: ${AGAIN}`); return; }
     this.looking = setInterval(() => this.look(), LOOK);
-    link.hear((message) => {
-      this.came = performance.now();
-      if (message.kind !== "frame") { this.told(message); return; }
-      const answer = message.move !== this.frame.move;
-      this.show(message);
-      if (answer && this.picture.works) this.picture.stage.release();
-    });
+    link.hear((message) => { this.came = performance.now(); this.show(message); });
   }
 
   send(message) {
@@ -67,7 +56,7 @@ export class LiveArm {
   look() {
     if (this.link.cut?.()) this.lost();
     else if (this.state === "running" && performance.now() - this.came > QUIET) {
-      this.say(`Nothing has come from the kernel for ${QUIET / 1000} s. If it was restarted or shut down, ${AGAIN}`);
+      this.say(`Nothing has come from the kernel for ${QUIET / 1000} s. Does every loop of the controller end? Else restart the kernel, and ${AGAIN}`);
     }
   }
 
@@ -86,17 +75,12 @@ export class LiveArm {
   }
 
   buttons() {
-    const button = (text, kind, title, first = () => {}) => h("button", { type: "button", title, disabled: !this.link,
-      onclick: () => { first(); this.send({ kind }); } }, text);
-    const release = () => this.release();
     this.start = h("button", { type: "button", class: "lk-play", disabled: !this.link,
       onclick: () => this.send({ kind: this.state === "running" ? "pause" : "go" }) }, "Start");
     const laws = this.data.laws.length < 2 ? [] : [choice({ label: "Controller", values: this.data.laws,
       onchange: (name) => this.send({ kind: "law", name }) }).element];
-    return h("div", { class: "lk-bar" }, this.start, button("Step", "step", "Advance by 0.05 s"),
-      button("Reset", "reset", "Put the arm back to its start", release),
-      button("Keep this run", "keep", "Store the present run as view.log. A run begins with Start, Reset, another controller or another value of a dial, and ends after 120 s; then the next one begins"),
-      button("Stop", "close", "End this view, and free the arm for other cells", release), laws);
+    return h("div", { class: "lk-bar" }, this.start, h("button", { type: "button", title: "Put the arm back to its start",
+      disabled: !this.link, onclick: () => { this.release(); this.send({ kind: "reset" }); } }, "Reset"), laws);
   }
 
   /** Controls that replace the pointer: choose a link and a force, and switch it on along an axis. */
@@ -104,9 +88,8 @@ export class LiveArm {
     const { joints } = this.data;
     this.links = [...joints.map((j) => (j === "e1" ? "elbow (e1)" : j)), "tip"];
     this.where = choice({ label: "Push at", values: [...this.links].reverse() });
-    this.newtons = h("input", { type: "number", "aria-label": "Force in newtons", min: 0, max: MOST, step: "any", value: 10, disabled: !this.link });
-    this.size = 10;
-    entered(this.newtons, () => (this.pushing ?? this.bounded)(), () => String(this.size));
+    this.newtons = h("input", { type: "number", "aria-label": "Force in newtons", min: 0, max: MOST, step: "any", value: 10, disabled: !this.link,
+      onchange: () => this.pushing?.() });
     this.pushes = AXES.map(([name, axis]) => h("button", { type: "button", class: "lk-icon", "aria-pressed": "false", disabled: !this.link,
       "aria-label": `Push along ${name.replace("−", "minus ").replace("+", "plus ")}`, title: "Push until this button is pressed again",
       onclick: (e) => this.push(e.currentTarget, axis) }, name));
@@ -114,25 +97,15 @@ export class LiveArm {
       this.newtons, h("span", { class: "lk-unit" }, `N (0 to ${MOST}) along`), this.pushes, h("span", { class: "lk-unit" }, "(press again to let go)"));
   }
 
-  /** The force in the box, limited to the allowed range; the box shows the limited force. */
-  bounded = () => {
-    const asked = this.newtons.valueAsNumber || 0;
-    this.newtons.value = this.size = Math.min(MOST, Math.max(0, asked));
-    if (asked > MOST) {
-      this.kept = { t: this.frame.t, words: `A push is at most ${MOST} N.` };
-      this.say(this.kept.words);
-    }
-    return this.size;
-  };
-
   push(button, axis) {
     const on = button.getAttribute("aria-pressed") !== "true";
     this.release();
     if (!on) return;
     button.setAttribute("aria-pressed", "true");
-    const where = this.where.get(), link = this.links.indexOf(where);
+    const link = this.links.indexOf(this.where.get());
     this.pushing = () => { // called again when another force is typed
-      const size = this.bounded();
+      const size = Math.min(MOST, Math.max(0, this.newtons.valueAsNumber || 0));
+      this.newtons.value = size;
       this.take({ link, local: [0, 0, 0], force: axis.map((x) => size * x) });
     };
     this.pushing();
@@ -141,20 +114,12 @@ export class LiveArm {
   /** Hold the arm until `release`, with repeated messages, because the kernel drops a silent hand. */
   take(hand) {
     this.held = hand;
-    this.beaten = performance.now();
-    this.slow = Math.max(this.slow, this.picture.stage.took ?? 0);
     this.beat();
     clearInterval(this.beating);
     this.beating = setInterval(() => this.beat(), BEAT);
   }
 
-  /** Send that the hand still holds and, in a slow page, how late the next message may come. */
-  beat() {
-    const now = performance.now();
-    this.slow = Math.max(now - this.beaten, 0.99 * this.slow);
-    this.beaten = now;
-    this.send({ kind: "hand", ...this.held, ...(this.held.to && this.slow > SLOW && { every: this.slow / 1000 }) });
-  }
+  beat() { this.send({ kind: "hand", ...this.held }); }
 
   release() {
     clearInterval(this.beating);
@@ -167,7 +132,7 @@ export class LiveArm {
   }
 
   dials() {
-    const made = this.data.dials.map((d) => dial({ label: d.name, unit: d.unit, ends: true, min: d.min, max: d.max, step: "any", value: d.value,
+    const made = this.data.dials.map((d) => dial({ label: d.name.replaceAll("_", " "), unit: d.unit, typed: false, min: d.min, max: d.max, step: "any", value: d.value,
       oninput: (value) => this.turn(d.name, value) }).element);
     return h("div", { class: "lk-dials lk-livedials", hidden: !made.length }, made);
   }
@@ -187,20 +152,13 @@ export class LiveArm {
     picture.embody(this.robot);
     picture.pose(this.data.side, this.data.first.q);
     const seen = [picture.tip.p, ...Object.values(this.data.first.things).filter((t) => t.kind !== "face").map((t) => t.position)];
-    picture.stage.rig.mirror = this.data.side === "right" ? -1 : 1;
     const { path } = this.data;
     if (path?.length) {
       this.path = line(path, { colour: 0xc77700, width: 2, dash: 0.012, gap: 0.008, opacity: 0.6 });
       picture.stage.scene.add(this.path);
     }
-    picture.stage.rig.around([...seen, ...path ?? [], picture.frames[`${this.data.side}_e1`]?.p ?? picture.tip.p]);
-    picture.stage.rig.use("Motion");
-    picture.stage.drawn = () => {
-      this.host.dataset.ready = "1";
-      this.frames++;
-      if (this.held && performance.now() - this.beaten > BEAT) this.beat(); // timers are late while the page draws
-    };
-    this.sight.alone(true);
+    picture.look([...seen, ...path ?? []]);
+    picture.stage.drawn = () => { this.host.dataset.ready = "1"; };
     if (this.link) picture.grab((picked, event) => this.grip(picked, event), ({ thing }) => !this.things[thing]?.fixed);
   }
 
@@ -220,10 +178,9 @@ export class LiveArm {
     this.release();
     this.take({ link: picked.link, local: picked.local, to: at });
     const move = (e) => {
-      if (!this.held?.to) return; // Reset and Stop also let go
-      this.held = { ...this.held, to: picture.dragged(e, at), move: (this.moves += 1) };
+      if (!this.held?.to) return; // Reset also lets go
+      this.held = { ...this.held, to: picture.dragged(e, at) };
       this.beat();
-      picture.stage.hold();
     };
     return { move, end: () => this.release() };
   }
@@ -231,19 +188,13 @@ export class LiveArm {
   /** Show a frame from the kernel, which has the numbers for one picture. */
   show(frame) {
     const before = this.state, told = this.frame?.note;
-    if (frame.kept.length > this.frame?.kept.length) {
-      this.kept = { t: frame.t, words: `Kept as view.log: the run of ${frame.kept.at(-1)} s under ${frame.law}.` };
-      this.speak(this.kept.words, 0);
-    }
-    if (before !== frame.state && frame.state === "running") this.kept = null;
-    const kept = frame.t < this.kept?.t + TOLD ? this.kept.words : "";
-    if (before !== frame.state && ["stopped", "closed"].includes(frame.state)) this.release();
     if (frame.state === "running" && performance.now() - (this.here ?? -1e9) > 1e4) { // if somebody is watching
       this.here = performance.now();
       this.send({ kind: "here" });
     }
     Object.assign(this, { frame, state: frame.state, things: frame.things });
     this.start.textContent = frame.state === "running" ? "Pause" : "Start";
+    if (before !== frame.state && before === "running") this.release();
     if (this.picture.works) this.draw(frame);
     if (frame.error !== null && this.rows.at(-1)?.[0] !== frame.t) {
       if (this.rows.length && frame.t < this.rows.at(-1)[0]) this.rows = [];
@@ -251,11 +202,8 @@ export class LiveArm {
       while (this.rows[0][0] < frame.t - SHOWN) this.rows.shift();
     }
     this.readout.textContent = this.numbers();
-    const stale = this.held && frame.state === "running" && !frame.force && this.old();
-    const busy = this.slow > STALE ? "This page is busy" : "The kernel is busy with another cell";
-    this.say(frame.note || (stale ? `${busy}: your pull arrives later, and there is no force until then.` : kept),
-      frame.state === "stopped");
-    if (before !== frame.state || frame.note && frame.note !== told) this.speak(frame.note || { running: "Running.", paused: "Paused.", ready: "Ready.", closed: "Ended." }[frame.state] || "", 0);
+    this.say(frame.note, frame.state === "stopped");
+    if (before !== frame.state || frame.note && frame.note !== told) this.speak(frame.note || { running: "Running.", ready: "Ready." }[frame.state] || "", 0);
     if (this.felt(frame.force ? Math.hypot(...frame.force) : 0)) this.speak(this.forced(frame), 0);
     this.plotted ??= setTimeout(() => { this.plotted = null; const c = this.curve(); this.plot.set(c.series, c.x); this.plot.time(c.x.at(-1)); }, 200);
   }
@@ -266,22 +214,14 @@ export class LiveArm {
     return `${this.pushing ? "Pushing" : "Pulling"} ${spoken(this.links[link])} with ${Math.hypot(...force).toFixed(1)} N${away}.`;
   }
 
-  /** Whether the hand has held for longer than a message should need. */
-  old() {
-    if (this.since !== this.held) { this.since = this.held; this.taken ??= performance.now(); }
-    return performance.now() - this.taken > STALE;
-  }
-
   draw({ q, force, at, link, things }) {
     const { picture } = this;
     picture.pose(this.data.side, q);
     picture.furnish(things);
     this.path?.position.fromArray(things.target?.shift ?? [0, 0, 0]);
     const size = force ? Math.hypot(...force) : 0;
-    if (force) this.taken = performance.now();
     const starts = this.held?.force && force && link < this.links.length - 1 ? picture.outside(at, force) : at ?? picture.tip.p;
     picture.arrow("force", starts, (force ?? [0, 0, 0]).map((x) => NEWTON * x), `${size.toFixed(1)} N`);
-    picture.moved(this.frame.t);
     const from = things.target?.position ?? picture.tip.p;
     const off = picture.tip.p.map((x, k) => this.times * (x - from[k]));
     picture.arrow("error", from, this.times > 1 ? off : [0, 0, 0], `error × ${this.times}`, 0xb3001b);
@@ -295,17 +235,13 @@ export class LiveArm {
   }
 
   numbers() {
-    const { t, error, force, link, spent, pace, kept, law } = this.frame;
-    const words = [law, `t = ${t.toFixed(2)} s`];
+    const { t, error, force, link, spent, law } = this.frame;
+    const words = [law.replaceAll("_", " "), `t = ${t.toFixed(2)} s`];
     if (error !== null) words.push(`${(1000 * error).toFixed(1)} mm from the target`);
     words.push(force ? `your force ${Math.hypot(...force).toFixed(1)} N at ${spoken(this.links[link])}` : "your force 0.0 N");
     if (spent.length) words.push(`at its torque limit: ${spent.map((k) => this.data.joints[k]).join(", ")}`);
-    if (pace && pace < 0.95 && this.state === "running") words.push(`${pace.toFixed(2)} × real time`);
-    if (kept.length) words.push(`${kept.length} kept`);
     return words.join(" · ");
   }
-
-  told({ note }) { if (note) this.say(note, true); }
 
   say(text, alarm = false) {
     this.note.hidden = !text;
@@ -316,7 +252,7 @@ export class LiveArm {
   /** Let a screen reader say a sentence without interrupting; only the last one is said. */
   speak(words, after = 300) {
     clearTimeout(this.spoken);
-    this.spoken = setTimeout(() => { this.status.textContent = typeof words === "function" ? words() : words; }, after);
+    this.spoken = setTimeout(() => { this.status.textContent = words; }, after);
   }
 
   dispose() {

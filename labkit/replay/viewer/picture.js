@@ -3,7 +3,7 @@
 import * as THREE from "three";
 import { Body, span } from "./body.js";
 import { frames, joints, posture, tip } from "./kinematics.js";
-import { arrow, axes, dispose } from "./marks.js";
+import { arrow, dispose } from "./marks.js";
 import { Stage } from "./stage.js";
 import { place, thing } from "./things.js";
 import { apply, subtract, transpose } from "./so3.js";
@@ -19,7 +19,7 @@ export class Picture {
     this.works = this.stage.works;
     this.arrows = {};
     this.things = {};
-    this.side = "left";
+    Object.assign(this, { side: "left", lone: true });
   }
 
   /** Draw this robot from now on. */
@@ -28,10 +28,10 @@ export class Picture {
     this.robot = robot;
     if (this.body) { this.stage.scene.remove(this.body.root); this.body.dispose(); }
     this.body = new Body(robot);
-    this.body.alone(this.side, this.lone);
     this.stage.scene.add(this.body.root);
     this.stage.floor.position.z = robot.arm ? 0 : -0.925; // Baxter's base is its waist
     this.stage.rig.size = robot.arm ? Math.min(1, 0.5 * span(robot)) : 1;
+    this.alone(this.lone);
   }
 
   /** Set the arm's present joint angles, n numbers in rad. */
@@ -82,27 +82,12 @@ export class Picture {
     return made;
   }
 
-  /** Draw the tip's velocity [m/s] as an arrow, as long as half a second of motion, if `this.quick` is set. */
-  velocity(v) {
-    const shown = this.quick ? v : [0, 0, 0];
-    this.arrow("velocity", this.tip.p, shown.map((x) => 0.5 * x), `${Math.hypot(...shown).toFixed(2)} m/s`, 0x1a7f4b);
-  }
-
-  /** Draw the velocity from the tip's position at the previous time [s]; a stopped arm keeps its arrow. */
-  moved(t) {
-    const { p } = this.tip, [before, from] = this.was ?? [t, p];
-    if (t !== before) this.v = t > before && t < before + 0.5 ? p.map((x, k) => (x - from[k]) / (t - before)) : null;
-    this.was = [t, p];
-    this.velocity(this.v ?? [0, 0, 0]);
-  }
-
-  /** The camera's view for `stage.inset`, which shows faces, tags and the robot, but no marks. */
-  seen() {
-    const { position, quaternion, field, ratio } = this.given.camera;
-    const turn = new THREE.Quaternion(...quaternion), way = (v) => new THREE.Vector3(...v).applyQuaternion(turn).toArray();
-    const marks = Object.entries(this.things).filter(([name]) => !["face", "tag"].includes(this.given[name].kind)).map(([, t]) => t.mark);
-    return { eye: position, at: way([0, 0, 1]).map((x, k) => x + position[k]), up: way([0, -1, 0]), field, ratio,
-      hidden: [...marks, ...Object.values(this.arrows).map((a) => a.mark)] };
+  /** Let the view "Motion" show the arm from its elbow to its tip, and these points [x, y, z]. */
+  look(points) {
+    const { rig } = this.stage;
+    rig.mirror = this.side === "right" ? -1 : 1;
+    rig.around([...points, this.tip.p, this.frames[`${this.side}_e1`]?.p ?? this.tip.p]);
+    rig.use("Motion");
   }
 
   /**
@@ -110,7 +95,6 @@ export class Picture {
    * the kinds of things.js.  Things that are left out are removed; things that only moved are moved.
    */
   furnish(given) {
-    this.given = given;
     for (const name of Object.keys(this.things)) if (!given[name]) this.drop(name);
     for (const [name, data] of Object.entries(given)) {
       const key = JSON.stringify([data.kind, data.size, data.colour, data.field]);
@@ -158,9 +142,6 @@ export class Picture {
   /** The tip in the form that `pick` returns. */
   atTip() { return { link: joints(this.robot, this.side).length, local: [0, 0, 0], at: this.tip.p }; }
 
-  /** The middle of a joint in the form that `pick` returns, for input by keys. */
-  atJoint(link) { return { link, local: [0, 0, 0], at: this.where(link, [0, 0, 0]) }; }
-
   /** The point where a vector from inside the arm leaves its surface, so that an arrow there is visible. */
   outside(at, along) {
     const way = new THREE.Vector3(...along).normalize(), far = new THREE.Vector3(...at).addScaledVector(way, REACH);
@@ -169,17 +150,9 @@ export class Picture {
     return hit ? hit.point.toArray() : at;
   }
 
-  frame(link) { return link >= joints(this.robot, this.side).length ? this.tip : this.frames[joints(this.robot, this.side)[link]]; }
-
   inLink(link, at) {
-    const { R, p } = this.frame(link);
+    const { R, p } = this.frames[joints(this.robot, this.side)[link]];
     return apply(transpose(R), subtract(at, p));
-  }
-
-  /** The present position, in the base frame, of a point in a link's frame. */
-  where(link, local) {
-    const { R, p } = this.frame(link);
-    return apply(R, local).map((x, k) => x + p[k]);
   }
 
   /** The point under the pointer on the plane through `at` that faces the camera. */
@@ -213,13 +186,6 @@ export class Picture {
         if (!latest.buttons) canvas.classList.toggle("lk-over", under(latest) !== null);
       }, LOOK);
     });
-  }
-
-  /** Draw a frame at {R, p} or [x, y, z], with one, two and three rings on x, y and z. */
-  axes(length) {
-    const mark = axes(length);
-    this.stage.scene.add(mark);
-    return mark;
   }
 
   dispose() {

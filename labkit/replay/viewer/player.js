@@ -4,7 +4,7 @@ import { dispose, line } from "./marks.js";
 import { Picture } from "./picture.js";
 import { DASHES, letters, Plot } from "./plots.js";
 import { at, read } from "./recording.js";
-import { sight } from "./sight.js";
+import { more, sight } from "./sight.js";
 import { h, reducedMotion, unique } from "./dom.js";
 
 const GHOSTS = [0x1f77d0, 0xc77700, 0x2a9d66, 0x9a5bc4];
@@ -14,31 +14,48 @@ const SPEEDS = [0.1, 0.25, 0.5, 1, 2];
 
 export class Player {
   constructor(host, json, robot) {
-    Object.assign(this, { host, baxter: robot, speed: 1, playing: false, plots: [] });
-    this.element = h("div", { class: "lk-player", role: "group" });
-    this.title = h("p", { class: "lk-title" });
+    const motion = read(json);
+    Object.assign(this, { host, motion, robot: motion.robot ?? robot, speed: 1, playing: false, times: 1 }); // the error is drawn `times` as large
+    this.element = h("div", { class: "lk-player", role: "group", "aria-label": `Replay: ${motion.title}` });
     this.stagebox = h("div", { class: "lk-stage" });
-    this.plotbox = h("div", { class: "lk-plots" });
     this.legend = h("ul", { class: "lk-legend", "aria-label": "What is drawn" });
     this.readout = h("p", { class: "lk-readout" });
     this.status = h("p", { class: "lk-hidden", role: "status" });
-    this.picture = new Picture(this.stagebox, "Baxter");
+    this.picture = new Picture(this.stagebox, `${motion.title}. ${motion.alt}`);
     this.stage = this.picture.stage;
-    this.times = 1; // the error is drawn this many times as large
-    this.sight = sight(this.picture, { whole: !json.robot?.arm, magnify: (k) => { this.times = k; this.dress(); this.explain(); this.arrange(); } });
-    this.element.append(this.title, this.stagebox, this.timebar(), this.sight.element, this.legend, this.readout, this.status, this.plotbox);
+    this.sight = sight(this.picture, { whole: !this.robot.arm,
+      magnify: motion.target && ((k) => { this.times = k; this.dress(); this.explain(); this.arrange(); }) });
+    this.tips = motion.q.map((q) => tip(this.robot, motion.side, q).p);
+    const curves = this.curves(), beside = Math.max(0, ...curves.map(({ series }) => letters(series)));
+    this.plots = curves.map((c) => new Plot({ ...c, beside, x: motion.time, scrub: (t) => { this.play(false); this.seek(t); } }));
+    this.element.append(h("p", { class: "lk-title" }, motion.title), h("div", { class: "lk-beside" },
+      h("div", {}, this.stagebox, this.timebar()),
+      h("div", { class: "lk-plots" }, this.plots.map((p) => p.element)), h("div", {}, this.readout, this.legend)),
+      more(this.timing, this.sight.element), this.status);
     host.append(this.element);
-    if (this.stage.works) this.furnish();
-    else this.stagebox.append(h("p", { class: "lk-note" }, "This browser cannot draw in 3-D (WebGL is missing), so the picture does not move. The plots and the numbers follow the time slider."));
-    this.show(json);
+    this.explain();
+    if (this.stage.works) {
+      this.picture.embody(this.robot);
+      this.picture.pose(motion.side, motion.q[0]);
+      this.picture.look([...this.tips, ...(motion.target ?? []), ...(motion.board ?? [])]);
+      this.dress();
+      this.stage.drawn = () => { host.dataset.ready = "1"; };
+      this.stage.themed = () => { this.dress(); this.arrange(); };
+    } else {
+      this.stagebox.append(h("p", { class: "lk-note" }, "This browser cannot draw in 3-D (WebGL is missing), so the picture does not move. The plots and the numbers follow the time slider."));
+      this.sight.element.hidden = true;
+      host.dataset.ready = "1";
+    }
+    this.seek(motion.start);
   }
 
   timebar() {
+    const { motion } = this, ends = { min: motion.start, max: motion.end };
     this.button = h("button", { type: "button", class: "lk-play", onclick: () => this.play(!this.playing) }, "Play");
-    this.range = h("input", { type: "range", class: "lk-range", "aria-label": "Time", min: 0, step: "any",
+    this.range = h("input", { type: "range", class: "lk-range", "aria-label": "Time", ...ends, step: "any",
       oninput: () => { this.play(false); this.seek(+this.range.value); }, onchange: () => this.speak() });
     this.range.addEventListener("keydown", (e) => { // a key moves one recorded sample, Page keys a tenth
-      const [one, ten] = [this.motion.period, (this.motion.end - this.motion.start) / 10];
+      const [one, ten] = [motion.period, (motion.end - motion.start) / 10];
       const by = { ArrowRight: one, ArrowUp: one, ArrowLeft: -one, ArrowDown: -one, PageUp: ten, PageDown: -ten,
         Home: -Infinity, End: Infinity }[e.key];
       if (!by) return;
@@ -47,47 +64,14 @@ export class Player {
       this.seek(this.time + by);
       this.speak();
     });
-    this.number = h("input", { type: "number", class: "lk-number", "aria-label": "Time in seconds, typed", step: "any",
+    this.number = h("input", { type: "number", class: "lk-number", "aria-label": "Time in seconds, typed", ...ends, step: "any",
       onchange: () => { this.play(false); this.seek(this.number.valueAsNumber || 0); this.speak(); } });
     const id = unique("speed");
     const speed = h("select", { id, onchange: () => { this.speed = +speed.value; } },
       SPEEDS.map((s) => h("option", { value: s, selected: s === 1 }, `${s} ×`)));
-    return h("div", { class: "lk-bar" }, this.button, this.range, this.number, h("span", { class: "lk-unit" }, "s"),
+    this.timing = h("div", { class: "lk-bar" }, h("span", {}, "Time"), this.number, h("span", { class: "lk-unit" }, "s"),
       h("span", { class: "lk-speed" }, h("label", { for: id }, "Speed"), speed));
-  }
-
-  /** Make the parts that do not depend on the motion. */
-  furnish() {
-    this.stage.drawn = () => { this.host.dataset.ready = "1"; };
-    this.stage.themed = () => { this.dress(); this.arrange(); };
-  }
-
-  /** Show a motion (again). */
-  show(json) {
-    this.play(false);
-    const motion = this.motion = read(json);
-    this.robot = motion.robot ?? this.baxter;
-    if (this.stage.works) this.picture.embody(this.robot);
-    this.tips = motion.q.map((q) => tip(this.robot, motion.side, q).p);
-    this.title.textContent = motion.title;
-    this.element.setAttribute("aria-label", `Replay: ${motion.title}`);
-    this.stage.canvas.setAttribute("aria-label", `${motion.title}. ${motion.alt} Arrow keys turn the view, plus and minus zoom, 1 to 5 choose a view.`);
-    for (const input of [this.range, this.number]) Object.assign(input, { min: motion.start, max: motion.end });
-    this.sight.element.hidden = !this.stage.works;
-    this.sight.magnifier.hidden = !motion.target;
-    if (this.stage.works) {
-      this.stage.rig.around([...this.tips, ...(motion.target ?? []), ...(motion.board ?? [])]);
-      this.dress();
-    }
-    this.explain();
-    this.plots.forEach((p) => p.dispose());
-    const curves = this.curves();
-    const beside = Math.max(0, ...curves.map(({ series }) => letters(series)));
-    this.plots = curves.map((c) => new Plot({
-      ...c, beside, x: motion.time, scrub: (t) => { this.play(false); this.seek(t); } }));
-    this.plotbox.replaceChildren(...this.plots.map((p) => p.element));
-    this.seek(Math.min(Math.max(this.time ?? motion.start, motion.start), motion.end));
-    if (!this.stage.works) this.host.dataset.ready = "1";
+    return h("div", { class: "lk-bar" }, this.button, this.range);
   }
 
   /** The names of the joints in plots and sentences. */
@@ -113,12 +97,6 @@ export class Player {
       this.marks.push(line(tips, { colour: GHOSTS[k % GHOSTS.length], width: 2.5, dash: 0.006, gap: 0.008 * (k + 1) }));
     }
     stage.scene.add(...this.marks);
-    const mirror = motion.side === "right" ? -1 : 1;
-    if (stage.rig.mirror !== mirror || !this.seen) { // otherwise the reader's own view stays
-      stage.rig.mirror = mirror;
-      stage.rig.use(stage.rig.view);
-    }
-    this.seen = true;
     this.labels = this.ghosts.length ? [
       stage.label(motion.label, () => at(motion, this.trace, this.time), colour("--lk-trace", "#b3001b")),
       ...this.ghosts.map(({ name, tips, k }) => stage.label(name, () => at(motion, tips, this.time), hex(k)))] : [];
@@ -198,9 +176,6 @@ export class Player {
       const from = here(motion.target), to = here(this.trace);
       this.picture.arrow("error", from, to.map((x, k) => x - from[k]), this.times > 1 ? `error × ${this.times}` : "", 0xb3001b);
     }
-    const [early, late] = [-0.5, 0.5].map((k) => Math.min(motion.end, Math.max(motion.start, this.time + k * motion.period)));
-    const before = at(motion, this.tips, early);
-    this.picture.velocity(at(motion, this.tips, late).map((x, k) => (x - before[k]) / (late - early)));
     const f = motion.force ? here(motion.force) : [0, 0, 0], size = Math.hypot(...f);
     this.picture.arrow("force", this.picture.tip.p, f.map((x) => NEWTON * x), size > 0.05 ? `${size.toFixed(1)} N` : "");
   }

@@ -3,16 +3,12 @@
 /** The rows (N, k) of a channel {step, width, data}, or null if the channel is null. */
 export function unpack(channel) {
   if (!channel) return null;
-  const { step, width, order, data } = channel;
+  const { step, width, data } = channel;
   const count = data.length / width;
   const rows = Array.from({ length: count }, () => new Array(width));
   for (let k = 0; k < width; k++) {
-    const sums = new Array(order + 1).fill(0); // sums[order] adds up differences of differences
-    for (let i = 0; i < count; i++) {
-      sums[0] = data[k * count + i];
-      for (let n = 1; n <= order; n++) sums[n] += sums[n - 1];
-      rows[i][k] = sums[order] * step;
-    }
+    let change = 0, sum = 0;
+    for (let i = 0; i < count; i++) rows[i][k] = step * (sum += change += data[k * count + i]);
   }
   return rows;
 }

@@ -7,7 +7,6 @@ import { h } from "./dom.js";
 const HURRY = 0.55; // factor of the size while a picture moves and the processor has to draw it
 const CALM = 400; // ms without another picture before the last one is drawn at full size
 const LONG = 40; // ms of drawing without a card; longer drawing leaves the page's timers time to run
-const ANSWER = 40; // ms that a picture waits for an answer that the page cannot receive while it draws
 
 let renderer; // undefined: not tried yet; null: this browser has no WebGL
 let card; // whether there is a graphics card
@@ -51,7 +50,7 @@ export class Stage {
     this.rig = new Rig(this.canvas, this.camera, () => this.draw());
     this.light();
     this.visible = true;
-    this.waiting = this.quiet = this.rest = 0;
+    this.waiting = this.rest = 0;
     this.labels = [];
     this.watch = [new ResizeObserver(() => this.draw()), new IntersectionObserver(([entry]) => {
       this.visible = entry.isIntersecting;
@@ -95,44 +94,21 @@ export class Stage {
     this.labels = this.labels.filter((other) => other !== label);
   }
 
-  /**
-   * A second, smaller picture of the same scene from another place.  `from()` returns {eye, at}; for a
-   * camera it also returns {up, field, ratio, hidden}: its upward direction, its angle of view, its width
-   * over its height, and what it does not see.
-   */
-  inset(from) {
-    this.small = h("canvas", { class: "lk-inset", "aria-hidden": "true" });
-    this.canvas.after(this.small);
-    this.closely = from;
-    this.near = new THREE.PerspectiveCamera(FIELD, 1, 0.02, 10);
-  }
-
   /** Request a frame; many calls lead to one frame. */
   draw() {
     if (!this.works || !this.visible || this.waiting) return;
     this.waiting = requestAnimationFrame((now) => {
       this.waiting = 0;
-      if (now < Math.max(this.quiet, this.rest)) this.draw();
+      if (now < this.rest) this.draw();
       else this.paint();
     });
-  }
-
-  /** Let the next picture wait a short time for an answer, which the page cannot receive while it draws. */
-  hold() { if (!card) this.quiet ||= performance.now() + ANSWER; }
-
-  /** Draw now, because the answer has come. */
-  release() {
-    if (!this.quiet || !this.waiting) return;
-    cancelAnimationFrame(this.waiting);
-    this.waiting = 0;
-    this.paint();
   }
 
   paint() {
     const { clientWidth: width, clientHeight: height } = this.canvas;
     if (!width || !height) return;
     const now = performance.now(), hurried = !card && now - this.last < CALM;
-    Object.assign(this, { last: now, quiet: 0 });
+    this.last = now;
     clearTimeout(this.calm);
     if (hurried) this.calm = setTimeout(() => this.draw(), CALM);
     const fine = card ? Math.min(2, devicePixelRatio) : 1, drawn = hurried ? HURRY : fine;
@@ -149,37 +125,10 @@ export class Stage {
     this.rig.frame(width / height);
     renderer.render(this.scene, this.camera);
     this.paper.drawImage(renderer.domElement, 0, 0, w, t, 0, 0, W, T);
-    if (this.small && !this.small.hidden) this.closeUp(drawn);
     this.settle(width, height);
     const end = performance.now();
-    this.took = end - now;
-    this.rest = card ? 0 : end + this.took - LONG;
+    this.rest = card ? 0 : 2 * end - now - LONG;
     this.drawn?.();
-  }
-
-  /** Draw the inset in the upper left corner of the shared context. */
-  closeUp(fine) {
-    const { eye, at, up = [0, 0, 1], field = FIELD, ratio = 1, hidden = [] } = this.closely();
-    const side = Math.min(renderer.domElement.width, renderer.domElement.height, Math.round(this.small.clientWidth * fine));
-    if (!side) return;
-    const tall = Math.round(side / ratio);
-    if (this.small.width !== side || this.small.height !== tall) Object.assign(this.small, { width: side, height: tall });
-    this.small.style.aspectRatio = String(ratio);
-    Object.assign(this.near, { fov: field, aspect: ratio });
-    this.near.updateProjectionMatrix();
-    this.near.up.set(...up);
-    this.near.position.set(...eye);
-    this.near.lookAt(...at);
-    const top = renderer.domElement.height - tall, away = hidden.filter((part) => part.visible);
-    renderer.setViewport(0, top, side, tall);
-    renderer.setScissor(0, top, side, tall);
-    renderer.setScissorTest(true);
-    away.forEach((part) => { part.visible = false; });
-    renderer.render(this.scene, this.near);
-    away.forEach((part) => { part.visible = true; });
-    renderer.setScissorTest(false);
-    renderer.setViewport(0, 0, renderer.domElement.width, renderer.domElement.height);
-    this.small.getContext("2d").drawImage(renderer.domElement, 0, 0, side, tall, 0, 0, side, tall);
   }
 
   /** A Raycaster along the line of sight through a pointer's position in the page. */
