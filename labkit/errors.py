@@ -103,10 +103,6 @@ class Diverged(ControllerError):
     """The closed loop ran away."""
 
 
-class NothingKept(LabkitError, LookupError):
-    """No run of a live arm has been kept."""
-
-
 class Closed(LabkitError, RuntimeError):
     """The simulated world was closed and can no longer be used."""
 

@@ -119,7 +119,7 @@ class World:
         """Raise `Closed` if another thread moves this world."""
         if self.owner is not None and self.owner != threading.get_ident():
             raise Closed(
-                "this arm is live in a cell of this notebook; make a new Arm, or press Stop there"
+                "this arm is live in a cell of this notebook; make a new Arm, or press Pause there"
             )
 
     def show(self, thing: Shown) -> None:

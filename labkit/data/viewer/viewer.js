@@ -4686,7 +4686,7 @@ html[data-theme="dark"] .cell_output .text_html:has(.lk-embed) { /* the theme ma
 .lk-say[hidden], .lk-dials[hidden] { display: none; }
 .lk-say.lk-alarm { border-left: 5px solid var(--lk-trace); font-weight: 600; }
 .lk-player:has(> .lk-beside) { container-type: inline-size; }
-@container (min-width: 44rem) { /* the curve beside the picture */
+@container (min-width: 38rem) { /* the curve beside the picture */
   .lk-beside { display: grid; grid-template-columns: 3fr 2fr; grid-template-rows: auto 1fr; }
   .lk-beside > :nth-child(2) { grid-row: span 2; }
 }
