@@ -1,6 +1,6 @@
 """Checks, which try a student's function on a question and give a verdict in words.
 
-A notebook uses `check`, `hint` and `use`; the graders apply `mark` to the same questions.
+A notebook uses `check` and `use`; the graders apply `mark` to the same questions.
 """
 
 from __future__ import annotations
@@ -26,7 +26,7 @@ from .own_arm import PUBLIC_ARMS, Bug, OwnArm, commanded, my_arm, my_bug
 from .predictions import Prediction, predict
 from .question import Call, Chase, Choice, Loop, Mistake, Question, Raised, Test, Tuned
 from .serialize import question_data, read_question
-from .student import case, check, hint, use
+from .student import case, check, use
 from .verdict import Outcome, TestResult, Verdict
 
 __all__ = [
@@ -64,7 +64,6 @@ __all__ = [
     "commanded",
     "fingerprint",
     "hand_in",
-    "hint",
     "mark",
     "my_arm",
     "my_bug",

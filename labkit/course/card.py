@@ -62,7 +62,11 @@ def card(
         parts.append(f"<details><summary>{says}</summary>{''.join(folded)}</details>")
     if message.printed:
         parts.append(f"<p>{PRINTED}</p>{_block(message.printed)}")
-    parts += [f"<p>{_inline(message.hint)}</p>"] if message.hint else []
+    hints = ""
+    for k, hint in reversed([*enumerate(message.hints, start=1)]):  # each within the one before
+        says = f"Hint {k} of {len(message.hints)}"
+        hints = f"<details><summary>{says}</summary><p>{_inline(hint)}</p>{hints}</details>"
+    parts.append(hints)
     names = "lk-card mathjax_ignore tex2jax_ignore"  # a dollar sign does not begin a formula
     page = f'<div class="{names}" style="--lk-badge: {colour}">{"".join(parts)}</div>{_STYLE}'
     return {"text/plain": str(message), "text/html": page}

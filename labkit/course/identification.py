@@ -6,7 +6,7 @@ from dataclasses import dataclass, replace
 from typing import Any
 
 from .judges import OWN_ARM, Found, Measured
-from .notebook import heading, where_hints_are
+from .notebook import heading
 from .own_arm import DEMO, OwnArm, public_arm
 from .question import Call, Question, Test
 from .verdict import Difference, Kind, Outcome, Verdict
@@ -68,9 +68,8 @@ class Identification:
             f"- Write {self.form}.{near} Type values; do not calculate them from your runs, which "
             "are not repeated when the notebook is marked."
         )
-        hints = [where_hints_are(self.name)] if self.hints else []
         head = heading("Find out", self.name, self.points, self.core)
-        return "\n".join([head, "", self.asks, "", form, *hints])
+        return "\n".join([head, "", self.asks, "", form])
 
     def cell(self) -> str:
         """The cell that the student fills in."""

@@ -89,7 +89,7 @@ class Message:
         tests: A line for each test.
         numbers: The calls that failed, what was expected, and how to repeat one of them.
         printed: What the student's code printed during the check.
-        hint: How to get a hint.
+        hints: Hints, from the idea to nearly the answer; only a card shows them, folded.
     """
 
     head: str
@@ -97,13 +97,12 @@ class Message:
     tests: Sequence[str] = ()
     numbers: Sequence[str] = ()
     printed: Sequence[str] = ()
-    hint: str = ""
+    hints: Sequence[str] = ()
 
     def __str__(self) -> str:
         lines = [*self.helps, *self.tests]
         lines += ["Where it fails:", *(f"  {x}" for x in self.numbers)] if self.numbers else []
         lines += [PRINTED, *(f"  {x}" for x in self.printed)] if self.printed else []
-        lines += [self.hint] if self.hint else []
         return "\n".join(map(wrapped, [self.head, *(f"  {line}" for line in lines)]))
 
 
@@ -128,21 +127,19 @@ def message(
         depends_on: Names of the wrong answers that this one uses.
         cure: Whether to tell the cure of a known mistake, besides its cause.
     """
-    helps, hint = list[str](), ""
-    if verdict.outcome is not Outcome.RIGHT:
-        if question.hints:
-            call = f'hint("{question.name}", 1)'
-            hint = f"Stuck? Run `{call}` in a new cell (press Esc, then B). It is free."
-        if depends_on:
-            is_, it = ("is", "it") if len(depends_on) == 1 else ("are", "them")
-            helps.append(
-                f"It uses your {listed(depends_on)}, which {is_} not right yet; correct {it} first."
-            )
+    helps, hints = list[str](), question.hints
+    if depends_on and verdict.outcome is not Outcome.RIGHT:
+        is_, it = ("is", "it") if len(depends_on) == 1 else ("are", "them")
+        helps.append(
+            f"It uses your {listed(depends_on)}, which {is_} not right yet; correct {it} first."
+        )
     tests, numbers = list[str](), list[str]()
     match verdict.outcome:
         case Outcome.NOT_ATTEMPTED:
             helps.append(f"To do: {question.asks}")
+            hints = hints[:-1]  # the last one, which is nearly the answer, follows an attempt
         case Outcome.RIGHT:
+            hints = ()
             helps += [] if verdict.complete or awaits_marking(verdict) else _unseen(question)
         case Outcome.NOT_COUNTED:
             it = "it" if len(verdict.withheld) == 1 else "them"
@@ -151,7 +148,7 @@ def message(
             helps += _helps(verdict, cure=cure)
             tests = [test_name(test, verdict) for test in verdict.tests]
             numbers = _numbers(question, verdict)
-    return Message(head(verdict), helps, tests, numbers, _printed(printed), hint)
+    return Message(head(verdict), helps, tests, numbers, _printed(printed), hints)
 
 
 def summary(verdict: Verdict) -> list[str]:
@@ -193,9 +190,9 @@ def _helps(verdict: Verdict, *, cure: bool) -> Iterator[str]:
 
 
 def _lead(verdict: Verdict) -> Difference | None:
-    """The most informative difference; None if there is a known mistake, which says more."""
-    found = [test.difference for test in verdict.tests if test.difference and not verdict.mistake]
-    return next(filter(likely_cause, found), found[0] if found else None)
+    """The difference in the first test that failed; None if a known mistake says more."""
+    found = (test.difference for test in verdict.tests if test.difference)
+    return None if verdict.mistake else next(found, None)
 
 
 def _unseen(question: Question) -> Iterator[str]:

@@ -93,11 +93,6 @@ def heading(does: str, name: str, points: float, core: bool) -> str:
     return f"**{does}: `{name}`** · {in_points(points)} · {'core' if core else 'extension'}"
 
 
-def where_hints_are(name: str) -> str:
-    """The line of a brief that tells students how to get a hint."""
-    return f'- Stuck? `hint("{name}", 1)` in a new cell (Esc, B): it is free.'
-
-
 def brief(question: Question) -> str:
     """The text above a stub: the task, the points, and what the answer may not use."""
     head = heading("Your turn", question.name, question.points, question.core)

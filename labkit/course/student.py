@@ -1,4 +1,4 @@
-"""The functions that a notebook calls: ``check``, ``case``, ``hint`` and ``use``.
+"""The functions that a notebook calls: ``check``, ``case`` and ``use``.
 
 The questions are in a file beside the notebook, see `checks_file`.
 """
@@ -31,6 +31,7 @@ from .calling import LocalFunction, captured, copied
 from .card import card, picture
 from .causes import diagnosed
 from .identification import on_the_public_arm
+from .judges import UNSAID
 from .marking import Mismatch, mark, not_counted, try_public
 from .messages import HEADS, Message, awaits_marking, message, wrapped
 from .notebook import read_checks, verdict_metadata
@@ -48,7 +49,6 @@ class Desk:
         self.questions = questions
         self.checked: dict[str, tuple[Any, Verdict]] = {}
         self.failing: dict[str, Call | None] = {}
-        self.attempted: set[str] = set()
         self.committed: dict[str, Any] = {}
         self.revealed: set[str] = set()
         self.anyway: set[str] = set()
@@ -101,8 +101,6 @@ class Desk:
                 f"{name} was stopped{where}; does every loop in it end?"
             ) from None
         self.checked[name] = (function, verdict)
-        if verdict.outcome is not Outcome.NOT_ATTEMPTED:
-            self.attempted.add(name)
         return verdict, out.text, found
 
     def wrong_dependencies(self, name: str, function: Callable[..., Any]) -> tuple[str, ...]:
@@ -203,7 +201,7 @@ class Points(float):
             raise NotImplementedError
 
 
-def check(name: str, function: Callable[..., Any]) -> float:
+def check(name: str, function: Any = UNSAID) -> float:
     """Try your function and print the result.
 
     Args:
@@ -213,6 +211,10 @@ def check(name: str, function: Callable[..., Any]) -> float:
     Returns:
         The points earned, which nbgrader reads; for an unknown name, which is told, they are 0.
     """
+    if function is UNSAID:
+        name = getattr(name, "__name__", name)
+        print(wrapped(f'Write check("{name}", {name}).'))
+        return Points(0.0)
     if name not in desk().questions:
         print(wrapped(f"There is no question {name!r:.60}. The names are {_names()}."))
         return Points(0.0)
@@ -285,35 +287,6 @@ def case(name: str) -> tuple[tuple[Any, ...], dict[str, Any]]:
     if call is None:
         raise LabkitError(f"the last check of {name} did not stop at a call; run its check first")
     return copied(call.args), copied(dict(call.kwargs))
-
-
-def hint(name: str, level: int = 1) -> None:
-    """Print a hint, from 1 (the idea) to 3 (almost the answer); hints are free and not recorded.
-
-    The last hint opens after an attempt that was checked and was not right.  For a higher level,
-    `hint` says where else to ask.  For an unknown name, it prints the names of the questions.
-    """
-    if name not in desk().questions:
-        print(wrapped(f"There are no hints for {name!r:.60}. The names are {_names()}."))
-        return
-    hints = desk().question(name).hints
-    if not hints:
-        text = f"{name} has no hints."
-    elif not isinstance(level, int) or not 1 <= level <= len(hints):
-        text = (
-            f"{name} has {len(hints)} hints, and no hint {level!r}. If none of them helps, ask the "
-            "instructor or a forum, and send what its check says."
-        )
-    elif 1 < level == len(hints) and name not in desk().attempted:
-        text = (
-            f"Hint {level} of {name} opens after an attempt: write your best answer, run the "
-            "check, and ask again."
-        )
-    else:
-        print(wrapped(f"{name}, hint {level} of {len(hints)}: {hints[level - 1]}"))
-        text = f'(hint("{name}", {level + 1}) says more)' if level < len(hints) else ""
-    if text:
-        print(wrapped(text))
 
 
 def use(

@@ -28,7 +28,7 @@
 from dataclasses import replace
 
 import labkit as lk
-from labkit.course import check, hint, predict, use
+from labkit.course import check, predict, use
 
 lk.ready()
 

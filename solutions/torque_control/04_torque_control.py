@@ -20,7 +20,7 @@
 from dataclasses import replace
 
 import labkit as lk
-from labkit.course import check, hint, predict, use
+from labkit.course import check, predict, use
 
 lk.ready()
 

@@ -22,7 +22,7 @@
 
 # %% setup=true
 import labkit as lk
-from labkit.course import check, hint, predict, use
+from labkit.course import check, predict, use
 
 lk.ready()
 

@@ -17,7 +17,7 @@ import matplotlib.pyplot as plt
 import numpy as np
 
 import labkit as lk
-from labkit.course import check, hint, predict, use
+from labkit.course import check, predict, use
 
 lk.ready()
 

@@ -48,7 +48,21 @@ def test_tests_and_numbers_are_folded():
     verdict = mark(DOUBLE, square)
     bare = replace(message(DOUBLE, verdict), numbers=())
     assert "Show them</summary>" in card(bare, verdict.outcome)["text/html"]
-    assert "<details>" not in shown(stub)["text/html"] + shown(double)["text/html"]
+    assert "<details>" not in shown(double)["text/html"]
+
+
+def test_hints_open_one_after_the_other():
+    """Each is folded within the one before; the last one follows an attempt."""
+    for function, count in ((stub, 2), (square, 3)):
+        page = shown(function)["text/html"]
+        first = page.index(f"Hint 1 of {count}<")
+        parts = page[first:].split("<summary>")
+        assert len(parts) == count
+        for k, part in enumerate(parts):
+            assert (
+                DOUBLE.hints[k] in unescape(part)
+                and part.count("</details>") == (0, count)[k == count - 1]
+            )
 
 
 def test_the_outcome_is_told_by_words_and_a_sign():

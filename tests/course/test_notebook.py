@@ -1,4 +1,4 @@
-"""What a notebook says: check, hint and use."""
+"""What a notebook says: check and use."""
 
 import ast
 import json
@@ -12,7 +12,7 @@ from pathlib import Path
 import pytest
 from questions import DOUBLE, double, square
 
-from labkit.course import check, hint, question_data, use
+from labkit.course import check, question_data, use
 from labkit.course import student as notebook
 from labkit.course.marking import mark, not_counted
 from labkit.course.notebook import FILE, verdict_in
@@ -207,22 +207,6 @@ def test_a_loop_without_end_is_told_when_it_is_stopped(capfd):
     assert capfd.readouterr().out == "heard again\n"
 
 
-def test_hints_lead_on(capsys):
-    """Three hints, each naming the next, the third after an attempt; there is no fourth."""
-    hint("double", 3)
-    assert "opens after an attempt" in capsys.readouterr().out
-    check("double", square)
-    capsys.readouterr()
-    for level in (1, 2, 3):
-        hint("double", level)
-        said = capsys.readouterr().out
-        assert DOUBLE.hints[level - 1] in said
-        assert (f'hint("double", {level + 1})' in said) == (level < 3)
-    for level in (0, 4, -1, 1.0, "1"):
-        hint("double", level)
-        assert f"double has 3 hints, and no hint {level!r}." in capsys.readouterr().out
-
-
 def test_use_takes_yours_only_if_right(capsys):
     """A right function is used, or what wraps it; any other is replaced, with a badge each time."""
     given, wrapped = object(), object()
@@ -281,13 +265,6 @@ def test_unknown_questions_are_a_sentence(capsys):
     assert "no question 'treble'. The names are double, again." in capsys.readouterr().out
     with pytest.raises(UnknownName, match="'double'"):
         use("t", 1, 2)
-
-
-def test_a_misspelt_hint_names_those_that_exist(capsys):
-    """A hint is asked for by hand, so a wrong name is a sentence and not an error."""
-    hint("treble", 1)
-    said = capsys.readouterr().out
-    assert said == "There are no hints for 'treble'. The names are double, again.\n"
 
 
 def test_a_missing_file_is_a_sentence(tmp_path, monkeypatch):

@@ -146,11 +146,3 @@ def test_a_number_that_is_the_arms_own_is_told_so(monkeypatch, capsys):
     predict("x", 8.3)
     predict("x", truth=8.3)
     assert "Your number is the arm's." in capsys.readouterr().out
-
-
-def test_a_prediction_has_no_hints(place, monkeypatch, capsys):
-    """And nobody is sent to a forum for them."""
-    monkeypatch.setattr("labkit.course.student.desk", lambda: place)
-    monkeypatch.setattr("labkit.course.student.read_checks", lambda _: {"assignment": "01_paths"})
-    desk.hint("x")
-    assert capsys.readouterr().out == "x has no hints.\n"

@@ -11,7 +11,7 @@ WITHHELD = (
     "labkit.metrics",
     "pinocchio",
 )
-SETUP = "import labkit as lk\nfrom labkit.course import check, hint, use\nimport numpy as np"
+SETUP = "import labkit as lk\nfrom labkit.course import check, use\nimport numpy as np"
 GIVEN = """\
 def given_f(s):
     return lk.Circle([1, 0, 0], [0, 0, 0])(s)

@@ -19,11 +19,11 @@ def install() -> None:
     from labkit.course.own_arm import commanded
 
     checks = ModuleType("labkit.course")
-    for function in (check, hint, predict, use):
+    for function in (check, predict, use):
         setattr(checks, function.__name__, function)
-    vars(checks).update(case=hint, commanded=commanded)
+    vars(checks).update(case=nothing, commanded=commanded)
     sys.modules["labkit.course"] = vars(labkit)["course"] = checks
-    vars(labkit).update(ready=ready, hand_in=hint, my_arm=my_arm, my_bug=my_arm)
+    vars(labkit).update(ready=ready, hand_in=nothing, my_arm=my_arm, my_bug=my_arm)
     shell = Shell()
     vars(builtins).update(get_ipython=lambda: shell, display=display)
     with contextlib.suppress(ImportError):
@@ -43,8 +43,8 @@ def check(name: str, function: Callable[..., Any] | None = None) -> float:
     return 0.0
 
 
-def hint(name: str, level: int = 1) -> None:
-    """Give no hint."""
+def nothing(name: str) -> None:
+    """Do nothing."""
 
 
 class NoOwnArm(Exception):
