@@ -1,4 +1,4 @@
-// The plots of a panel: a whole run, a faint line for the run before it, a dashed one for the kept run, on fixed axes.
+// The plots of a panel: a whole run, and a faint line for the run before it, on fixed axes.
 import { wholeRun } from "./session.js";
 
 const POINTS = 160;
@@ -49,7 +49,6 @@ export class Curves {
       const fit = (ticks) => x.map((_, i) => Math.min(most, value(ticks[Math.min(i, ticks.length - 1)])));
       const series = [];
       if (this.before) series.push({ name: "before", values: fit(this.before), colour: "var(--lk-edge)", dash: "" });
-      if (this.kept) series.push({ name: "kept", values: fit(this.kept), colour: "#1f77d0", dash: "7 3" });
       series.push({ name: "now", values: fit(this.last), colour: "var(--lk-trace)", dash: "", width: 2.4 });
       const high = Math.max(...series.flatMap((s) => s.values));
       while (high > one.top) one.top *= /^2/.test(String(one.top)) ? 2.5 : 2; // the axis never shrinks while the reader looks at it
@@ -58,18 +57,13 @@ export class Curves {
     }
   }
 
-  keep() { this.kept = this.last; this.draw(); }
-  drop() { this.kept = null; this.draw(); }
   time(t) { this.plots.forEach(({ plot }) => plot.time(t)); }
 
   /** A description of the values at a time. */
   at(t) {
     if (!this.last) return "the curve is not ready yet";
     const i = Math.max(0, this.last.findIndex((tick) => tick.t >= t));
-    return this.plots.map(({ of }) => {
-      const told = (ticks) => `${of.value(ticks[Math.min(i, ticks.length - 1)]).toFixed(1)} ${of.unit}`;
-      return `now ${told(this.last)}${this.kept ? `, kept ${told(this.kept)}` : ""}`;
-    }).join("; ");
+    return this.plots.map(({ of }) => `${of.value(this.last[i]).toFixed(1)} ${of.unit}`).join("; ");
   }
 
   dispose() { this.plots.forEach(({ plot }) => plot.dispose()); }

@@ -19,8 +19,8 @@ export class Drawing extends Form {
     rig.use("Motion");
     const target = (p) => this.change({ place: p.map((x, k) => Math.max(-0.15, Math.min(0.15, x - READY.p[k]))) });
     const wall = (p) => { const at = p[0] - READY.p[0]; this.walldial.set(1000 * at); this.change({ wall: at }); };
-    const tag = (p) => { for (const { chase } of this.sessions) chase.dragged = subtract(p, READY.p).map((x, k) => (k === 2 ? 0 : x + TAG.offset[k])); };
-    hold(picture, () => this.sessions, () => ({ wall, tag, ...(this.settings.path === "stay" && { target, spring: target }) }), () => this.pause(false));
+    const tag = (p) => { this.session.chase.dragged = subtract(p, READY.p).map((x, k) => (k === 2 ? 0 : x + TAG.offset[k])); };
+    hold(picture, this.session, () => ({ wall, tag, ...(this.settings.path === "stay" && { target, spring: target }) }), () => this.pause(false));
     this.drawPath();
   }
 
@@ -42,13 +42,11 @@ export class Drawing extends Form {
     picture.stage.draw();
   }
 
-  /** Draw the arms in their present state, their surroundings, and the forces on them. */
+  /** Draw the arm in its present state, its surroundings, and the forces on it. */
   drawNow(now) {
     const { picture } = this;
     picture.pose("left", this.session.arm.q);
-    if (this.other) this.ghost.pose(this.other.arm.q);
     this.furnish(now);
-    picture.moved(now.t);
     for (const name of ["hand", "push", "wall"]) {
       const force = now.forces.find((f) => f.name === name);
       picture.arrow(name, force?.at ?? now.p, force ? force.force.map((x) => NEWTON * x) : [0, 0, 0], force ? `${force.size.toFixed(1)} N` : "");

@@ -1,7 +1,7 @@
 // The fields of a live panel, with its choices, dials and push buttons.
 import { ARM_DIALS, gainDials } from "./controls.js";
 import { dial } from "./dial.js";
-import { AXES, pushTips } from "./hands.js";
+import { AXES, pushTip } from "./hands.js";
 import { NAMES } from "./settings.js";
 import { SCALINGS } from "./paths.js";
 
@@ -10,28 +10,34 @@ const PATHS = ["line", "circle", "square", "tag", "stay"];
 const key = (names, label) => Object.keys(names).find((k) => names[k] === label);
 
 export class Form {
-  /** The parts below the picture, in order. */
-  parts() {
-    return [this.buttons(), this.choices(), this.fieldset("Gains", this.gainbox), this.hands(), this.details(), this.numbers,
-      this.curves.element, this.said];
+  /** The parts in order: picture and curve side by side, then the controls; the rest is folded. */
+  parts(stagebox) {
+    const { controller, ...others } = this.choices(), bar = (...made) => this.h("div", { class: "lk-livebar" }, made.map((c) => c.element));
+    return [this.beside(stagebox, [this.curves.element, this.said], [bar(controller), this.gainbox]),
+      this.folded(this.hands(), bar(...Object.values(others)), ...this.surroundings())];
+  }
+
+  /** The picture with its buttons, beside it what it shows, and below it what changes it. */
+  beside(stagebox, told, under = []) {
+    const { h } = this;
+    return h("div", { class: "lk-beside" }, h("div", {}, stagebox, this.buttons()), h("div", {}, told), h("div", {}, this.numbers, under));
+  }
+
+  folded(...parts) {
+    return this.viewer.more(this.h("div", { class: "lk-bar" }, this.h("button", { type: "button", onclick: () => this.restart() }, "From the start")), ...parts, this.sight);
   }
 
   fieldset(name, ...children) { return this.h("fieldset", {}, this.h("legend", {}, name), ...children); }
 
   buttons() {
-    const { h } = this;
-    const button = (text, onclick) => h("button", { type: "button", onclick }, text);
-    this.play = button("Pause", () => this.pause(this.playing));
-    this.play.classList.add("lk-play");
-    this.keeper = button("Keep this run", () => this.keep());
-    return h("div", { class: "lk-bar" }, this.play, button("Step 0.1 s", () => { this.pause(true); this.live(0.1); this.tell(); }),
-      button("From the start", () => this.restart()), this.keeper);
+    this.play = this.h("button", { type: "button", class: "lk-play", onclick: () => this.pause(this.playing) }, "Pause");
+    return this.h("div", { class: "lk-bar" }, this.play);
   }
 
   choices() {
-    const { h, viewer, settings } = this;
+    const { viewer, settings } = this;
     const only = this.config.controllers ?? Object.keys(NAMES);
-    this.selects = {
+    return {
       plant: viewer.choice({ label: "Arm", values: Object.values(ARMS), value: ARMS[settings.plant],
         onchange: (label) => this.preset(key(ARMS, label)) }),
       path: viewer.choice({ label: "Path", values: this.config.paths ?? PATHS, value: settings.path,
@@ -40,7 +46,6 @@ export class Form {
         onchange: (label) => { this.change({ controller: key(NAMES, label), gains: {} }); this.showGains(); } }),
       shape: viewer.choice({ label: "Time scaling", values: SCALINGS, value: settings.shape,
         onchange: (shape) => this.change({ shape }) }) };
-    return h("div", { class: "lk-livebar" }, Object.values(this.selects).map((c) => c.element));
   }
 
   dial(spec, oninput) { return dial({ h: this.h, unique: this.viewer.unique }, { ...spec, oninput }); }
@@ -56,12 +61,12 @@ export class Form {
   hands() {
     const { h } = this;
     const newtons = this.dial({ label: "Force", unit: "N", min: 1, max: 40, value: 10 }, () => {});
-    const push = (axis) => { pushTips(this.sessions, axis, newtons.get()); this.pause(false); this.say(`Pushing the tip with ${newtons.get()} N along ${axis} for a second.`); this.tell(900); };
+    const push = (axis) => { pushTip(this.session, axis, newtons.get()); this.pause(false); this.say(`Pushing the tip with ${newtons.get()} N along ${axis} for a second.`); this.tell(900); };
     const buttons = Object.keys(AXES).map((axis) => h("button", { type: "button", "aria-label": `Push along ${axis}`, onclick: () => push(axis) }, axis));
     return this.fieldset("Push the tip, or drag the arm in the picture", newtons.element, h("div", { class: "lk-pushes" }, buttons));
   }
 
-  details() {
+  surroundings() {
     const { h, settings } = this;
     this.armdials = Object.fromEntries(ARM_DIALS.map((spec) => [spec.key,
       this.dial({ ...spec, value: settings[spec.key] }, (x) => this.change({ [spec.key]: x }))]));
@@ -70,8 +75,7 @@ export class Form {
     const there = h("input", { type: "checkbox", checked: settings.wall !== undefined,
       onchange: () => this.change({ wall: there.checked ? wall.get() / 1000 : undefined }) });
     this.walldial = wall;
-    return h("details", { open: this.config.open }, h("summary", {}, "The arm and its surroundings"),
-      this.fieldset("Arm", h("div", { class: "lk-dials" }, Object.values(this.armdials).map((d) => d.element))),
-      this.fieldset("Wall in front of the tip", h("label", { class: "lk-check" }, there, "present"), wall.element));
+    return [this.fieldset("Arm", h("div", { class: "lk-dials" }, Object.values(this.armdials).map((d) => d.element))),
+      this.fieldset("Wall in front of the tip", h("label", { class: "lk-check" }, there, "present"), wall.element)];
   }
 }

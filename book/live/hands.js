@@ -10,22 +10,19 @@ const PUSH = 1; // duration of a push by button, in [s] of the arm's time
 export const AXES = { "+x": [1, 0, 0], "−x": [-1, 0, 0], "+y": [0, 1, 0], "−y": [0, -1, 0], "+z": [0, 0, 1], "−z": [0, 0, -1] };
 
 /** Let pointers take hold of the arm or of `things()`, {name: move(point)}; each hold calls `touched`. */
-export function hold(picture, sessions, things, touched) {
+export function hold(picture, session, things, touched) {
   picture.grab((picked) => {
     const move = things()[picked.thing];
     if (move) return { move: (event) => move(picture.dragged(event, picked.at)), end: () => {} };
-    const hands = sessions().map((session) => ({ session, place: placeOn(session.arm.q, picked.link, picked.at) }));
-    const release = () => hands.forEach(({ session, hand }) => { session.hands = session.hands.filter((other) => other !== hand); });
+    const place = placeOn(session.arm.q, picked.link, picked.at);
+    let hand;
+    const release = () => { session.hands = session.hands.filter((other) => other !== hand); };
     return {
       move: (event) => {
-        const anchor = picture.dragged(event, picked.at);
         release();
-        for (const hand of hands) {
-          const { session, place } = hand, { p } = session.arm.model.point(session.arm.q, place);
-          const away = subtract(anchor, p), far = Math.max(1, length(away) / REACH);
-          hand.hand = { ...spring({ anchor: add(p, scale(1 / far, away)), ...PULL, place }), name: "hand" };
-          session.hands.push(hand.hand);
-        }
+        const { p } = session.arm.model.point(session.arm.q, place), away = subtract(picture.dragged(event, picked.at), p);
+        hand = { ...spring({ anchor: add(p, scale(1 / Math.max(1, length(away) / REACH), away)), ...PULL, place }), name: "hand" };
+        session.hands.push(hand);
         touched();
       },
       end: () => { release(); touched(); },
@@ -33,12 +30,10 @@ export function hold(picture, sessions, things, touched) {
   }, ({ thing }) => !thing || thing in things());
 }
 
-/** Push the tips of the arms in `sessions` along an axis, for a second of their time. */
-export function pushTips(sessions, axis, newtons) {
-  for (const session of sessions) {
-    session.hands = session.hands.filter(({ name }) => name !== "push");
-    session.hands.push({ ...push(scale(newtons, AXES[axis])), name: "push", until: session.loop.t + PUSH });
-  }
+/** Push the tip of the arm along an axis, for a second of its time. */
+export function pushTip(session, axis, newtons) {
+  session.hands = session.hands.filter(({ name }) => name !== "push");
+  session.hands.push({ ...push(scale(newtons, AXES[axis])), name: "push", until: session.loop.t + PUSH });
 }
 
 /** Remove pushes whose time is over. */

@@ -1,4 +1,4 @@
-// The panel of the live page: any path with any controller, dials, hands, and a kept run beside the present one.
+// The panel of the live page: any path with any controller, dials and hands.
 import { Curves, ERROR } from "./curves.js";
 import { ARM_DIALS } from "./controls.js";
 import { Drawing } from "./drawing.js";
@@ -9,7 +9,6 @@ import { Session } from "./session.js";
 import { TASK } from "./numbers.js";
 import { write } from "./predict.js";
 
-const GHOST = 0x1f77d0;
 export const CALM = 800; // ms without another curve before a screen reader is given the last one
 const SIGNS = { zeta: "ζ", lambda2: "λ²", threshold: "damped where σ is below" }; // symbols of gains, as in the text
 const UNITS = { lambda2: " m²", threshold: " m" }; // lengths, because angles are multiplied by a lever in metres
@@ -40,8 +39,6 @@ export class Panel extends Drawing {
     this.recompute();
   }
 
-  get sessions() { return this.other ? [this.session, this.other] : [this.session]; }
-
   build(robot) {
     const { h, viewer, host } = this;
     this.element = h("div", { class: "lk-player", role: "group", "aria-label": this.config.title ?? "The live arm" });
@@ -51,15 +48,13 @@ export class Panel extends Drawing {
     this.said = h("p", { class: "lk-kept" });
     this.gainbox = h("div", { class: "lk-dials" });
     this.curves = new Curves(viewer, this.quantities(), (t) => this.say(`At ${t.toFixed(2)} s: ${this.curves.at(t)}`));
-    this.element.append(stagebox, ...this.parts(), this.status);
-    if (this.predicted) this.element.prepend(this.predicted.element); // the question is above the picture
+    this.sight = h("div");
+    this.element.append(...this.parts(stagebox), this.status);
     host.append(this.element);
     this.picture = new viewer.Picture(stagebox, "Baxter, live");
     if (this.picture.works) {
       this.draw3d(robot);
-      const { element, alone } = viewer.sight(this.picture);
-      stagebox.after(element);
-      alone(true);
+      this.sight.replaceWith(viewer.sight(this.picture).element);
     }
     else stagebox.append(h("p", { class: "lk-note" }, "This browser cannot draw in 3-D (WebGL is missing). The arm is still simulated: push it with the buttons, and watch the numbers and the curve."));
     this.showGains();
@@ -85,23 +80,8 @@ export class Panel extends Drawing {
     this.showGains();
   }
 
-  /** Show this run beside the next ones, as a see-through arm and a curve. */
-  keep() {
-    this.other?.close();
-    this.picture.works && this.ghost?.remove();
-    if (this.kept) { [this.other, this.ghost, this.kept] = []; this.curves.drop(); } else {
-      this.kept = this.settings;
-      this.other = new Session(this.mujoco, this.settings);
-      this.ghost = this.picture.works && this.picture.ghost("left", GHOST);
-      this.curves.keep();
-      this.restart();
-    }
-    this.keeper.textContent = this.kept ? "Discard the kept run" : "Keep this run";
-    this.say(this.kept ? "The see-through arm keeps these values." : "The kept run was discarded.");
-  }
-
   restart() {
-    for (const session of this.sessions) session.restart();
+    this.session.restart();
     this.pause(false);
   }
 
@@ -124,11 +104,8 @@ export class Panel extends Drawing {
   /** Advance the arms by a time in [s], and show the result. */
   live(seconds) {
     try {
-      for (const session of this.sessions) {
-        tire(session);
-        const seen = session.advance(seconds);
-        if (session === this.session && seen.length) this.now = seen.at(-1);
-      }
+      tire(this.session);
+      this.now = this.session.advance(seconds).at(-1) ?? this.now;
     } catch (problem) { this.lost(problem); return; }
     this.show();
   }
@@ -168,7 +145,7 @@ export class Panel extends Drawing {
 
   lost(problem) {
     this.pause(true);
-    for (const session of this.sessions) session.restart();
+    this.session.restart();
     this.numbers.textContent = `Stopped: ${problem.message}. The arm is back at its start; change a dial and continue.`;
     this.say(this.numbers.textContent);
   }
@@ -186,7 +163,7 @@ export class Panel extends Drawing {
     cancelAnimationFrame(this.tick);
     clearTimeout(this.due);
     clearTimeout(this.telling);
-    this.sessions.forEach((session) => session.close());
+    this.session.close();
     this.curves.dispose();
     this.picture.dispose();
     this.element.remove();

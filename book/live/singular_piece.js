@@ -59,7 +59,7 @@ const SETTINGS = { controller: "workspaceVelocity", path: "stretch", start: STAR
 class Singular extends Panel {
   quantities() { return [{ ...ASKED, title: "Largest joint speed that the law asks for, before the motors' limits [rad/s]" }, { ...ERROR, title: "Path error [mm]", top: 5 }]; }
 
-  parts() {
+  parts(stagebox) {
     const { h, viewer } = this;
     this.predicted = predictBox(h, {
       question: "The tip is to move outwards at 10 cm/s while the elbow stretches. By the equations alone, at which elbow angle e1 must a joint turn fastest? (0 is the straight elbow.)",
@@ -74,8 +74,8 @@ class Singular extends Panel {
       new viewer.Plot({ title: "Speed of the tip that is lost [mm/s]", series: [], x: [0, 1], least: 100, ...axis })];
     this.maptold = h("p", { class: "lk-kept", role: "status" });
     this.mapbox = h("div", { class: "lk-plots", hidden: true }, this.maps.map((plot) => plot.element));
-    return [this.predicted.element, this.buttons(), this.fieldset("Damping", this.lambda.element), this.numbers,
-      this.curves.element, this.said, this.mapbox, this.maptold, this.hands()];
+    return [this.predicted.element, this.beside(stagebox, [this.curves.element, this.said], [this.fieldset("Damping", this.lambda.element)]),
+      this.mapbox, this.maptold, this.folded(this.hands())];
   }
 
   showGains() {}

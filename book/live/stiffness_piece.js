@@ -11,7 +11,7 @@ const SETTINGS = { controller: "workspaceImpedance", path: "stay", place: [BEHIN
 const MODES = { one: "one K for all directions", three: "Kx, Ky, Kz", position: "position mode" };
 
 class Stiffness extends Panel {
-  parts() {
+  parts(stagebox) {
     const { h, viewer } = this;
     this.mode = "one";
     this.predicted = predictBox(h, {
@@ -25,8 +25,8 @@ class Stiffness extends Panel {
     this.walldial = this.dial({ label: "Wall at", unit: "mm", min: -40, max: 60, value: 0 }, (x) => this.change({ wall: x / 1000 }));
     const results = this.predicted.behind("Once you have entered a number above, the force on the wall and the sag appear here and in the picture.",
       h("div", { class: "lk-bars" }, this.bars.wall.element, this.bars.sag.element), this.verdict);
-    return [this.predicted.element, this.buttons(), this.fieldset("Stiffness", this.choose.element, this.gainbox), ...results, this.numbers,
-      this.fieldset("Weight in the hand, wall", h("div", { class: "lk-dials" }, weight.element, this.walldial.element)), this.hands(), this.said];
+    return [this.predicted.element, this.beside(stagebox, results, [this.fieldset("Stiffness", this.choose.element, this.gainbox)]),
+      this.folded(this.fieldset("Weight in the hand, wall", h("div", { class: "lk-dials" }, weight.element, this.walldial.element)), this.hands()), this.said];
   }
 
   /** Use other gains, with one dial, three dials or none. */

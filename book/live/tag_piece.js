@@ -38,7 +38,7 @@ export const miss = (settings) => {
 class Age extends Panel {
   quantities() { return [AIM, AGE]; }
 
-  parts() {
+  parts(stagebox) {
     const { h, viewer } = this;
     const camera = (what) => this.change({ camera: { ...this.settings.camera, ...what } });
     const { camera: now, tagSpeed } = this.settings;
@@ -58,9 +58,9 @@ class Age extends Panel {
     this.table = h("table", { class: "lk-table" });
     const results = this.predicted.behind("Once you have entered a number above, the distance between the point aimed at and the tag appears here as a number, a curve and a table.",
       this.curves.element, this.said, h("div", { class: "lk-scroll", tabindex: 0 }, this.table));
-    return [this.predicted.element, this.buttons(), this.fieldset("The tag, which can be dragged", move.element, dials[3].element, h("div", { class: "lk-pushes" }, keys)),
-      this.fieldset("The camera", h("div", { class: "lk-dials" }, dials.slice(0, 3).map((d) => d.element)), h("label", { class: "lk-check" }, box, "predict: continue the motion of the last two pictures")),
-      this.numbers, ...results, corners(viewer)];
+    return [this.predicted.element, this.beside(stagebox, results, [this.fieldset("The camera", h("div", { class: "lk-dials" }, dials.slice(0, 3).map((d) => d.element)),
+      h("label", { class: "lk-check" }, box, "predict: continue the motion of the last two pictures"))]),
+      this.folded(this.fieldset("The tag, which can be dragged", move.element, dials[3].element, h("div", { class: "lk-pushes" }, keys))), corners(viewer)];
   }
 
   showGains() {}
@@ -71,8 +71,8 @@ class Age extends Panel {
     return over.concat(over.map((p) => subtract(p, TAG.offset)));
   }
 
-  release() { for (const { chase } of this.sessions) chase.dragged = null; }
-  drag(place) { for (const { chase } of this.sessions) chase.dragged = place.map((x) => Math.max(-0.15, Math.min(0.15, x))); }
+  release() { this.session.chase.dragged = null; }
+  drag(place) { this.session.chase.dragged = place.map((x) => Math.max(-0.15, Math.min(0.15, x))); }
 
   /** Draw three dots: the tag now, the tag as seen, and the aim. */
   more(now) {

@@ -12,7 +12,7 @@ export * as kinematics from "./kinematics.js";
 export { Picture } from "./picture.js";
 export { dispose, line } from "./marks.js";
 export { Plot } from "./plots.js";
-export { sight } from "./sight.js";
+export { more, sight } from "./sight.js";
 export * as so3 from "./so3.js";
 export { dress };
 
