@@ -17,14 +17,13 @@ import numpy as np
 
 from . import control, metrics, se3
 from .arm import Arm
-from .baxter import robot
 from .control import JointPosition, JointTorque, JointVelocity, State
 from .errors import LabkitError
 from .log import Log
 from .model import Model
 from .paths import BangBang, Circle, Cubic, Line, Polyline, Quintic, Trapezoid
 from .plant import BAXTER, IDEAL, Plant
-from .robot import Robot
+from .robot import Robot, robot
 from .run import run
 from .scene import Push, Spring, Table, Wall
 from .trajectory import Chain, Hold, PosePath, PoseSample, Sample, Trajectory

@@ -7,16 +7,14 @@ from typing import Any
 
 import numpy as np
 
-from .baxter import as_robot
 from .control import COMMANDS, Command, JointPosition, JointTorque, JointVelocity, State
 from .errors import Closed, ControllerError, LabkitError, ShapeError, TypeMismatch
-from .joints import Joints, Touch
+from .joints import Joints, Motors, TipForce
 from .model import Model
-from .motors import Motors
 from .plant import IDEAL, Plant
-from .robot import Robot
+from .robot import Robot, as_robot
 from .sensors import Reports, TorqueSensors
-from .shapes import Array, as_array, as_random, locked, shown
+from .shapes import Array, as_array, as_random, shown
 from .sim import new_arm
 from .world import World
 
@@ -150,15 +148,13 @@ class Arm:
         self._start(q, self.robot.zeros)
 
     def _start(self, q: Array, dq: Array) -> None:
-        self._engine.place(q, dq)
+        self._q, self._dq, self._torque = np.array(q), np.array(dq), self.robot.zeros
+        self._engine.place(self._q, self._dq)
         self._joints.reset()
-        self._known: tuple[Array, Array] | None = None
-        self._torque: Array = self.robot.zeros
-        self._touches: list[Touch] = []
+        self._touches: list[TipForce] = []
         self._pull: Array | None = None
         self._sensors.reset()
-        seen = locked(self._reports.read(np.array(q)))
-        self._reports.reset(State(self.world.t, seen, locked(np.array(dq))))
+        self._reports.reset(State(self.world.t, self._reports.read(self._q), self._dq))
         self._motors.kind = type(None)
         self.stop()
 
@@ -168,11 +164,11 @@ class Arm:
         Raises:
             ShapeError: The plant belongs to an arm with a different number of joints.
         """
-        q, dq = self._read()
+        self.check_open()
         before = self._engine
         self._build(Model(self.robot, plant))
         before.close()
-        self._start(q, dq)
+        self._start(self._q, self._dq)
 
     def recover(self) -> None:
         """Come to rest at once, inside the joints' range: what someone does after a runaway."""
@@ -184,9 +180,9 @@ class Arm:
 
     def truth(self) -> State:
         """The joints as they really are."""
-        q, dq = self._read()
-        steps = self.world.steps
-        return State(steps * self.world.dt, q, dq, self._sensors.felt(dq, steps))
+        self.check_open()
+        felt = self._sensors.felt(self._dq, self.world.steps)
+        return State(self.world.t, self._q.copy(), self._dq.copy(), felt.copy())
 
     @property
     def torque(self) -> Array:
@@ -211,9 +207,9 @@ class Arm:
             Closed: The arm's world is closed, or the arm is live in another cell.
         """
         force, moment = as_array(force, (3,), "force"), as_array(moment, (3,), "moment")
-        self.touch(Touch(np.concatenate([force, moment]), np.zeros((3, 3))))
+        self.touch(TipForce(np.concatenate([force, moment]), np.zeros((3, 3))))
 
-    def touch(self, touch: Touch) -> None:
+    def touch(self, touch: TipForce) -> None:
         """Let something act on the tip during the next physics step.
 
         Raises:
@@ -237,8 +233,9 @@ class Arm:
 
     def tip(self) -> tuple[Array, Array]:
         """True position [m] and velocity [m/s] of the tip, each of shape (3,)."""
-        q, dq = self._read()
-        return self.model.pose(q)[:3, 3], self.model.tip_jacobian(q)[:3] @ dq
+        self.check_open()
+        model = self.model.dynamics
+        return model.pose(self._q)[:3, 3], model.tip_jacobian(self._q)[:3] @ self._dq
 
     def check_open(self) -> None:
         """Raise `Closed` if the arm's world was closed, or belongs to another thread."""
@@ -266,9 +263,9 @@ class Arm:
         """Take a physics step; the world calls it."""
         if self.world.steps > self._deadline:
             self._hold()
-        if self._reports.every and self._reports.due(self.world.steps):
+        if self._reports.due(self.world.steps):
             self._report()
-        q, dq = self._known or self._read()
+        q, dq = self._q, self._dq
         drive = self._motors.drive(self._reports.read(q), dq)
         outside = drive if self._pull is None else drive._replace(tau=drive.tau + self._pull)
         given = self._joints.solve(q, dq, outside, self._touches)
@@ -276,8 +273,8 @@ class Arm:
             joint = drive.tau + given.held - self._viscous * dq
             self._sensors.begin(q, dq, joint, self.world.steps)
         self._torque = drive.tau if self._motors.kind is JointTorque else given.held
-        self._engine.step(given.tau, given.ddq)
-        self._known, self._touches, self._pull = None, [], None
+        self._q, self._dq = self._engine.step(given.tau, given.ddq)
+        self._touches, self._pull = [], None
 
     def release(self) -> None:
         """Free the engine's resources; the world calls it."""
@@ -291,16 +288,8 @@ class Arm:
         if self._motors.kind is JointPosition:
             self._deadline = self.world.steps + self._patience
             return
-        q = self._reports.read(self.truth().q)
+        q = self._reports.read(self._q)
         self.apply(JointPosition(np.clip(q, self.robot.lower, self.robot.upper)))
-
-    def _read(self) -> tuple[Array, Array]:
-        """True joint angles and speeds, read-only."""
-        self.check_open()
-        if self._known is None:
-            q, dq = self._engine.state()
-            self._known = locked(q), locked(dq)
-        return self._known
 
     def close(self) -> None:
         """Close the arm's world."""

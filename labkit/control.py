@@ -30,11 +30,10 @@ class State(_State):
 
     Attributes:
         t: Time of the measurement, in [s] on the simulation's clock.
-        q: Joint angles, shape (n,) in [rad], read-only.
-        dq: Joint speeds, shape (n,) in [rad/s], read-only.
+        q: Joint angles, shape (n,) in [rad].
+        dq: Joint speeds, shape (n,) in [rad/s].
         tau_ext: External joint torque, as the arm estimates it from its torque sensors, shape (n,)
-            in [N m], read-only; `Model.tip_wrench` converts it to a wrench.  None means that the
-            arm gives no estimate.
+            in [N m]; `Model.tip_wrench` converts it to a wrench.  None means that there is none.
     """
 
     __slots__ = ()

@@ -1,4 +1,4 @@
-r"""The joints: the torques of motors, dry friction and stops in one physics step.
+r"""The joints: what motors do for each type of command, and the torques in one physics step.
 
 A step of :math:`\Delta t` takes the speeds of joints with inertia M and rotors
 :math:`A = \mathrm{diag}(a)` from :math:`\dot q` to
@@ -12,15 +12,16 @@ within its torque limit, dry friction holds the speed at zero, and the stops end
 
 from __future__ import annotations
 
-from functools import cache
 from math import inf
 from operator import le, lt
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 
+from .control import Command, JointPosition, JointTorque, JointVelocity
 from .errors import LabkitError
 from .model import Model
+from .plant import Plant
 from .shapes import Array
 
 LOW, SLIP_UP, STICK, SLIP_DOWN, HIGH = range(1, 6)
@@ -88,7 +89,7 @@ def joint_torques(
         wanted = np.array([stair[k] for stair, k in zip(stairs, states, strict=True)])
         of_speed = np.array([k in (LOW, STICK, HIGH) for k in states])
         rows = np.where(of_speed[:, None], G, unit)
-        y = _dgesv()(rows, np.where(of_speed, wanted - u, wanted))[2]
+        y = np.linalg.solve(rows, np.where(of_speed, wanted - u, wanted))
         v, wrong = u + G @ y, False
         for i, (k, torque, speed) in enumerate(zip(states, y.tolist(), v.tolist(), strict=True)):
             before, after = stairs[i][k - 1], stairs[i][k + 1]
@@ -109,20 +110,12 @@ def joint_torques(
     )
 
 
-@cache
-def _dgesv() -> Any:
-    """LAPACK's solver, slow to import but 6 us faster per call than NumPy's."""
-    from scipy.linalg.lapack import dgesv
-
-    return dgesv
-
-
-class Given(NamedTuple):
+class JointStep(NamedTuple):
     """The torques and accelerations of the joints in a physics step, vectors of shape (n,).
 
     Attributes:
         held: The torque within the drive's bound that holds its speeds, in [N m].
-        tau: Total torque on the joints, including friction, stops and touches, in [N m].
+        tau: Total torque on the joints, including friction, stops and forces on the tip, in [N m].
         ddq: The accelerations that it causes, in [rad/s^2]; None if they were not computed.
     """
 
@@ -147,7 +140,11 @@ class Drive(NamedTuple):
     holds: bool = True
 
 
-class Touch(NamedTuple):
+BRAKING = 0.5
+"""Share of the torque left after gravity with which the position mode plans to brake."""
+
+
+class TipForce(NamedTuple):
     r"""A force on the tip in a physics step, :math:`f = f_0 - D v`, v at the end of the step.
 
     Attributes:
@@ -172,7 +169,10 @@ class Joints:
 
     def __init__(self, model: Model, dt: float) -> None:
         """Make the joints of ``model`` and its plant, with steps of ``dt`` [s]."""
-        self._model, self._dt, robot = model, dt, model.robot
+        from scipy.linalg.lapack import dgesv  # slow to import
+
+        self._dynamics, self._dt, robot = model.dynamics, dt, model.robot
+        self._gesv = dgesv
         viscous = model.plant.each("viscous", robot.n)
         self._viscous = viscous if viscous.any() else None
         self._nothing, self._unit = robot.zeros, np.eye(robot.n)
@@ -194,10 +194,10 @@ class Joints:
         signs = [float(STICK - k) for k in states]
         self._signs, self._sign = signs, np.array(signs)
         self._held = np.array([k == STICK for k in states])
-        self._columns = self._held[None, :]
+        self._rows = self._held[:, None]
         self._clear_of_stops = LOW not in states and HIGH not in states
 
-    def solve(self, q: Array, dq: Array, drive: Drive, touches: list[Touch]) -> Given:
+    def solve(self, q: Array, dq: Array, drive: Drive, touches: list[TipForce]) -> JointStep:
         """Compute the torques and accelerations of the joints in this step.
 
         Args:
@@ -213,28 +213,24 @@ class Joints:
         angles = q.tolist()
         if not touches and all(map(lt, self._low, angles)) and all(map(lt, angles, self._high)):
             if not drive.holds:
-                return Given(self._nothing, tau, None)
+                return JointStep(self._nothing, tau, None)
             if self._sticking:  # held by their motors: common, and cheap to compute
                 a = (drive.speed - dq) / self._dt
-                y = self._model.inverse_dynamics(q, dq, a) - tau
+                y = self._dynamics.inverse_dynamics(q, dq, a) - tau
                 if all(map(le, map(abs, y.tolist()), drive.bound.tolist())):
-                    return Given(y, tau + y, a)
+                    return JointStep(y, tau + y, a)
             if self._clear_of_stops:
                 return self._slide(q, dq, drive, tau)
         return self._solve(q, dq, drive, touches, tau)
 
-    def _slide(self, q: Array, dq: Array, drive: Drive, tau: Array) -> Given:
-        """Solve a step far from the stops, assuming first that all joints keep their states.
-
-        That is right in 24 steps of 25, and takes 15 us where `_solve` takes 35.
-        """
+    def _slide(self, q: Array, dq: Array, drive: Drive, tau: Array) -> JointStep:
+        """Solve a step far from the stops, assuming first that all joints keep their states."""
         bound, dt = drive.bound, self._dt
         wanted = (drive.speed - dq) / dt
-        free, inverse = self._model.free_motion(q, dq, tau)
+        free, inverse = self._dynamics.free_motion(q, dq, tau)
         target = np.where(self._held, wanted - free, self._sign * bound)
-        rows = np.where(self._columns, inverse, self._unit).T  # LAPACK's order: 1 us faster
-        y = _dgesv()(rows, target, 1, 1)[2]
-        a = free + inverse @ y
+        y = self._gesv(np.where(self._rows, inverse, self._unit), target)[2]
+        a = free + inverse.dot(y)
         slack = _ROUNDING / dt
         for sign, torque, most, made, meant in zip(
             self._signs, y.tolist(), bound.tolist(), a.tolist(), wanted.tolist(), strict=True
@@ -247,28 +243,110 @@ class Joints:
                 self._set_states(states)
                 a = free + inverse @ y
                 break
-        return Given(y, tau + y, a)
+        return JointStep(y, tau + y, a)
 
-    def _solve(self, q: Array, dq: Array, drive: Drive, touches: list[Touch], tau: Array) -> Given:
-        """Solve a step with stops and touches."""
-        model, h = self._model, self._model.bias(q, dq)
-        if touches:
-            J = model.tip_jacobian(q)
-            D = J[:3].T @ sum(touch.damping for touch in touches) @ J[:3]
-            G = np.asarray(np.linalg.inv(model.mass_matrix(q) / self._dt + D))
-            push = tau + J.T @ sum(touch.wrench for touch in touches) - D @ dq
-        else:
-            G, push = self._dt * model.inverse_mass(q), tau
+    def _solve(
+        self, q: Array, dq: Array, drive: Drive, touches: list[TipForce], tau: Array
+    ) -> JointStep:
+        """Solve a step with stops and forces on the tip."""
+        model, dt = self._dynamics, self._dt
+        h, J = model.bias(q, dq), model.tip_jacobian(q)
+        D = J[:3].T @ sum((touch.damping for touch in touches), np.zeros((3, 3))) @ J[:3]
+        G = np.asarray(np.linalg.inv(model.mass_matrix(q) / dt + D))
+        push = tau + J.T @ sum((touch.wrench for touch in touches), np.zeros(6)) - D @ dq
+        stops = (self._lower - q) / dt, (self._upper - q) / dt
         u = dq + G @ (push - h)
-        stops = (self._lower - q) / self._dt, (self._upper - q) / self._dt
         y, states = joint_torques(G, u, drive.speed, drive.bound, *stops, self._states)
-        if touches:
-            a = G @ (push - h + y)
-            v, push = J[:3] @ (dq + a), push - D @ a
-            kept = [touch for touch in touches if touch.pushes(v)]
-            if len(kept) < len(touches):  # the tip has left the other things
-                return self._solve(q, dq, drive, kept, tau)
-        if states != self._states:
-            self._set_states(states)
+        change = G @ (push - h + y)
+        v = J[:3] @ (dq + change)
+        kept = [touch for touch in touches if touch.pushes(v)]
+        if len(kept) < len(touches):  # the tip has left the other things
+            return self._solve(q, dq, drive, kept, tau)
+        self._set_states(states)
         held = np.minimum(np.maximum(y, -drive.bound), drive.bound)
-        return Given(held, push + y, (G @ (push - h + y) if not touches else a) / self._dt)
+        return JointStep(held, push - D @ change + y, change / dt)
+
+
+class Motors:
+    """The motors of one arm, with limits of speed and torque.
+
+    Attributes:
+        kind: Type of the current command, which is the mode of the motors.
+        saturated: Whether a limit has cut the current command at any time.
+    """
+
+    kind: type = type(None)
+    saturated = False
+
+    def __init__(self, dt: float, plant: Plant, own: Model) -> None:
+        """Make the motors of an arm.
+
+        Args:
+            dt: The physics step, in [s].
+            plant: Lag, dry friction and gravity compensation.
+            own: The arm's model of itself, which includes its own weight but not its payload.
+        """
+        self._dt, self._plant, self._own = dt, plant, own
+        self._effort, self._speed = own.robot.effort.tolist(), own.robot.speed.tolist()
+        self._nothing = own.robot.zeros
+        self._stiction = plant.each("stiction", own.robot.n)
+        self._sticks = bool(self._stiction.any())
+
+    def follow(self, command: Command) -> None:
+        """Follow a command, clipped to the limits, from the next physics step on."""
+        self._wanted, self.saturated = command.value, False
+        if type(command) is JointTorque:
+            self._wanted, self.saturated = _cut(command.value, self._effort)
+        elif type(command) is JointVelocity:
+            self._wanted, self.saturated = _cut(command.value, self._speed)
+        if type(command) is not self.kind:
+            self.kind = type(command)
+            self._lagged: Array | None = None
+        self._fresh = True
+
+    def drive(self, q: Array, dq: Array) -> Drive:
+        """What the motors do in the next physics step.
+
+        Args:
+            q: Joint angles, shape (n,) in [rad].
+            dq: Joint speeds, shape (n,) in [rad/s].
+        """
+        if self.kind is JointTorque:
+            total = self._wanted
+            if self._plant.gravity_compensation:  # the arm carries its own weight
+                total, cut = _cut(total + self._own.dynamics.gravity(q), self._effort)
+                self.saturated |= cut
+            return Drive(total, self._nothing, self._stiction, self._sticks)
+        if self.kind is JointPosition:
+            speed = self._approach(q)
+        elif self._plant.velocity_lag:
+            share = min(1.0, self._dt / self._plant.velocity_lag)
+            before = dq if self._lagged is None else self._lagged
+            self._lagged = speed = before + (self._wanted - before) * share
+        else:
+            speed = self._wanted
+        self._fresh = False
+        return Drive(self._nothing, speed, self._own.robot.effort)
+
+    def _approach(self, q: Array) -> Array:
+        """Speeds towards the commanded angles from which the motors can still brake in time.
+
+        Braking evenly from v takes v^2 / 2a (Lynch & Park, section 9.2.2).
+        """
+        if self._fresh:
+            M, g = self._own.mass_matrix(q), self._own.gravity(q)
+            spare = np.maximum(self._own.robot.effort - np.abs(g), 0.0)  # too weak: zero
+            self._braking = BRAKING * spare / M.diagonal()
+        gain = min(self._plant.position_gain or np.inf, 1.0 / self._dt)
+        gap = self._wanted - q
+        stops = np.sqrt(2.0 * self._braking * np.abs(gap))
+        allowed, cut = _cut(np.clip(gain * gap, -stops, stops), self._speed)
+        self.saturated |= cut
+        return allowed
+
+
+def _cut(x: Array, limit: list[float]) -> tuple[Array, bool]:
+    """``x`` within ±limit, and whether that changed it."""
+    if all(map(le, map(abs, x.tolist()), limit)):
+        return x, False
+    return np.clip(x, np.negative(limit), limit), True

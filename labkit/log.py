@@ -12,11 +12,10 @@ from zipfile import BadZipFile, is_zipfile
 
 import numpy as np
 
-from .baxter import as_robot
 from .control import COMMANDS, Command, State
 from .errors import LabkitError
 from .plant import Plant
-from .robot import SIDES, Robot
+from .robot import SIDES, Robot, as_robot
 from .shapes import Array, locked
 from .trajectory import AnySample, PoseSample, Sample
 
@@ -162,24 +161,27 @@ class Recorder:
         """Record at most ``ticks`` of ``controller``, whose target's samples are like ``first``."""
         self._robot, self._plant, self._controller = robot, plant, controller
         self._sample = type(first)
-        joints = (robot.n,)
-        # q, dq, torque, command, the target's sample, and q, dq, tau_ext as reported
-        self._shapes = [joints] * 4 + [part.shape for part in first] + [joints] * 3
+        # q, dq, torque, q, dq and tau_ext as reported, the target's sample, command
+        self._shapes = [(robot.n,)] * 6 + [part.shape for part in first] + [(robot.n,)]
         self._table = np.empty((ticks, sum(map(prod, self._shapes))))
+        self._next: tuple[float, float] = (0.0, 0.0)
         self._times: list[tuple[float, float]] = []
         self._cut: list[bool] = []
 
     def __len__(self) -> int:
         return len(self._times)
 
-    def keep(
-        self, t: float, seen: tuple[State, State, Array], command: Command, sample: AnySample
-    ) -> None:
-        """Record the tick at ``t`` [s]; ``seen`` is what the arm's `observe` returned."""
-        truth, report, torque = seen
-        row = (truth.q, truth.dq, torque, command.value, *sample, *report[1:])
-        np.concatenate(row, axis=None, out=self._table[len(self._times)])
-        self._times.append((t, report.t))  # last: an interrupted tick does not count
+    def keep(self, t: float, truth: State, torque: Array, seen: State, sample: AnySample) -> None:
+        """Record the arm and its target at ``t`` [s], before the controller gets them."""
+        row, n = self._table[len(self._times)], self._robot.n
+        parts = (truth.q, truth.dq, torque, seen.q, seen.dq, seen.tau_ext, *sample)
+        np.concatenate(parts, axis=None, out=row[:-n])
+        self._next = t, seen.t
+
+    def commanded(self, command: Command) -> None:
+        """Record the controller's command, with which the tick counts."""
+        self._table[len(self._times), -self._robot.n :] = command.value
+        self._times.append(self._next)
 
     def cut(self, saturated: bool) -> None:
         """Record whether a limit cut the command after the latest tick."""
@@ -190,7 +192,7 @@ class Recorder:
         n = len(self)
         ends = np.cumsum([prod(shape) for shape in self._shapes])[:-1]
         parts = zip(np.split(self._table[:n], ends, axis=1), self._shapes, strict=True)
-        q, dq, torque, command, *others = (
+        q, dq, torque, *others, command = (
             locked(np.array(x).reshape(n, *shape)) for x, shape in parts
         )
         tau = locked(np.concatenate([torque[1:], torque[-1:]]))
@@ -204,8 +206,8 @@ class Recorder:
             dq=dq,
             tau=tau,
             command=command,
-            target=self._sample(*others[:3]),
-            measured=State(reported, *others[3:]),  # type: ignore[arg-type]
+            target=self._sample(*others[3:]),
+            measured=State(reported, *others[:3]),  # type: ignore[arg-type]
             saturated=saturated,
             command_type=self.kind,
             controller=self._controller,

@@ -185,25 +185,21 @@ class Spline:
             raise ShapeError("values", (self.s.size, n), self.values.shape)
         spline = make_interp_spline(self.s, self.values, k=5)
         self._knots = np.unique(spline.t)[:-1]
-        # Each piece is a polynomial, highest power first: SciPy's own evaluation takes twice as
-        # long, and a closed loop evaluates the spline at each tick.
-        taylor = [spline(self._knots, nu=k) / factorial(k) for k in range(5, -1, -1)]
-        self._pieces = np.ascontiguousarray(np.stack(taylor, axis=1))  # (pieces, 6, n)
+        # Each piece is its Taylor polynomial, which takes half as long as SciPy's own evaluation.
+        taylor = np.array([spline(self._knots, nu=min(k, 6)) for k in range(8)])
+        taylor[6:] = 0.0
+        pieces = np.stack([taylor[k : k + 6] for k in range(3)])  # value and two derivatives
+        self._pieces = np.ascontiguousarray(pieces.transpose(2, 0, 1, 3))
 
     def __call__(self, s: float) -> Sample:
         """Value and derivatives with respect to s."""
         i = max(int(self._knots.searchsorted(s, side="right")) - 1, 0)
-        x = s - self._knots[i]
-        x2 = x * x
-        x3 = x2 * x
-        powers = np.array(
-            [
-                [x2 * x3, x2 * x2, x3, x2, x, 1.0],
-                [5.0 * x2 * x2, 4.0 * x3, 3.0 * x2, 2.0 * x, 1.0, 0.0],
-                [20.0 * x3, 12.0 * x2, 6.0 * x, 2.0, 0.0, 0.0],
-            ]
-        )
-        return Sample(*(powers @ self._pieces[i]))  # (3, 6) @ (6, n)
+        powers = (s - self._knots[i]) ** _POWERS / _FACTORIALS
+        return Sample(*(powers @ self._pieces[i]))  # (6,) @ (3, 6, n)
+
+
+_POWERS = np.arange(6)
+_FACTORIALS = np.array([float(factorial(k)) for k in range(6)])
 
 
 # Time scalings

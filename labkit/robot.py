@@ -5,15 +5,17 @@ The physics engine and the model both read the text that `Robot.urdf` returns, s
 
 from __future__ import annotations
 
+import json
 from dataclasses import dataclass, fields
-from functools import cached_property
+from functools import cache, cached_property
 from html import escape
+from importlib.resources import files
 from math import atan2, cos, hypot, sin
 from typing import Any
 
 import numpy as np
 
-from .errors import JointLimitExceeded, LabkitError
+from .errors import JointLimitExceeded, LabkitError, UnknownName
 from .plant import IDEAL, Plant
 from .shapes import Array, locked
 
@@ -156,6 +158,20 @@ class Robot:
     def _each(self, limit: str) -> Array:
         return locked(np.array([body[limit] for body in self.bodies]))
 
+    def inertias(self, payload: float = 0.0) -> list[tuple[float, Array, Array]]:
+        """Of each body its mass, its centre, shape (3,), and its inertia about it, shape (3, 3).
+
+        Args:
+            payload: A point mass at the tip, in [kg], which the last body holds.
+        """
+        found = [
+            (float(body["mass"]), np.array(body["com"]), np.array(body["inertia"]))
+            for body in self.bodies
+        ]
+        if payload > 0.0:
+            found[-1] = _with_point_mass(*found[-1], payload, self.T_hand_tip[:3, 3])
+        return found
+
     def urdf(self, plant: Plant = IDEAL) -> str:
         """The arm as URDF text, with n bodies and the plant's payload but no fixed links.
 
@@ -167,12 +183,9 @@ class Robot:
         """
         parts = [f'<robot name="{escape(self.name)}">', '<link name="base"/>']
         parent = "base"
-        for i, body in enumerate(self.bodies):
-            mass, com, inertia = body["mass"], np.array(body["com"]), np.array(body["inertia"])
-            if i == self.n - 1 and plant.payload > 0.0:
-                mass, com, inertia = _with_point_mass(
-                    mass, com, inertia, plant.payload, self.T_hand_tip[:3, 3]
-                )
+        for body, (mass, com, inertia) in zip(
+            self.bodies, self.inertias(plant.payload), strict=True
+        ):
             moments, axes = np.linalg.eigh(inertia)  # principal axes, all that PyBullet keeps
             if np.linalg.det(axes) < 0.0:
                 axes[:, 0] = -axes[:, 0]
@@ -183,7 +196,7 @@ class Robot:
             parts.append(
                 f'<link name="{name}_body"><inertial>'
                 f'<origin xyz="{_text(com)}" rpy="{_text(_rpy(axes))}"/>'
-                f'<mass value="{float(mass)!r}"/>'
+                f'<mass value="{mass!r}"/>'
                 f'<inertia ixx="{xx!r}" iyy="{yy!r}" izz="{zz!r}" '
                 'ixy="0" ixz="0" iyz="0"/></inertial></link>'
                 f'<joint name="{name}" type="revolute"><parent link="{parent}"/>'
@@ -196,7 +209,34 @@ class Robot:
         return "\n".join([*parts, "</robot>"])  # PyBullet cuts long lines
 
 
-def _with_point_mass(m: float, c: Array, I: Array, extra: float, p: Array) -> tuple[Any, ...]:
+@cache
+def robot(side: str) -> Robot:
+    """One of Baxter's arms; its numbers come from Rethink's URDF, see ``data/LICENSE-baxter``.
+
+    Args:
+        side: "left" or "right".
+
+    Raises:
+        UnknownName: Baxter has no such arm.
+    """
+    if side not in SIDES:
+        raise UnknownName("arm", side, SIDES)
+    data = json.loads((files("labkit") / "data" / "baxter.json").read_text())[side]
+    return Robot(name=side, **data)
+
+
+def as_robot(arm: Robot | str) -> Robot:
+    """Return a `Robot` unchanged, and Baxter's arm for a name.
+
+    Raises:
+        UnknownName: Baxter has no such arm.
+    """
+    return arm if isinstance(arm, Robot) else robot(arm)
+
+
+def _with_point_mass(
+    m: float, c: Array, I: Array, extra: float, p: Array
+) -> tuple[float, Array, Array]:
     """Mass, centre and inertia about the centre of a body with an extra point mass at p."""
     total = m + extra
     centre = (m * c + extra * p) / total

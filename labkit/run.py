@@ -125,7 +125,7 @@ def run_driven(
 ) -> Log:
     """Do the same as `run` for a driven arm."""
     last = _ticks(target, duration, driven.period) - 1
-    samples = _Samples(target, f"the target {name_of(target)}")
+    samples = _Samples(target)
     recorder = Recorder(driven.robot, driven.plant, name_of(controller), samples.first, last + 1)
     try:
         _loop(driven, controller, last, samples, recorder)
@@ -138,35 +138,30 @@ def run_driven(
 
 
 def _loop(
-    driven: Driven,
-    controller: Controller,
-    last: int,
-    samples: _Samples,
-    recorder: Recorder,
+    driven: Driven, controller: Controller, last: int, samples: _Samples, recorder: Recorder
 ) -> None:
     """Go through the ticks up to the ``last`` one, and leave the arm at rest."""
-    robot, target, name = driven.robot, samples.target, name_of(controller)
+    robot, name = driven.robot, name_of(controller)
     lost = driven.lost_ticks(last + 1)
     kind, k, running = None, 0, name
-    often = max(1, round(0.005 / driven.period))  # every 5 ms, in which no arm gets far
     t = driven.begin()
     try:
         if reset := getattr(controller, "reset", None):
             reset()
         while True:
             running = samples.name
-            actual, reported, _ = seen = driven.observe()
-            sample = samples.checked(target(t), t)
+            truth, seen, torque = driven.observe()
+            sample = samples.at(t)
+            recorder.keep(t, truth, torque, seen, sample)
             running = name
-            command = controller(reported, sample)
+            command = controller(seen, sample)
             if type(command) is not kind:
                 recorder.kind = kind = _command_type(command, kind, name, t)
             if command.value.shape != robot.zeros.shape:
                 raise ShapeError(kind.__name__, robot.zeros.shape, command.value.shape)
-            recorder.keep(t, seen, command, sample)
-            dq = actual.dq
-            if not k % often and not dq.dot(dq) <= RUNAWAY**2:  # a NaN runs away too
-                raise Diverged(_runaway(robot, dq, name, t))
+            recorder.commanded(command)
+            if not truth.dq.dot(truth.dq) <= RUNAWAY**2:  # a NaN runs away too
+                raise Diverged(_runaway(robot, truth.dq, name, t))
             if k >= last:
                 break
             if not lost[k]:
@@ -182,72 +177,63 @@ def _loop(
     except (ControllerError, Closed):
         raise
     except Exception as error:
-        samples.read(samples.latest, t)  # was it the target that broke the controller?
+        samples.check(samples.latest, t)  # was it the target that broke the controller?
         why = _reason(error, samples.latest, robot.n)
         raise ControllerError(f"{running} failed at t = {t:.3f} s, tick {k}: {why}") from error
     finally:
         driven.stop()
 
 
-_FLOAT = np.dtype(np.float64)
-
-
 class _Samples:
-    """Checks that the target's samples keep one type and shape, and makes them read-only."""
+    """The samples of a target, which keep one type and shape; each is a copy."""
 
-    def __init__(self, target: Target, name: str) -> None:
+    def __init__(self, target: Target) -> None:
         """Take the first sample, which determines the type and shape of the others."""
-        self.target, self.name = target, name
+        self._target, self.name = target, f"the target {name_of(target)}"
         try:
-            sample: Any = target(0.0)
+            first: Any = target(0.0)
         except Exception as error:
             what = f"{type(error).__name__}: {error}"
-            raise ControllerError(f"{name} failed at t = 0: {what}") from error
-        self.kind: type = type(sample)
-        self.shapes: tuple[tuple[int, ...], ...] = ((4, 4), (6,), (6,))
-        if isinstance(sample, Sample):
-            self.shapes = ((np.size(sample.position),),) * 3
-        self.latest = self.first = self.read(sample, 0.0)
+            raise ControllerError(f"{self.name} failed at t = 0: {what}") from error
+        self._kind: Any = type(first)
+        self._shapes: tuple[tuple[int, ...], ...] = ((4, 4), (6,), (6,))
+        if isinstance(first, Sample):
+            self._shapes = ((np.size(first.position),),) * 3
+        self.check(first, 0.0)
+        self.first = self.latest = self.at(0.0)
 
-    def checked(self, sample: Any, t: float) -> Any:
-        """Return the sample of time ``t``, read-only, after a quick check."""
+    def at(self, t: float) -> AnySample:
+        """The sample at time ``t`` [s]; whether its numbers are finite is asked later."""
+        sample: Any = self._target(t)
         try:
-            x, dx, ddx = sample
-            good = (
-                type(sample) is self.kind
-                and x.dtype is dx.dtype is ddx.dtype is _FLOAT
-                and (x.shape, dx.shape, ddx.shape) == self.shapes
-            )
-        except (AttributeError, TypeError, ValueError):  # lists, or not a sample
+            a, b, c = [np.array(part, np.float64) for part in sample]
+            good = type(sample) is self._kind and (a.shape, b.shape, c.shape) == self._shapes
+        except (TypeError, ValueError):
             good = False
         if not good:
-            sample = x, dx, ddx = self.read(sample, t)
-        for part in (x, dx, ddx):
-            part.setflags(write=False)
-        self.latest = sample
-        return sample
+            self.check(sample, t)
+        self.latest = self._kind(a, b, c)
+        return self.latest
 
-    def read(self, sample: Any, t: float) -> AnySample:
-        """Check a sample thoroughly, and return a copy or say what is wrong with it."""
-        if type(sample) is not self.kind or not isinstance(sample, Sample | PoseSample):
+    def check(self, sample: Any, t: float) -> None:
+        """Say what is wrong with a sample."""
+        if type(sample) is not self._kind or not isinstance(sample, AnySample):
             raise ControllerError(
                 f"{self.name} returned {str(sample)[:80]} ({type(sample).__name__}) at "
                 f"t = {t:.3f} s; a target returns lk.Sample(position, velocity, acceleration) or "
                 "lk.PoseSample(pose, twist, dtwist), the same kind at all times"
             )
-        parts = zip(sample._fields, sample, self.shapes, strict=True)
         try:
-            return type(sample)(*(np.array(as_array(x, n, name)) for name, x, n in parts))
+            for name, part, shape in zip(sample._fields, sample, self._shapes, strict=True):
+                as_array(part, shape, name)
         except LabkitError as error:
             raise ControllerError(f"{self.name} at t = {t:.3f} s: {error}") from error
 
     def check_all(self, log: Log) -> None:
         """Raise if a sample held a NaN that had no effect; other NaNs have been reported by now."""
-        samples = log.target
-        good = [np.isfinite(x).reshape(len(x), -1).all(axis=1) for x in samples]
-        if not (whole := np.logical_and.reduce(good)).all():
-            k = int(whole.argmin())
-            self.read(self.kind(*(x[k] for x in samples)), float(log.t[k]))
+        good = [np.isfinite(x).reshape(len(x), -1).all(axis=1) for x in log.target]
+        for k in np.flatnonzero(~np.logical_and.reduce(good))[:1]:
+            self.check(self._kind(*(x[k] for x in log.target)), float(log.t[k]))
 
 
 def _ticks(target: Target, duration: float | None, period: float) -> int:

@@ -17,7 +17,7 @@ import numpy as np
 
 from . import se3
 from .errors import OutOfRange, UnknownName
-from .joints import Touch
+from .joints import TipForce
 from .shapes import Array, as_number, lock_vectors, locked
 from .world import Standing, World
 
@@ -69,7 +69,7 @@ class _Slab:
         slide = float(np.linalg.norm(across @ v))
         drag = self.friction * press / max(slide, CREEP)
         damping = (d + k * dt) * np.outer(n, n) + drag * across
-        arm.touch(Touch(np.append(k * depth * n, np.zeros(3)), damping, outwards=n))
+        arm.touch(TipForce(np.append(k * depth * n, np.zeros(3)), damping, outwards=n))
 
 
 @dataclass(frozen=True, eq=False)
@@ -205,7 +205,7 @@ class Spring:
         arm = _arm_of(world, self.side)
         give = self.damping + self.stiffness * world.dt
         pull = self.stiffness * (self.anchor - arm.tip()[0])
-        arm.touch(Touch(np.append(pull, np.zeros(3)), give * np.eye(3)))
+        arm.touch(TipForce(np.append(pull, np.zeros(3)), give * np.eye(3)))
 
 
 def _arm_of(world: World, side: str | None) -> Standing:

@@ -1,17 +1,16 @@
 r"""Rigid motion: rotations, poses, twists, and the maps between them.
 
 A pose is a 4 x 4 matrix `T_ab` that converts coordinates in b to a, ``p_a = T_ab @ p_b``;
-the subscripts cancel.  A twist is (v, w), linear part first, as in Murray, Li & Sastry (MLS) and
-Pinocchio, which computes exponentials and logarithms.  Formulas: MLS chapter 2; Lynch & Park,
-*Modern Robotics*, chapter 3.
+the subscripts cancel.  A twist is (v, w), linear part first, as in Murray, Li & Sastry (MLS).
+Formulas: MLS chapter 2; Lynch & Park, *Modern Robotics*, chapter 3.
 """
 
 from __future__ import annotations
 
+from math import atan2, copysign, hypot, pi, sin
 from typing import Any
 
 import numpy as np
-import pinocchio as pin
 
 from .errors import OutOfRange
 from .shapes import Array, as_array
@@ -54,15 +53,15 @@ def rotation(phi: Any) -> Array:
     Returns:
         Shape (3, 3).
     """
-    R: Array = pin.exp3(as_array(phi, (3,), "phi"))
-    return R
+    W, turn = hat(phi), float(np.linalg.norm(phi)) / pi
+    return _IDENTITY + np.sinc(turn) * W + 0.5 * np.sinc(0.5 * turn) ** 2 * (W @ W)
 
 
 def rotation_log(R: Any) -> Array:
     r"""The rotation vector of R, the inverse of `rotation`: :math:`\log(R)^\vee`.
 
-    Near half a turn the axis is read from the symmetric part, where it is well conditioned; its
-    sign at exactly half a turn is necessarily arbitrary.
+    It is read from the `quaternion`, which is well conditioned for all angles; the sign of the axis
+    at exactly half a turn is necessarily arbitrary.
 
     Args:
         R: Rotation matrix, shape (3, 3).
@@ -73,8 +72,9 @@ def rotation_log(R: Any) -> Array:
     Raises:
         OutOfRange: R is not a rotation matrix.
     """
-    phi: Array = pin.log3(as_rotation(R, "R"))
-    return phi
+    x, y, z, w = quaternion(R)
+    sine = hypot(x, y, z)
+    return (2.0 * atan2(sine, w) / sine if sine else 2.0) * np.array([x, y, z])
 
 
 def orientation_error(R_wd: Any, R_wt: Any) -> Array:
@@ -146,8 +146,8 @@ def exp(V: Any) -> Array:
     Returns:
         Pose :math:`e^{\hat V}`, shape (4, 4).
     """
-    T: Array = pin.exp6(as_array(V, (6,), "V")).homogeneous
-    return T
+    V = as_array(V, (6,), "V")
+    return pose(rotation(V[3:]), _left_jacobian(V[3:]) @ V[:3])
 
 
 def log(T: Any) -> Array:
@@ -160,9 +160,15 @@ def log(T: Any) -> Array:
         Twist (v, w), shape (6,).
     """
     T = as_array(T, (4, 4), "T")
-    as_rotation(T[:3, :3], "T[:3, :3]")
-    V: Array = pin.log6(pin.SE3(T)).vector
-    return V
+    phi = rotation_log(T[:3, :3])
+    return np.concatenate([np.linalg.solve(_left_jacobian(phi), T[:3, 3]), phi])
+
+
+def _left_jacobian(phi: Array) -> Array:
+    """The mean rotation from none to ``phi``, by which a turning body's path is shorter."""
+    W, angle = hat(phi), float(np.linalg.norm(phi))
+    third = (angle - sin(angle)) / angle**3 if angle > 1e-4 else 1.0 / 6.0
+    return _IDENTITY + 0.5 * np.sinc(0.5 * angle / pi) ** 2 * W + third * (W @ W)
 
 
 def angle_between(R_a: Any, R_b: Any) -> float:
@@ -173,14 +179,24 @@ def angle_between(R_a: Any, R_b: Any) -> float:
 def quaternion(R: Any) -> Array:
     """The unit quaternion (x, y, z, w) of a rotation matrix, the real part last and not negative.
 
+    Each row below is the quaternion times four times one of its numbers; the largest is taken.
+
     Args:
         R: Rotation matrix, shape (3, 3).
 
     Returns:
         Shape (4,).
     """
-    x: Array = pin.Quaternion(as_rotation(R, "R")).normalized().coeffs()
-    return -x if x[3] < 0.0 else x
+    (a, b, c), (d, e, f), (g, h, i) = as_rotation(R, "R").tolist()
+    rows = (
+        (1.0 + a - e - i, b + d, c + g, h - f),
+        (b + d, 1.0 - a + e - i, f + h, c - g),
+        (c + g, f + h, 1.0 - a - e + i, d - b),
+        (h - f, c - g, d - b, 1.0 + a + e + i),
+    )
+    squares = [row[k] for k, row in enumerate(rows)]
+    row = rows[squares.index(max(squares))]
+    return np.array(row) / copysign(hypot(*row), row[3])
 
 
 def as_rotation(x: Any, name: str) -> Array:

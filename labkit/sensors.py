@@ -9,7 +9,7 @@ import numpy as np
 from .control import State
 from .model import Model
 from .plant import Plant
-from .shapes import Array, locked
+from .shapes import Array
 from .world import whole_steps
 
 
@@ -56,18 +56,18 @@ class Reports:
         """Send a report of the true state, with offset, resolution and noise applied."""
         self._last = steps
         t, q, dq, felt = truth
-        q = locked(self.read(q))
         if self._noisy:
-            dq = locked(dq + self._noise * self._random.standard_normal(dq.size))
-            felt = locked(felt + self._torque_noise * self._random.standard_normal(dq.size))
+            dq = dq + self._noise * self._random.standard_normal(dq.size)
+            felt = felt + self._torque_noise * self._random.standard_normal(dq.size)
         self.newest(t)  # drops the reports that nobody asked for
-        self._mail.append(State(t, q, dq, felt))
+        self._mail.append(State(t, self.read(q), dq, felt))
 
     def newest(self, t: float) -> State:
-        """The newest report that has arrived by time ``t`` [s]."""
+        """The newest report that has arrived by time ``t`` [s], in a copy."""
         while len(self._mail) > 1 and self._mail[1].t <= t - self._delay + 1e-9:
             self._mail.popleft()
-        return self._mail[0]
+        t, q, dq, felt = self._mail[0]
+        return State(t, q.copy(), dq.copy(), felt.copy())
 
 
 class TorqueSensors:
@@ -112,8 +112,8 @@ class TorqueSensors:
         """
         if self._begun is not None and self._at != steps:
             (q, dq, joint), dt = self._begun, self._dt
-            felt = self._own.inverse_dynamics(q, dq, (now - dq) / dt) - joint
+            felt = self._own.dynamics.inverse_dynamics(q, dq, (now - dq) / dt) - joint
             if self._lag > dt:
                 felt = self._felt + dt / self._lag * (felt - self._felt)
-            self._felt, self._at = locked(felt), steps
+            self._felt, self._at = felt, steps
         return self._felt

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from math import isfinite
 from typing import Any
 
 import numpy as np
@@ -35,7 +36,7 @@ def as_array(x: Any, shape: tuple[int, ...], name: str) -> Array:
         a = _converted(x, shape, name)
     if a.shape != shape:
         raise ShapeError(name, shape, a.shape)
-    if not np.isfinite(a).all():
+    if not isfinite(np.vdot(a, a)) and not np.isfinite(a).all():
         at = tuple(np.argwhere(~np.isfinite(a))[0].tolist())
         what = f"holds {a[at]} at index {at if len(at) > 1 else at[0]}" if at else f"is {a}"
         raise NotFinite(

@@ -3,17 +3,16 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from math import pi
+from math import atan2, hypot, pi
 from pathlib import Path
 from typing import Any
 from xml.etree import ElementTree
 
 import numpy as np
-import pinocchio as pin
 
+from . import se3
 from .errors import LabkitError, TypeMismatch, UnknownName
-from .quiet import quiet
-from .shapes import as_vector, shown
+from .shapes import Array, as_vector, shown
 
 _Element = ElementTree.Element
 ROUNDED = 0.98
@@ -32,9 +31,8 @@ def read_urdf(
     except TypeError:
         raise TypeMismatch(f"file is {shown(file)}, expected the path of a URDF file") from None
     root = _parsed(path)
-    name = str(name or root.get("name") or path.stem)
-    root.set("name", name)  # Pinocchio requires a name
-    chain = [joint for joint in _chain(root, base, tip, path.name) if joint.get("type") != "fixed"]
+    whole, own = _chain(root, None, tip, path.name), _chain(root, base, tip, path.name)
+    chain = [joint for joint in own if joint.get("type") != "fixed"]
     limits = [_limits(joint, path.name) for joint in chain]
     if len(chain) < 2:
         many = "one joint that moves" if chain else "no joint that moves"
@@ -42,22 +40,23 @@ def read_urdf(
             f"{path.name} has {many} the link {tip!r}, and an arm has at least two; take another "
             "tip or base"
         )
-    for joint in root.iter("joint"):
-        if joint not in chain:
-            joint.set("type", "fixed")
+    q = as_vector(ready, len(chain), "ready")
+    links = {str(link.get("name")): link for link in root.iter("link")}
+    bodies: list[dict[str, Any]] = []
+    T = np.eye(4)
     try:
-        with quiet():
-            model = pin.buildModelFromXML(ElementTree.tostring(root, encoding="unicode"))
-    except (ValueError, RuntimeError) as error:
-        raise LabkitError(
-            f"Pinocchio cannot read {path.name} ({error}); the command check_urdf {path.name} says "
-            "what is wrong with it"
-        ) from None
-    hand = model.frames[model.getFrameId(tip, pin.FrameType.BODY)].placement
-    bodies, turn = _bodies(model, limits, path.name)
-    q = as_vector(ready, len(bodies), "ready")
-    T = (turn.inverse() * hand).homogeneous
-    return {"name": name, "bodies": bodies, "T_hand_tip": T, "ready": q, "neutral": q}
+        for joint in whole:
+            T = T @ _place(joint)
+            if joint in chain:
+                turn = _turn(joint, path.name)
+                limit, below = limits[len(bodies)], list(_fixed_to(root, joint, turn.T, chain))
+                lump = _lump([(links[name], T_bl) for name, T_bl in below], limit, path.name)
+                bodies.append({"T_parent": (T @ turn).tolist(), **lump, **limit})
+                T = turn.T
+    except ValueError as error:
+        raise LabkitError(f"a number of {path.name} cannot be read: {error}") from None
+    named = str(name or root.get("name") or path.stem)
+    return {"name": named, "bodies": bodies, "T_hand_tip": T, "ready": q, "neutral": q}
 
 
 def _parsed(path: Path) -> _Element:
@@ -137,39 +136,73 @@ def _limits(joint: _Element, file: str) -> dict[str, Any]:
     return {"joint": name, "lower": lower, "upper": upper, "speed": speed, "effort": effort}
 
 
-def _bodies(
-    model: Any, limits: list[dict[str, Any]], file: str
-) -> tuple[list[dict[str, Any]], pin.SE3]:
-    """The bodies, in frames with the joint axis as z, and the last such frame in Pinocchio's."""
-    data = model.createData()
-    pin.computeJointJacobians(model, data, pin.neutral(model))
-    bodies, before = [], pin.SE3.Identity()
-    for i, limit in enumerate(limits, start=1):
-        axis = pin.getJointJacobian(model, data, i, pin.LOCAL)[3:, i - 1]
-        if not axis.any():
-            raise LabkitError(
-                f"joint {limit['joint']} of {file} has the axis 0 0 0; write the direction about "
-                'which it turns, such as <axis xyz="0 0 1"/>'
+def _numbers(element: _Element | None, name: str) -> Array:
+    """Three numbers of an attribute, zeros where it is left out."""
+    text = None if element is None else element.get(name)
+    return np.array([float(x) for x in (text or "0 0 0").split()])
+
+
+def _place(element: _Element) -> Array:
+    """The pose of an element's <origin>, shape (4, 4)."""
+    origin = element.find("origin")
+    roll, pitch, yaw = np.diag(_numbers(origin, "rpy"))
+    R = se3.rotation(yaw) @ se3.rotation(pitch) @ se3.rotation(roll)
+    return se3.pose(R, _numbers(origin, "xyz"))
+
+
+def _turn(joint: _Element, file: str) -> Array:
+    """The rotation, as a pose, that takes the z axis to the joint's axis."""
+    axis = joint.find("axis")
+    x, y, z = (1.0, 0.0, 0.0) if axis is None else _numbers(axis, "xyz")
+    if not (x or y or z):
+        raise LabkitError(
+            f"joint {joint.get('name')} of {file} has the axis 0 0 0; write the direction about "
+            'which it turns, such as <axis xyz="0 0 1"/>'
+        )
+    sine = hypot(x, y)
+    across = np.array([-y, x, 0.0]) / sine if sine else np.array([1.0, 0.0, 0.0])
+    return se3.pose(se3.rotation(atan2(sine, z) * across), np.zeros(3))
+
+
+def _fixed_to(
+    root: _Element, joint: _Element, T: Array, chain: list[_Element]
+) -> Iterator[tuple[str, Array]]:
+    """The link behind a joint and all that is fixed to it, each with its pose, given the first."""
+    for end in joint.findall("child"):
+        name = str(end.get("link"))
+        yield name, T
+        for other, parent in _ends(root, "parent"):
+            if parent.get("link") == name and other not in chain:
+                yield from _fixed_to(root, other, T @ _place(other), chain)
+
+
+def _lump(parts: list[tuple[_Element, Array]], limit: dict[str, Any], file: str) -> dict[str, Any]:
+    """Mass, centre and inertia of links at given poses, as of one body."""
+    masses, places, inertias = [0.0], [np.zeros(3)], [np.zeros((3, 3))]
+    for link, T in parts:
+        for inertial in link.findall("inertial"):
+            mass, moments = inertial.find("mass"), inertial.find("inertia")
+            at = T @ _place(inertial)
+            xx, xy, xz, yy, yz, zz = (
+                float("0" if moments is None else moments.get(name, "0"))
+                for name in ("ixx", "ixy", "ixz", "iyy", "iyz", "izz")
             )
-        to_axis = pin.Quaternion.FromTwoVectors(np.array([0.0, 0.0, 1.0]), axis)
-        turn = pin.SE3(to_axis.matrix(), np.zeros(3))
-        body = turn.actInv(model.inertias[i])
-        (a, b, c), axes = np.linalg.eigh(body.inertia)
-        if not (body.mass > 0.0 and a > 0.0 and a + b >= ROUNDED * c):
-            raise LabkitError(
-                f"the links that joint {limit['joint']} of {file} moves have a mass of "
-                f"{body.mass:g} kg and moments of inertia of {a:.3g}, {b:.3g} and {c:.3g} kg m^2; "
-                "each must be greater than 0, and none greater than the sum of the other two: "
-                "correct their <inertial>, or write one into a link that has none"
-            )
-        place = before.inverse() * model.jointPlacements[i] * turn
-        bodies.append({
-            "joint": limit["joint"],
-            "T_parent": place.homogeneous.tolist(),
-            "mass": body.mass,
-            "com": body.lever.tolist(),
-            "inertia": (body.inertia - max(0.0, c - a - b) * np.outer(*axes.T[[2, 2]])).tolist(),
-            **limit,
-        })  # fmt: skip
-        before = turn
-    return bodies, before
+            I = np.array([[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]])
+            masses.append(float("0" if mass is None else mass.get("value", "0")))
+            places.append(at[:3, 3])
+            inertias.append(at[:3, :3] @ I @ at[:3, :3].T)
+    total = sum(masses)
+    com = np.average(places, axis=0, weights=masses) if total > 0.0 else np.zeros(3)
+    inertia = sum(inertias, np.zeros((3, 3)))
+    for m, place in zip(masses, places, strict=True):
+        inertia -= m * np.linalg.matrix_power(se3.hat(place - com), 2)
+    (a, b, c), axes = np.linalg.eigh(inertia)
+    if not (total > 0.0 and a > 0.0 and a + b >= ROUNDED * c):
+        raise LabkitError(
+            f"the links that joint {limit['joint']} of {file} moves have a mass of {total:g} kg "
+            f"and moments of inertia of {a:.3g}, {b:.3g} and {c:.3g} kg m^2; each must be greater "
+            "than 0, and none greater than the sum of the other two: correct their <inertial>, or "
+            "write one into a link that has none"
+        )
+    inertia -= max(0.0, c - a - b) * np.outer(axes[:, 2], axes[:, 2])
+    return {"mass": total, "com": com.tolist(), "inertia": inertia.tolist()}

@@ -7,7 +7,7 @@ from collections.abc import Iterable
 from typing import Any, Protocol, Self
 
 from .errors import Closed, OutOfRange, TypeMismatch
-from .joints import Touch
+from .joints import TipForce
 from .shapes import Array, as_number, shown
 from .sim import chosen
 
@@ -35,7 +35,7 @@ class Standing(Protocol):
     def push(self, force: Array, moment: Array) -> None:
         """Push the tip during the next physics step: (3,) [N] and (3,) [N m], world axes."""
 
-    def touch(self, touch: Touch) -> None:
+    def touch(self, touch: TipForce) -> None:
         """Let something act on the tip during the next physics step."""
 
     def step(self) -> None:

@@ -13,8 +13,8 @@ from curves import slope_along
 from numpy.testing import assert_allclose, assert_array_equal
 
 import labkit as lk
-from labkit.baxter import as_robot
 from labkit.errors import JointLimitExceeded, LabkitError, ShapeError, TypeMismatch, UnknownName
+from labkit.robot import as_robot
 from labkit.sim import ENGINES
 from solutions.study.joint_impedance import JointImpedance
 from solutions.study.joint_torque import ComputedTorque
@@ -312,10 +312,6 @@ BAD = {
     "no axis": (
         (ONE.replace('xyz="0 1 0"', 'xyz="0 0 0"'),),
         "turn of one.urdf has the axis 0 0 0",
-    ),
-    "two links of a name": (
-        (ONE.replace('<link name="hand"/>', '<link name="hand"/><link name="hand"/>'),),
-        "the command check_urdf one.urdf says what is wrong",
     ),
     "no links": (("<robot/>",), "no link in one.urdf 'hand'; there is none"),
     "xacro": (

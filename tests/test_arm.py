@@ -179,13 +179,6 @@ def test_reset_puts_it_anywhere_at_rest(arm):
     assert_array_equal(arm.state().q, arm.robot.neutral)
 
 
-def test_the_state_cannot_be_written_to(arm):
-    """Angles, speeds and torques of a state are read-only arrays."""
-    for part in arm.state()[1:]:
-        with pytest.raises(ValueError, match="read-only"):
-            part[0] = 1.0
-
-
 def test_the_same_commands_give_the_same_motion_bit_for_bit(side):
     """Two Baxter plants with one seed end in exactly the same state, noise included."""
     ends = []

@@ -14,7 +14,7 @@ def problems(random, count):
     """Random joints: heavy and light, motors and friction, some of them next to a stop."""
     for k in range(count):
         q = random.uniform(MODEL.robot.lower, MODEL.robot.upper)
-        G = 1e-3 * MODEL.inverse_mass(q)
+        G = 1e-3 * np.linalg.inv(MODEL.mass_matrix(q))
         u = random.normal(size=7) * random.choice([0.01, 0.5, 3.0])
         target = random.normal(size=7) * random.choice([0.0, 0.5])
         bound = MODEL.robot.effort if k % 2 else np.array(lk.BAXTER.stiction)

@@ -162,26 +162,6 @@ def test_a_hold_becomes_a_hold_of_joint_angles(model):
         assert_allclose(hold(1.0).position, q0, rtol=0, atol=1e-8)
 
 
-def test_a_pose_out_of_reach_is_refused_with_the_reach(model):
-    """The sentence has the distance from the shoulder, the arm's span and the way out."""
-    T = model.pose(model.robot.ready)
-    T[:3, 3] += [1.0, 0.0, 0.0]
-    with pytest.raises(
-        Unreachable, match=r"m from the shoulder and the arm spans .* bring it nearer"
-    ):
-        model.inverse_kinematics(T, model.robot.ready)
-
-
-def test_an_unreachable_point_on_the_way_is_named_with_s_the_pose_and_the_limit(model):
-    """A line out of reach says at which s it cannot be followed, and what limits it."""
-    q0 = model.robot.ready
-    p = model.pose(q0)[:3, 3]
-    far = lk.Trajectory(lk.Line(p, p + [1.0, 0.0, 0.0]), lk.Quintic(2.0))
-    words = r"at s = 0\.\d\d the pose at \(.*\) m cannot be reached: .* spans .*mm and .* off"
-    with pytest.raises(Unreachable, match=words):
-        model.joint_trajectory(far, q0)
-
-
 def test_a_joint_at_its_limit_is_named_with_the_limit(model):
     """It is where the search ended, not a proof: another q0 may do."""
     q0 = model.robot.ready
@@ -208,7 +188,7 @@ def test_a_pose_that_another_start_reaches_is_not_called_out_of_reach():
 @pytest.mark.parametrize("name", ["left", *FILES])
 def test_no_pose_that_the_arm_has_is_called_out_of_reach(name, random, monkeypatch):
     """Of three robots, 500 angles each within the limits; one step is too short a search."""
-    monkeypatch.setattr("labkit.kinematics._ITERATIONS", 1)
+    monkeypatch.setattr("labkit.inverse._ITERATIONS", 1)
     model = lk.Model(arm(name) if name in FILES else name)
     robot = model.robot
     for q in random.uniform(robot.lower, robot.upper, (500, robot.n)):

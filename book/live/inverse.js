@@ -1,4 +1,4 @@
-// Joint angles for poses, and joint motions for motions of the tip; `labkit/kinematics.py`.
+// Joint angles for poses, and joint motions for motions of the tip; `labkit/inverse.py`.
 import { add, apply, dampedInverse, dot, scale, subtract } from "./algebra.js";
 import { chain, hold, trajectory } from "./paths.js";
 import { spline } from "./spline.js";

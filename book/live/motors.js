@@ -1,4 +1,4 @@
-// The motors' response to each kind of command in each physics step; `labkit/motors.py`.
+// The motors' response to each kind of command in each physics step; `labkit/joints.py`.
 import { cut, subtract, zeros } from "./algebra.js";
 
 export class Motors {

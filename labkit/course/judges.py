@@ -12,9 +12,9 @@ from typing import Any
 
 import numpy as np
 
-from ..baxter import robot
 from ..control import COMMANDS, JointTorque
 from ..errors import LabkitError, OutOfRange
+from ..robot import robot
 from ..servo import Memory, Motion
 from ..shapes import Array, as_array, as_gains
 from ..trajectory import PoseSample, Sample

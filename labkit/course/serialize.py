@@ -18,11 +18,11 @@ import msgspec
 import numpy as np
 
 from .. import control, paths, plant, scene, servo, trajectory
-from ..baxter import robot
 from ..errors import LabkitError, TypeMismatch
 from ..log import Log
 from ..model import Model
 from ..recordings import Runner, Trials
+from ..robot import robot
 from ..shapes import locked
 from .judges import Judge, Ratio, TipTorque
 from .own_arm import Bug, OwnArm

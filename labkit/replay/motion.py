@@ -11,10 +11,9 @@ from typing import Any
 import numpy as np
 
 from .. import metrics
-from ..baxter import as_robot
 from ..errors import OutOfRange, listed
 from ..log import Log
-from ..robot import SIDES, Robot
+from ..robot import SIDES, Robot, as_robot
 from ..scene import Spring, Table, Wall
 from ..shapes import Array, as_array
 from ..trajectory import PoseSample

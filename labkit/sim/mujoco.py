@@ -34,12 +34,10 @@ class MuJoCo:
     def place(self, q: Array, dq: Array) -> None:
         self._q[:], self._dq[:] = q, dq
 
-    def state(self) -> tuple[Array, Array]:
-        return self._q.copy(), self._dq.copy()
-
-    def step(self, tau: Array, ddq: Array | None = None) -> None:
+    def step(self, tau: Array, ddq: Array | None) -> tuple[Array, Array]:
         self._tau[:] = tau
         mujoco.mj_step(self._model, self._data)
+        return self._q.copy(), self._dq.copy()
 
     def close(self) -> None:
         pass  # MuJoCo frees its memory with the object

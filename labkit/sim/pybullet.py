@@ -8,7 +8,7 @@ from tempfile import TemporaryDirectory
 
 import numpy as np
 
-from ..model import Model
+from ..dynamics import dynamics_of
 from ..plant import Plant
 from ..quiet import quiet
 from ..robot import Robot
@@ -42,28 +42,27 @@ class PyBullet:
         motors = {"forces": [0.0] * len(self._joints), **here}
         bullet.setJointMotorControlArray(self._arm, self._joints, bullet.VELOCITY_CONTROL, **motors)
         self._rotors = plant.each("armature", robot.n)
-        self._geared = Model(robot, plant) if self._rotors.any() else None
+        self._geared = dynamics_of(robot, plant) if self._rotors.any() else None
 
     def place(self, q: Array, dq: Array) -> None:
         here = {"physicsClientId": self._client}
+        self._q, self._dq = q, dq
         for joint, (angle, speed) in enumerate(zip(q, dq, strict=True)):
             bullet.resetJointState(self._arm, joint, angle, speed, **here)
 
-    def state(self) -> tuple[Array, Array]:
-        q, dq, *_ = zip(*bullet.getJointStates(self._arm, self._joints, self._client), strict=True)
-        self._state = np.array(q), np.array(dq)
-        return self._state
-
-    def step(self, tau: Array, ddq: Array | None = None) -> None:
+    def step(self, tau: Array, ddq: Array | None) -> tuple[Array, Array]:
         if self._geared is not None:  # PyBullet has no rotors: subtract their torque
             if ddq is None:
-                ddq = self._geared.forward_dynamics(*self._state, tau)
+                ddq, _ = self._geared.free_motion(self._q, self._dq, tau)
             tau = tau - self._rotors * ddq
         bullet.setJointMotorControlArray(
             self._arm, self._joints, bullet.TORQUE_CONTROL, forces=tau.tolist(),
             physicsClientId=self._client,
         )  # fmt: skip
         bullet.stepSimulation(self._client)
+        q, dq, *_ = zip(*bullet.getJointStates(self._arm, self._joints, self._client), strict=True)
+        self._q, self._dq = np.array(q), np.array(dq)
+        return self._q, self._dq
 
     def close(self) -> None:
         bullet.disconnect(physicsClientId=self._client)

@@ -26,9 +26,9 @@ from scipy.spatial import ConvexHull
 from scipy.spatial.transform import Rotation
 
 from .. import se3
-from ..baxter import robot as baxter
 from ..errors import OutOfRange, ShapeError
 from ..robot import SIDES, Robot
+from ..robot import robot as baxter
 from ..scene import FACE, Table, Wall
 from ..shapes import Array, as_number, as_numbers, locked
 from ..world import World

@@ -15,7 +15,7 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from labkit.errors import LabkitWarning
-from labkit.kinematics import NEAR_SINGULAR
+from labkit.inverse import NEAR_SINGULAR
 from labkit.shapes import Array
 
 

@@ -15,9 +15,9 @@ from typing import Any, Literal
 
 import numpy as np
 
-from labkit.baxter import robot
 from labkit.model import Model
 from labkit.paths import Circle, Line, Polyline, Quintic
+from labkit.robot import robot
 from labkit.shapes import Array, as_array, as_vector, locked
 from labkit.trajectory import Chain, Hold, PosePath, Target, Trajectory
 

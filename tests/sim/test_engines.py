@@ -26,13 +26,11 @@ class Equations:
     def place(self, q, dq):
         self.q, self.dq = np.array(q), np.array(dq)
 
-    def state(self):
-        return self.q.copy(), self.dq.copy()
-
-    def step(self, tau, ddq=None):
+    def step(self, tau, ddq):
         M, bias = self.model.mass_matrix(self.q), self.model.bias(self.q, self.dq)
         self.dq = self.dq + self.dt * np.linalg.solve(M, tau - bias)
         self.q = self.q + self.dt * self.dq
+        return self.q, self.dq
 
     def close(self):
         pass

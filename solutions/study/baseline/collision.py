@@ -18,9 +18,8 @@ import coal
 import numpy as np
 import pinocchio as pin
 
-from labkit.baxter import robot
 from labkit.errors import JointLimitExceeded, LabkitError, OutOfRange, TypeMismatch
-from labkit.robot import Robot
+from labkit.robot import Robot, robot
 from labkit.scene import FACE, Table, Wall
 from labkit.shapes import Array, as_array, as_number, as_vector, shown
 
