@@ -107,7 +107,7 @@ class Followed(NamedTuple):
     began: Array
 
     def measured(self) -> dict[str, float]:
-        """Following error after 4 s and at the end, steps of the reference, number of lines."""
+        """Following error after 4 s and at the end, the reference's steps and last speed, lines."""
         miss = 1e3 * np.linalg.norm(self.tip - self.goal, axis=1)
         jumps = np.linalg.norm(np.diff(self.reference, axis=0), axis=1)
         kinks = np.linalg.norm(np.diff(self.velocity, axis=0), axis=1)
@@ -116,6 +116,7 @@ class Followed(NamedTuple):
             "end_mm": float(np.mean(miss[-50:])),
             "place_step_mm": 1e3 * float(jumps.max()),
             "speed_step": float(kinks.max()),
+            "end_speed": float(np.linalg.norm(self.velocity[-1])),
             "lines": float(np.count_nonzero(np.diff(self.began))),
         }
 

@@ -297,7 +297,7 @@ class Close:
         if not isinstance(answer, Motion):
             return Difference(Kind.TYPE, "line", expected="motion", found=value(answer))
         for t in np.linspace(0.0, 1.25 * expected.duration, 6):
-            if found := self._differ(answer(t), expected(t), ""):
+            if found := replace(self, only="")._differ(answer(t), expected(t), ""):
                 return replace(found, part=f"{found.part} of the line at {t:.2g} s")
         return None
 

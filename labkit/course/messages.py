@@ -314,6 +314,7 @@ _MEASURES = {
     "end_mm": ("the error at the end", " mm"),
     "place_step_mm": ("the largest jump of the reference", " mm"),
     "speed_step": ("the largest jump of the reference's speed", " m/s"),
+    "end_speed": ("the reference's speed at the end", " m/s"),
     "lines": ("the number of new lines", ""),
 }
 """The measures of a run in words, and their units."""
