@@ -12,17 +12,18 @@ from dataclasses import dataclass
 from typing import Any, NamedTuple
 
 import numpy as np
-from scipy.interpolate import BPoly
 
 from . import se3
 from .paths import BangBang, Line
 from .shapes import Array
 from .trajectory import Sample, Trajectory
 
-TICK = 0.02
+TICK = 0.05
 """Time between two calls of a servo, in [s]."""
 GAIN = 4.0
 """How fast the hand closes its error to the reference, in [1/s]."""
+SETTLE = 3.0
+"""Time after which a run is judged, in [s]."""
 FORGOTTEN = 4.0
 """How far back the hand's poses are known, in [s]."""
 
@@ -45,8 +46,15 @@ class Bend(NamedTuple):
         if t >= self.duration:
             p, v, a = self.goal
             return Sample(p + (t - self.duration) * v, v, 0.0 * a)
-        curve = BPoly.from_derivatives([0.0, self.duration], [list(self.start), list(self.goal)])
-        return Sample(curve(t), curve(t, nu=1), curve(t, nu=2))
+        T, (p, v, a), (p1, v1, a1) = self.duration, self.start, self.goal
+        d, w, b = p1 - p - v * T - a * T * T / 2, (v1 - v - a * T) * T, (a1 - a) * T * T
+        c3, c4, c5 = 10 * d - 4 * w + b / 2, 7 * w - 15 * d - b, 6 * d - 3 * w + b / 2
+        x = t / T
+        return Sample(
+            p + v * t + a * t * t / 2 + x**3 * (c3 + x * (c4 + x * c5)),
+            v + a * t + x**2 * (3 * c3 + x * (4 * c4 + x * 5 * c5)) / T,
+            a + x * (6 * c3 + x * (12 * c4 + x * 20 * c5)) / T**2,
+        )
 
 
 Motion = Trajectory | Bend
@@ -84,7 +92,10 @@ class Hand:
 
     def __call__(self, s: float) -> Array:
         """`T_wt` at time ``s`` [s], shape (4, 4)."""
-        return se3.pose(self.R_wt, [np.interp(s, self.t, x) for x in np.transpose(self.p)])
+        T_wt = np.eye(4)
+        T_wt[:3, :3] = self.R_wt
+        T_wt[:3, 3] = [np.interp(s, self.t, x) for x in np.transpose(self.p)]
+        return T_wt
 
 
 class Followed(NamedTuple):
@@ -107,13 +118,14 @@ class Followed(NamedTuple):
     began: Array
 
     def measured(self) -> dict[str, float]:
-        """Following error after 4 s and at the end, the reference's steps and last speed, lines."""
+        """What a run is judged by; in the first `SETTLE` seconds only new lines count."""
+        late = self.t > SETTLE
         miss = 1e3 * np.linalg.norm(self.tip - self.goal, axis=1)
-        jumps = np.linalg.norm(np.diff(self.reference, axis=0), axis=1)
-        kinks = np.linalg.norm(np.diff(self.velocity, axis=0), axis=1)
+        jumps = np.linalg.norm(np.diff(self.reference[late], axis=0), axis=1)
+        kinks = np.linalg.norm(np.diff(self.velocity[late], axis=0), axis=1)
         return {
-            "rms_mm": float(np.sqrt(np.mean(miss[self.t > 4.0] ** 2))),
-            "end_mm": float(np.mean(miss[-50:])),
+            "rms_mm": float(np.sqrt(np.mean(miss[late] ** 2))),
+            "end_mm": float(np.mean(miss[self.t > self.t[-1] - 1.0])),
             "place_step_mm": 1e3 * float(jumps.max()),
             "speed_step": float(kinks.max()),
             "end_speed": float(np.linalg.norm(self.velocity[-1])),
@@ -166,7 +178,7 @@ class Conveyor:
         random = np.random.default_rng(self.seed)
         T_tc, T_mg = np.asarray(T_tc), np.asarray(T_mg)
         goal = self.tag(0.0) @ T_mg
-        tip, R = goal[:3, 3] + [0.0, 0.04, 0.0], goal[:3, :3]
+        tip, R = goal[:3, 3], goal[:3, :3]
         memory = Memory(
             se3.pose(R, tip), Trajectory(Line(tip, tip), BangBang(1.0)), 0.0, -FORGOTTEN
         )

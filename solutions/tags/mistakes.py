@@ -6,90 +6,43 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any
 
-import cv2
 import numpy as np
 
-from labkit import Sample, se3
+from labkit import BangBang, Line, Sample, Trajectory, se3
+from labkit.servo import Bend, Memory
 from labkit.shapes import Array
+from labkit.tags.tag import tag_corners
 
-from .answers import sensor_quality, tag_corners, tag_pose
+from .answers import sensor_quality, servo_smooth
 from .following import blend, carry_forward
 
 
 @dataclass(frozen=True)
-class Reordered:
-    """The right corners, moved or in another order.
+class Chosen:
+    """The pose of a tag with another projection, choice or error.
 
     Attributes:
-        order: The order of the corners; (0, 1, 2, 3) is right.
-        scale: Factors of x, y and z.
+        scale: Factor of the square's size.
+        project: The pixels of the corners in the camera's frame, shape (4, 3), given K.
+        pose: What is projected, given a candidate.
+        error: The error, given the distances of the corners in [px], shape (4, 2).
+        best: The choice, given the errors.
     """
 
-    order: tuple[int, ...] = (0, 1, 2, 3)
-    scale: tuple[float, float, float] = (1.0, 1.0, 1.0)
-
-    def __call__(self, size: float) -> Array:
-        """The corners."""
-        return np.asarray(tag_corners(size)[list(self.order)] * np.array(self.scale))
-
-
-@dataclass(frozen=True)
-class PoseOf:
-    """OpenCV with corners of another kind.
-
-    Attributes:
-        corners: Returns the corners, given the size of the square.
-        scale: Factor of the size.
-    """
-
-    corners: Reordered = Reordered()
     scale: float = 1.0
+    project: Callable[[Array, Array], Array] = lambda p, K: (p @ K.T)[:, :2] / p[:, 2:]
+    pose: Callable[[Array], Array] = lambda T: T
+    error: Callable[[Array], Any] = lambda off: np.sqrt(np.mean(np.sum(off**2, axis=1)))
+    best: Callable[[Any], Any] = np.argmin
 
-    def __call__(self, pixels: Any, K: Any, size: float) -> Array:
-        """The pose that fits the corners best."""
-        _, turns, places, errors = cv2.solvePnPGeneric(
-            self.corners(self.scale * size),
-            np.asarray(pixels, dtype=float),
-            np.array(K),
-            None,
-            flags=cv2.SOLVEPNP_IPPE,
-        )
-        best = int(np.argmin(np.ravel(errors)))
-        return se3.pose(cv2.Rodrigues(turns[best])[0], np.ravel(places[best]))
-
-
-def rotation_transposed(pixels: Any, K: Any, size: float) -> Array:
-    """The rotation transposed, the translation left as it is."""
-    T = tag_pose(pixels, K, size)
-    return se3.pose(T[:3, :3].T, T[:3, 3])
-
-
-def camera_in_the_tag(pixels: Any, K: Any, size: float) -> Array:
-    """The inverse: where the camera is in the tag's frame."""
-    return se3.inverse(tag_pose(pixels, K, size))
-
-
-def vector_as_euler_angles(pixels: Any, K: Any, size: float) -> Array:
-    """Reads the rotation vector as roll, pitch and yaw."""
-    T = np.array(tag_pose(pixels, K, size))
-    x, y, z = se3.rotation_log(T[:3, :3])
-    turns = ([0.0, 0.0, z], [0.0, y, 0.0], [x, 0.0, 0.0])
-    Rz, Ry, Rx = (se3.rotation(np.array(turn)) for turn in turns)
-    T[:3, :3] = Rz @ Ry @ Rx
-    return T
-
-
-def the_worse_answer(pixels: Any, K: Any, size: float) -> Array:
-    """The other of the two poses."""
-    _, turns, places, errors = cv2.solvePnPGeneric(
-        tag_corners(size),
-        np.asarray(pixels, dtype=float),
-        np.array(K),
-        None,
-        flags=cv2.SOLVEPNP_IPPE_SQUARE,
-    )
-    worse = int(np.argmax(np.ravel(errors)))
-    return se3.pose(cv2.Rodrigues(turns[worse])[0], np.ravel(places[worse]))
+    def __call__(self, candidates: Any, pixels: Any, K: Any, size: float) -> tuple[Array, float]:
+        """The candidate and its error."""
+        corners, errors = tag_corners(self.scale * size), []
+        for T in map(self.pose, np.asarray(candidates)):
+            image = self.project(corners @ T[:3, :3].T + T[:3, 3], np.asarray(K))
+            errors.append(float(self.error(image - pixels)))
+        best = int(self.best(errors))
+        return candidates[best], errors[best]
 
 
 def the_other_sign(estimates: Any, truth: Any) -> tuple[Array, Array]:
@@ -276,24 +229,6 @@ def noise_on_the_diagonal(
 
 
 @dataclass(frozen=True)
-class Seen:
-    """The right pose for other pixels or another camera, or a function of it.
-
-    Attributes:
-        pixels: A function of the pixels.
-        pose: A function of the pose.
-    """
-
-    pixels: Callable[[Array], Array] = lambda pixels: pixels
-    pose: Callable[[Array], Array] = lambda T: T
-
-    def __call__(self, pixels: Any, K: Any, size: float) -> Array:
-        """The pose."""
-        seen = np.ascontiguousarray(self.pixels(np.array(pixels, dtype=float)))
-        return self.pose(tag_pose(seen, np.array(K), size))
-
-
-@dataclass(frozen=True)
 class Quality:
     """Mean and covariance of other errors, or other statistics of the right ones.
 
@@ -331,27 +266,110 @@ class Ends:
         return blend(t, reference, goal, duration)
 
 
+def covariance_not_moved(
+    mean: Any, covariance: Any, age: float, accel_noise: float
+) -> tuple[Array, Array]:
+    """The mean is carried forward, the covariance only grows by Q."""
+    Q = carry_forward(mean, np.zeros((6, 6)), age, accel_noise)[1]
+    return np.kron([[1.0, age], [0.0, 1.0]], np.eye(3)) @ mean, covariance + Q
+
+
 @dataclass(frozen=True)
-class Carried:
-    """The prediction with another F, mean or order.
+class Stepping:
+    """Algorithm 1 with another rule.
 
     Attributes:
-        F: The matrix F, shape (2, 2), given the age.
-        mean: Whether the mean is predicted.
-        noise: Factor of Q.
-        order: The order of F P F^T and Q: "P F", "Q first" or "no F".
+        goal: The goal, given hand, t, stamp, T_tc, T_cm and T_mg.
+        start: Where the new line begins, given memory, t, hand and goal.
+        due: Whether it looks, given the seconds since the last look and `every`.
+        far: Whether the goal has moved, given the distance and `moved`.
+        unseen: The memory if there is no tag, given the old one and t.
+        near: The memory if the goal has not moved, given the old one, t and the goal.
+        lasts: How long the line takes, given `seconds` and the distance.
+        seen: Changes the memory with the new line.
     """
 
-    F: Callable[[float], Any] = lambda age: [[1.0, age], [0.0, 1.0]]
-    mean: bool = True
-    noise: float = 1.0
-    order: str = ""
+    goal: Callable[..., Any] = lambda hand, t, s, T_tc, T_cm, T_mg: hand(s) @ T_tc @ T_cm @ T_mg
+    start: Callable[..., Any] = lambda memory, t, hand, goal: memory.line(t - memory.began)[0]
+    due: Callable[[float, float], bool] = lambda wait, every: wait >= every
+    far: Callable[[float, float], bool] = lambda d, moved: d > moved
+    unseen: Callable[..., Memory] = lambda memory, t: memory._replace(looked=t)
+    near: Callable[..., Memory] = lambda memory, t, goal: memory._replace(looked=t)
+    lasts: Callable[[float, float], float] = lambda seconds, d: seconds
+    seen: Callable[[Memory], Memory] = lambda memory: memory
 
     def __call__(
-        self, mean: Any, covariance: Any, age: float, accel_noise: float
-    ) -> tuple[Array, Array]:
-        """The belief then."""
-        F, P = np.kron(self.F(age), np.eye(3)), np.asarray(covariance)
-        Q = self.noise * carry_forward(mean, np.zeros((6, 6)), age, accel_noise)[1]
-        P = {"Q first": F @ (P + Q) @ F.T, "no F": P + Q}.get(self.order, F @ P @ F.T + Q)
-        return F @ mean if self.mean else np.array(mean), P
+        self, t: float, memory: Any, sighting: Any, hand: Any, T_tc: Any, T_mg: Any,
+        *, every: float, moved: float, seconds: float,
+    ) -> Any:  # fmt: skip
+        """The memory."""
+        if not self.due(t - memory.looked, every):
+            return memory
+        if sighting is None:
+            return self.unseen(memory, t)
+        goal = np.array(self.goal(hand, t, sighting[0], T_tc, sighting[1], T_mg))
+        if not self.far(float(np.linalg.norm(goal[:3, 3] - memory.goal[:3, 3])), moved):
+            return self.near(memory, t, goal)
+        here = self.start(memory, t, hand, goal)
+        lasts = self.lasts(seconds, float(np.linalg.norm(goal[:3, 3] - here)))
+        line = Trajectory(Line(here, goal[:3, 3]), BangBang(lasts))
+        return self.seen(Memory(goal, line, t, t))
+
+
+@dataclass(frozen=True)
+class Smoothing:
+    """The smooth servo with another rule.
+
+    Attributes:
+        hand_at: The time of the hand, given t and the stamp.
+        stamps: The stamps in use, given those of the sightings and t.
+        velocity: Factor of the tag's velocity.
+        start: Factors of the reference's velocity and acceleration.
+        place: Where the blend begins, given memory and the present place.
+        ahead: Factor of `ahead` in the goal's place.
+        end: Factor of the goal's velocity at the end.
+        patience: Factor of `patience`.
+        rest: What happens without news, given memory, the present sample, t and `ahead`.
+    """
+
+    hand_at: Callable[[float, float], float] = lambda t, s: s
+    stamps: Callable[[Array, float], Array] = lambda s, t: s
+    velocity: float = 1.0
+    start: tuple[float, float] = (1.0, 1.0)
+    place: Callable[[Memory, Array], Array] = lambda memory, p: p
+    ahead: float = 1.0
+    end: float = 1.0
+    patience: float = 1.0
+    rest: Callable[..., Memory] | None = None
+
+    def __call__(
+        self, t: float, memory: Any, sightings: Any, hand: Any, T_tc: Any, T_mg: Any,
+        *, ahead: float, patience: float,
+    ) -> Any:  # fmt: skip
+        """The memory."""
+        p, v, a = memory.line(t - memory.began)
+        if not sightings or t - sightings[-1][0] > self.patience * patience:
+            if self.rest is not None:
+                return self.rest(memory, Sample(p, v, a), t, ahead)
+            return servo_smooth(t, memory, (), hand, T_tc, T_mg, ahead=ahead, patience=patience)
+        goals = np.array([hand(self.hand_at(t, s)) @ T_tc @ T @ T_mg for s, T in sightings])
+        times = self.stamps(np.array([s for s, _ in sightings]), t)
+        speed, place = np.zeros(3), goals[-1, :3, 3]
+        if len(goals) > 1:
+            speed, place = np.polyfit(times - times[-1], goals[:, :3, 3], 1)
+        speed = self.velocity * speed
+        goal = np.array(goals[-1])
+        goal[:3, 3] = place + (t + self.ahead * ahead - times[-1]) * speed
+        start = Sample(self.place(memory, p), self.start[0] * v, self.start[1] * a)
+        end = Sample(goal[:3, 3], self.end * speed, 0.0 * speed)
+        return Memory(goal, Bend(start, end, ahead), t, t)
+
+
+def more_often(
+    t: float, memory: Any, sightings: Any, hand: Any, T_tc: Any, T_mg: Any, **options: Any
+) -> Any:
+    """Algorithm 1 at each call, with a line from rest."""
+    seen = sightings[-1] if sightings else None
+    return Stepping()(
+        t, memory, seen, hand, T_tc, T_mg, every=0.0, moved=0.0, seconds=options["ahead"]
+    )

@@ -7,6 +7,7 @@ import numpy as np
 from labkit import Sample, se3
 from labkit.course import Close
 from labkit.course.authoring.problem import Problem, Trial, Wrong, call
+from labkit.servo import Bend
 
 from . import answers, following, hidden, mistakes, variants
 
@@ -24,99 +25,436 @@ _AGES = call(*_BELIEF, 0.1, 0.01), call(*_BELIEF, 0.4, 0.05)
 _OTHER_AGES = "other ages and noises"
 
 
-def _seen(
-    tilt: float, azimuth: float, distance: float = 0.7, size: float = 0.1
-) -> tuple[object, ...]:
-    T = hidden.seen(distance, tilt, azimuth, 0.3, x=0.05)
-    return hidden.pixels_of(T, size), hidden.K, size
+_LOOKS = tuple(hidden.looking(_RANDOM) for _ in range(3))
+_OCCASIONS = tuple(hidden.looking(_RANDOM, *occasion) for occasion in hidden.OCCASIONS)
+_WHEN = "other waits, steps, and pictures without the tag"
 
 
 TAG_POSE = Problem(
     name="tag_pose",
-    points=5,
+    points=4,
     outcomes=("frames",),
-    asks="From the four corners in the picture give the pose of the tag in the camera's frame, "
-    "`T_cm`, shape (4, 4). `K` is the camera's matrix. You may use OpenCV: `cv2.solvePnPGeneric` "
-    "with `cv2.SOLVEPNP_IPPE_SQUARE` returns two candidates and the error of each.",
+    asks="Project the four corners with each of the two candidate poses `T_cm`. Give the candidate "
+    "that fits the pixels better, and its error: the root mean square of the four distances, in px.",
     answer=answers.tag_pose,
-    judge=Close(rtol=0.0, atol=2e-4),
+    judge=Close(rtol=1e-6, atol=1e-9, parts=("pose", "error")),
     trials=(
-        Trial("a tag seen at 45 degrees", (call(*_seen(0.8, 0.4)),), weight=0.0),
         Trial(
-            "tags seen from aside",
-            (call(*_seen(0.6, 2.0, 0.5)), call(*_seen(0.9, -1.5, 1.1, 0.16))),
-            hidden.oblique,
-            "near and far, other sizes",
-            weight=3.5,
+            "the better one of two",
+            (call(*hidden.candidates(_RANDOM, hidden.seen(0.6, 0.8, 0.4, 0.3, x=0.05), 0.1)),),
+            hidden.tilted,
+            "other tags",
+            0.0,
+            "pose",
         ),
         Trial(
-            "a tag that nearly faces the camera",
-            (call(*_seen(0.25, -0.7, 0.6)),),
-            hidden.nearly_frontal,
-            "other ways of facing it",
-            weight=1.5,
+            "in whatever order they come",
+            tuple(hidden.tilted(np.random.default_rng(8))),
+            hidden.tilted,
+            "tags near and far, in both orders",
+            2.0,
+            "pose",
+        ),
+        Trial(
+            "how well it fits",
+            tuple(hidden.tilted(np.random.default_rng(9)))[:2],
+            hidden.tilted,
+            "tags near and far, in both orders",
+            2.0,
+            "error",
         ),
     ),
     withheld=("labkit.tags.detection", "labkit.detect_tags"),
     hints=(
-        "solvePnPGeneric needs, in this order: the corners in the tag's frame, ordered like the "
-        "pixels; the pixels; the camera's matrix; and None for the distortion.",
-        "It returns (count, rotation vectors, translations, errors). Take the candidate with the smallest "
-        "error; cv2.Rodrigues turns a rotation vector into a matrix.",
-        "solvePnPGeneric returns lists of rotation vectors, translations and errors. Find the "
-        "index of the best fit, turn its rotation vector into a matrix with Rodrigues, and "
-        "remember that the vectors are columns of shape (3, 1).",
+        "A corner c of the tag is at R c + p in the camera's frame. Where is it in the picture?",
+        "K times that point gives (u w, v w, w). Divide by w, subtract the pixel, and square.",
+        "All corners at once: multiply the (4, 3) array by the transposed R, add p, multiply by "
+        "the transposed K and divide the first two columns by the third.",
     ),
     wrong=(
         Wrong(
+            "the worse one",
+            "This is the candidate whose corners are farther from the pixels.",
+            mistakes.Chosen(best=np.argmax),
+            "A flat tag has two candidate poses; the picture decides.",
+        ),
+        Wrong(
+            "always the first",
+            "They come in no order: you return the first one even where the second fits better.",
+            mistakes.Chosen(best=lambda errors: 0),
+            "Look whether a list is sorted before you take its head.",
+        ),
+        Wrong(
             "the camera in the tag's frame",
-            "This is T_mc, the inverse: its translation does not point along the camera's view. "
-            "Invert it.",
-            mistakes.camera_in_the_tag,
-            "T_cm takes points from the tag's frame to the camera's, as its subscripts say.",
-        ),
-        Wrong(
-            "a rotation vector read as Euler angles",
-            "The three numbers are an axis times an angle. cv2.Rodrigues turns them into a matrix.",
-            mistakes.vector_as_euler_angles,
-            "For three numbers that describe a rotation, always ask which three they are.",
-        ),
-        Wrong(
-            "the candidate that fits worse",
-            "A flat square looks nearly the same whether it is tilted in one direction or in the "
-            "opposite one. Choose the candidate with the smaller error.",
-            mistakes.the_worse_answer,
-            "A flat tag has two candidate poses; compare their errors.",
+            "You project with the inverse of the candidate, which takes points the other way.",
+            mistakes.Chosen(pose=se3.inverse),
+            "T_cm takes points from the tag's frame to the camera's.",
+            "T_cm takes points from m to c as it is.",
         ),
         Wrong(
             "twice the size of the square",
-            "Everything seems twice as far away as it is. The corners lie half a side from the "
-            "middle.",
-            mistakes.PoseOf(scale=2.0),
+            "You project a square of twice the size.",
+            mistakes.Chosen(scale=2.0),
             "Draw the square: is it a side or half a side?",
+            "The corners lie half a side from the middle.",
         ),
         Wrong(
-            "the rotation transposed",
-            "The translation is right, but the rotation is that of the camera in the tag's frame. "
-            "Transpose it.",
-            mistakes.rotation_transposed,
-            "R_cm takes directions from the tag's frame to the camera's.",
-        ),
-        Wrong(
-            "no rotation",
-            "The rotation is left as the identity. cv2.Rodrigues makes a matrix of the rotation "
-            "vector.",
-            mistakes.Seen(pose=lambda T: se3.pose(np.eye(3), T[:3, 3])),
-            "A pose has two parts.",
+            "no perspective",
+            "What is twice as far away looks half as large, but your projection ignores the depth.",
+            mistakes.Chosen(project=lambda p, K: (p @ K.T)[:, :2]),
+            "A pixel is a ratio.",
+            "Divide by the third number.",
         ),
         Wrong(
             "u and v exchanged",
             "A pixel is (u, v): first along the row, then down. You have exchanged the two.",
-            mistakes.Seen(pixels=lambda p: p[:, ::-1]),
+            mistakes.Chosen(project=lambda p, K: ((p @ K.T)[:, :2] / p[:, 2:])[:, ::-1]),
             "u along x, v along y.",
         ),
+        Wrong(
+            "the mean over eight coordinates",
+            "You took the mean over all eight coordinates. A corner's distance has both.",
+            mistakes.Chosen(error=lambda off: np.sqrt(np.mean(off**2))),
+            "Say what one error is before you average errors.",
+            "First add the squares of u and v, then take the mean over four corners.",
+        ),
+        Wrong(
+            "the sum over the corners",
+            "Your error grows with the number of corners.",
+            mistakes.Chosen(error=np.linalg.norm),
+            "A root mean square has a mean.",
+            "Take the mean over the corners before the root.",
+        ),
+        Wrong(
+            "the mean distance",
+            "You took the mean of the distances, not the root of their mean square.",
+            mistakes.Chosen(error=lambda off: np.mean(np.linalg.norm(off, axis=1))),
+            "RMS weighs the large ones more.",
+        ),
     ),
-    variants=(variants.pose_by_iteration,),
+    variants=(variants.pose_by_opencv,),
+)
+
+STEP = Problem(
+    name="servo_step",
+    points=6,
+    outcomes=("frames", "sensing"),
+    asks="One step of Algorithm 1. It looks if at least `every` seconds have passed since `looked`; "
+    "else it returns the memory as it is. A look sets `looked`, and without a tag nothing else. "
+    "The goal's pose comes from the sighting and from the hand *at its stamp*. Only if it is more "
+    "than `moved` from the memory's goal, the memory takes the new goal and a straight "
+    "`lk.Trajectory` to it, from where the reference is now, with a bang-bang of `seconds`.",
+    answer=answers.servo_step,
+    judge=Close(rtol=1e-6, atol=1e-8),
+    trials=(
+        Trial(
+            "a first look, without any turns",
+            (hidden.looking(_RANDOM, plain=True),),
+            hidden.first_looks,
+            "other places",
+            0.0,
+        ),
+        Trial("the goal", (*_LOOKS, *_OCCASIONS), hidden.looks, "other hands", 2.0, "goal"),
+        Trial("when it looks", _OCCASIONS, hidden.occasions, _WHEN, 1.0, "looked"),
+        Trial("whether it begins anew", _OCCASIONS, hidden.occasions, _WHEN, 1.0, "began"),
+        Trial("the new line", _LOOKS, hidden.looks, "other lines", 1.0, "line"),
+        Trial(
+            "behind a tag on a conveyor, and above a tag at rest",
+            (hidden.chase(hidden.WHOLE), hidden.chase({"lines": 2.0}, speed=0.0)),
+            hidden.belts,
+            "other speeds",
+            1.0,
+        ),
+    ),
+    hints=(
+        "Four questions in order: is it due? is there a tag? where is the goal? has it moved?",
+        "Read the frames from right to left: the goal in the tag, the tag in the camera, the camera "
+        "at the tip, the tip in the world. Which of the four belongs to another time than now?",
+        "`memory._replace(looked=t)` changes one field. The reference is now at "
+        "`memory.line(t - memory.began).position`; a new line has its own zero of time.",
+    ),
+    wrong=(
+        Wrong(
+            "the hand of now",
+            "You used the hand's pose of now with a picture of then. In between the hand has moved, "
+            "and you take its own motion for the tag's.",
+            mistakes.Stepping(
+                goal=lambda hand, t, s, T_tc, T_cm, T_mg: hand(t) @ T_tc @ T_cm @ T_mg
+            ),
+            "A picture belongs with the joint angles of its own time stamp.",
+            "Ask for the hand at the stamp.",
+        ),
+        Wrong(
+            "the camera left out",
+            "The camera is not at the tip, but your goal takes it to be.",
+            mistakes.Stepping(goal=lambda hand, t, s, T_tc, T_cm, T_mg: hand(s) @ T_cm @ T_mg),
+            "Each frame of the chain has a reason.",
+            "T_tc belongs between the hand and the sighting.",
+        ),
+        Wrong(
+            "the camera inverted",
+            "You turned T_tc round: it is the camera's pose in the tip's frame.",
+            mistakes.Stepping(
+                goal=lambda hand, t, s, T_tc, T_cm, T_mg: hand(s) @ se3.inverse(T_tc) @ T_cm @ T_mg
+            ),
+            "Neighbouring subscripts must match.",
+        ),
+        Wrong(
+            "into the tag",
+            "The tip's goal is where the tag is: the arm would run into the board.",
+            mistakes.Stepping(goal=lambda hand, t, s, T_tc, T_cm, T_mg: hand(s) @ T_tc @ T_cm),
+            "Say which frame has which goal.",
+            "T_mg says where the goal is in the tag's frame.",
+        ),
+        Wrong(
+            "the goal in the world's axes",
+            "You applied T_mg in the world's frame: a tag that turns would leave the goal behind.",
+            mistakes.Stepping(
+                goal=lambda hand, t, s, T_tc, T_cm, T_mg: T_mg @ hand(s) @ T_tc @ T_cm
+            ),
+            "On the left: the world's axes; on the right: its own.",
+            "T_mg stands at the right end of the chain.",
+        ),
+        Wrong(
+            "from the end of the old line",
+            "The new line begins at the old goal, where the reference has not arrived yet: it jumps. "
+            "Either you took the goal itself, or you gave `line` the time of day.",
+            mistakes.Stepping(start=lambda memory, t, hand, goal: memory.goal[:3, 3]),
+            "A new reference begins where the old one is.",
+            "Begin where the old line is now, `t - began` after its beginning.",
+        ),
+        Wrong(
+            "from the beginning of the old line",
+            "The new line begins where the old one began: it jumps back.",
+            mistakes.Stepping(start=lambda memory, t, hand, goal: memory.line(0.0)[0]),
+            "A new reference begins where the old one is.",
+            "Begin where the old line is now.",
+        ),
+        Wrong(
+            "looks at every call",
+            "It looks even if it looked a moment ago.",
+            mistakes.Stepping(due=lambda wait, every: True),
+            "Two rates: the loop's and the camera's.",
+            "Return the memory as it is until `every` seconds have passed since `looked`.",
+        ),
+        Wrong(
+            "a new line after every look",
+            "It begins a new line although the goal has moved by less than `moved`: a tag at rest "
+            "gives a line for each millimetre of noise.",
+            mistakes.Stepping(far=lambda d, moved: True),
+            "Without a threshold the noise moves the arm: 24 lines in 12 s where 1 would do.",
+            "Compare the distance between the two goals with `moved`.",
+        ),
+        Wrong(
+            "a goal that creeps",
+            "Without a new line the old goal must stay: if it follows each small step, a slow tag is "
+            "never far from it, and the arm never starts.",
+            mistakes.Stepping(near=lambda memory, t, goal: memory._replace(looked=t, goal=goal)),
+            "Compare with the goal to which the line leads.",
+        ),
+        Wrong(
+            "a look that is forgotten",
+            "A look that changed nothing is not remembered, so it looks again at once.",
+            mistakes.Stepping(unseen=lambda memory, t: memory, near=lambda memory, t, goal: memory),
+            "A look is an event, whatever it shows.",
+            "Set `looked` whenever it has looked.",
+        ),
+        Wrong(
+            "no tag is not a look",
+            "A look without a tag is not remembered, so it looks again at once.",
+            mistakes.Stepping(unseen=lambda memory, t: memory),
+            "A look is an event, whatever it shows.",
+            "Set `looked` whenever it has looked.",
+        ),
+        Wrong(
+            "an old start",
+            "The new line begins now, but `began` still has the old time.",
+            mistakes.Stepping(seen=lambda memory: memory._replace(began=memory.began - 1.2)),
+            "A new line has its own zero of time.",
+        ),
+        Wrong(
+            "seconds per metre",
+            "The line takes `seconds` in all, but yours takes that for each metre.",
+            mistakes.Stepping(lasts=lambda seconds, d: seconds * max(d, 1e-3)),
+            "The report's 5 had a hidden unit.",
+        ),
+    ),
+    variants=(variants.step_by_cases,),
+)
+
+SMOOTH = Problem(
+    name="servo_smooth",
+    points=4,
+    outcomes=("sensing", "motion"),
+    asks="At each call bend the reference towards the tag. Fit a straight line to the goals of all "
+    "`sightings` over their stamps; its place at t + `ahead` and its velocity are where the new "
+    "`Bend` of `ahead` seconds ends. It begins with the reference's present sample, at `began` = t. If the "
+    "newest sighting is more than `patience` old, or there is none, come to rest in `ahead` "
+    "seconds, `ahead`/2 times the present velocity further on.",
+    answer=answers.servo_smooth,
+    judge=Close(rtol=0.0, atol=1e-4),
+    trials=(
+        Trial(
+            "to a tag at rest",
+            (hidden.bending(_RANDOM, plain=True),),
+            hidden.bends,
+            "other places",
+            0.0,
+            "line",
+        ),
+        Trial(
+            "smooth, on a conveyor and after a jump",
+            (
+                hidden.bending(_RANDOM, 0.0),
+                hidden.chase(hidden.SMOOTH, hidden.LAST),
+                hidden.chase(hidden.JUMP, hidden.LAST, speed=0.0, jump=0.1, age=0.5),
+            ),
+            hidden.smooth,
+            "other speeds",
+            2.0,
+            "line",
+        ),
+        Trial(
+            "the same, seen half a second late",
+            (
+                *(hidden.bending(_RANDOM) for _ in range(2)),
+                hidden.chase(hidden.SMOOTH, hidden.LAST, age=0.5),
+            ),
+            hidden.late,
+            "other ages and speeds",
+            1.0,
+            "line",
+        ),
+        Trial(
+            "blind for a second, and for good",
+            (
+                hidden.bending(_RANDOM, 0.4, stale=1.5),
+                hidden.chase(hidden.SMOOTH, hidden.LAST, age=0.5, blind=(6.0, 7.0)),
+                hidden.chase(hidden.GONE, hidden.LAST, age=0.5, blind=(6.0, 99.0)),
+            ),
+            hidden.blind,
+            "other seeds",
+            1.0,
+            "line",
+        ),
+    ),
+    hints=(
+        "First the goals: one pose for each sighting, as in servo_step. Then ask of their places "
+        "where they will be, and how fast.",
+        "np.polyfit(stamps - t, places, 1) fits all three coordinates at once and gives the velocity "
+        "and the place at t.",
+        "The start of the Bend is memory.line(t - memory.began), all three parts. Its end is a "
+        "Sample: the fitted place carried on by `ahead`, the fitted velocity, no acceleration.",
+    ),
+    wrong=(
+        Wrong(
+            "the hand of now",
+            "You used the hand's pose of now with pictures of then: you take the hand's own motion "
+            "for the tag's, so the tag seems to flee, the hand follows, and the tag flees faster.",
+            mistakes.Smoothing(hand_at=lambda t, s: t),
+            "The arm runs away: the target flees with the hand.",
+            "Ask for the hand at each stamp.",
+        ),
+        Wrong(
+            "the age ignored",
+            "You took the newest sighting for one of now, so you aim where the tag was.",
+            mistakes.Smoothing(stamps=lambda s, t: s + t - s[-1]),
+            "Half a second at 3 cm/s is 15 mm.",
+            "Count the time to t + `ahead` from the stamps.",
+        ),
+        Wrong(
+            "no velocity",
+            "You aim at where the tag was seen, as if it stood still.",
+            mistakes.Smoothing(velocity=0.0),
+            "Without a velocity every look is too late; but when the tag jumps it is better.",
+            "Fit a line over the stamps: its slope is the velocity.",
+        ),
+        Wrong(
+            "aims at now",
+            "You aim at where the tag is now, but the bend arrives `ahead` seconds later.",
+            mistakes.Smoothing(ahead=0.0),
+            "Aim where the target will be.",
+        ),
+        Wrong(
+            "velocity per sighting",
+            "Your velocity is counted per sighting, not per second.",
+            mistakes.Smoothing(stamps=lambda s, t: s[-1] + np.arange(len(s)) - len(s) + 1.0),
+            "Say the unit of the horizontal axis.",
+            "Fit over the stamps.",
+        ),
+        Wrong(
+            "from rest",
+            "The bend begins at rest, although the reference moves: its speed falls to zero at each "
+            "call, and it never gets away.",
+            mistakes.Smoothing(start=(0.0, 0.0)),
+            "Algorithm 1's own mistake.",
+            "Begin with all three parts of the present sample.",
+        ),
+        Wrong(
+            "without the acceleration",
+            "Position and velocity go on, but the acceleration begins at zero at each call.",
+            mistakes.Smoothing(start=(1.0, 0.0)),
+            "Six conditions: three at each end.",
+        ),
+        Wrong(
+            "from the old goal",
+            "The bend begins at the old goal, where the reference has not arrived yet: it jumps.",
+            mistakes.Smoothing(place=lambda memory, p: memory.goal[:3, 3]),
+            "A new reference begins where the old one is.",
+        ),
+        Wrong(
+            "from the beginning of the old line",
+            "The bend begins where the old one began: it never gets on.",
+            mistakes.Smoothing(place=lambda memory, p: memory.line(0.0)[0]),
+            "A new reference begins where the old one is.",
+        ),
+        Wrong(
+            "stops at the goal",
+            "The bend ends at rest, but the tag moves on.",
+            mistakes.Smoothing(end=0.0),
+            "A moving goal does not wait.",
+        ),
+        Wrong(
+            "Algorithm 1, more often",
+            "This is Algorithm 1 at every call: a line from rest.",
+            mistakes.more_often,
+            "Looking more often makes many small jerks of a few large ones.",
+        ),
+        Wrong(
+            "never comes to rest",
+            "However old the sightings are, it goes on.",
+            mistakes.Smoothing(patience=1e6),
+            "What is not seen becomes less sure.",
+            "Compare the age of the newest sighting with `patience`.",
+        ),
+        Wrong(
+            "stops dead",
+            "Without news the reference stands still at once: its speed jumps.",
+            mistakes.Smoothing(
+                rest=lambda memory, now, t, ahead: memory._replace(
+                    line=Bend(
+                        Sample(now[0], 0 * now[1], 0 * now[1]),
+                        Sample(now[0], 0 * now[1], 0 * now[1]),
+                        ahead,
+                    ),
+                    began=t,
+                )
+            ),
+            "Stopping is a motion, too.",
+        ),
+        Wrong(
+            "back to where it was",
+            "The rest is at the present place, so the reference turns back to it.",
+            mistakes.Smoothing(
+                rest=lambda memory, now, t, ahead: memory._replace(
+                    line=Bend(now, Sample(now[0], 0 * now[1], 0 * now[1]), ahead), began=t
+                )
+            ),
+            "Who moves needs a way to stop.",
+            "Leave it ahead/2 times its velocity to stop.",
+        ),
+    ),
+    variants=(variants.smooth_by_ends,),
 )
 
 QUALITY = Problem(
@@ -242,7 +580,7 @@ QUALITY = Problem(
 
 BLEND = Problem(
     name="blend",
-    points=5,
+    points=3,
     outcomes=("motion",),
     asks="Join a moving reference to a moving goal by a polynomial of fifth order. At `t` = 0 the "
     "polynomial has the reference's position, velocity and acceleration; at `t` = `duration` it "
@@ -267,7 +605,7 @@ BLEND = Problem(
             ),
             hidden.blends_in_motion,
             "other durations, seven joints and a single number",
-            0.6,
+            2.0,
         ),
         Trial(
             "after the end it goes on with the goal's velocity",
@@ -277,9 +615,10 @@ BLEND = Problem(
             ),
             hidden.blends_after_the_end,
             "other durations, seven joints and a single number",
-            0.4,
+            1.0,
         ),
     ),
+    withheld=("labkit.servo.Bend",),
     hints=(
         "Six conditions fix six coefficients. Write position, velocity and acceleration of "
         "c0 + c1 t + ... + c5 t^5 at both ends.",
@@ -350,6 +689,7 @@ BLEND = Problem(
 PREDICT = Problem(
     name="carry_forward",
     points=5,
+    core=False,
     outcomes=("sensing",),
     asks="A tag is believed to have the position and the velocity in `mean`, with `covariance`. "
     "Give both `age` seconds later, for constant velocity under continuous white acceleration of "
@@ -423,14 +763,8 @@ PREDICT = Problem(
             "the covariance not moved",
             "The covariance is not carried forward by F: an uncertain velocity makes the position "
             "uncertain too.",
-            mistakes.Carried(order="no F"),
+            mistakes.covariance_not_moved,
             "F P Fᵀ + Q.",
-        ),
-        Wrong(
-            "the velocity moved by the place",
-            "F has the age in its upper right block, because the velocity moves the position.",
-            mistakes.Carried(lambda age: [[1.0, 0.0], [age, 1.0]]),
-            "The velocity moves the position, not the other way round.",
         ),
         Wrong(
             "a half where a third belongs",
@@ -448,9 +782,4 @@ PREDICT = Problem(
     variants=(variants.predict_by_exponential,),
 )
 
-PROBLEMS = (
-    TAG_POSE,
-    QUALITY,
-    BLEND,
-    PREDICT,
-)
+PROBLEMS = (TAG_POSE, STEP, BLEND, SMOOTH, QUALITY, PREDICT)
