@@ -10,7 +10,7 @@
 # | **You need** | poses as matrices (00), trajectories (01), or the box below |
 # | **Given** | the camera, the detector, a hand that follows a reference, an arm |
 # | **You write** | which pose fits a picture, Algorithm 1, a blend, a servo that glides |
-# | **Time** | core 3 hours, 18 points; two extensions at the end, 8 points. Stop after 3 hours; what is left is read, not written. |
+# | **Time** | core 3 hours, 18 points; with the extensions 26 points. Stop after 3 hours; what is left is read, not written. |
 #
 <<<<<<< HEAD
 # Questions marked *core* are for everybody. Those marked *extension* take the rest of the time: they earn points
