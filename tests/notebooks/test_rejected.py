@@ -7,7 +7,6 @@ from math import sqrt
 from pathlib import Path
 
 import control
-import cv2
 import numpy as np
 import pytest
 from courses import rejected_below
@@ -148,19 +147,6 @@ def from_the_notebooks_other_cell(model):
     return 50.0 * m, 14.0 * m
 
 
-def vector_for_a_matrix(shape):
-    def tag_pose(pixels, K, size):
-        h, T_cm = size / 2, np.eye(4)
-        corners = np.array([[-h, h, 0], [h, h, 0], [h, -h, 0], [-h, -h, 0]])
-        how = cv2.SOLVEPNP_IPPE_SQUARE
-        _, turns, places, errors = cv2.solvePnPGeneric(corners, pixels, K, None, flags=how)
-        best = np.argmin(errors)
-        T_cm[:3, :3], T_cm[:3, 3] = turns[best].reshape(shape), places[best].ravel()
-        return T_cm
-
-    return tag_pose
-
-
 def three_coordinates(t, reference, goal, duration):
     whole = PROBLEMS["06 blend"].answer(t, reference, goal, duration)
     return lk.Sample(*np.vstack(whole)[:, :3])
@@ -239,8 +225,6 @@ REJECTED = [
     ("04 choose_gains", springs(0.0), "no damping"),
     ("04 choose_gains", from_the_notebook, None),
     ("04 choose_gains", from_the_notebooks_other_cell, None),
-    ("06 tag_pose", vector_for_a_matrix(3), None),
-    ("06 tag_pose", vector_for_a_matrix((3, 1)), None),
     ("06 blend", three_coordinates, None),
     ("07 open_loop", plain_function, None),
     ("07 open_loop", loop(1), "a delay of first order"),
