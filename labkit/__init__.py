@@ -36,6 +36,8 @@ if TYPE_CHECKING:
     from .course import hand_in as hand_in
     from .course import my_arm as my_arm
     from .course import my_bug as my_bug
+    from .course import progress as progress
+    from .course import restore as restore
     from .replay import live
     from .tags import *  # noqa: F403
 
@@ -51,7 +53,9 @@ __all__ = [
 ]  # fmt: skip
 
 
-_FROM = {"live": "replay"} | dict.fromkeys(("hand_in", "my_arm", "my_bug"), "course")
+_FROM = {"live": "replay"} | dict.fromkeys(
+    ("hand_in", "my_arm", "my_bug", "progress", "restore"), "course"
+)
 
 if not TYPE_CHECKING:  # else every misspelt name would pass a type checker
 

@@ -6,7 +6,7 @@ A notebook uses `check` and `use`; the graders apply `mark` to the same question
 from __future__ import annotations
 
 from .calling import NoAnswer
-from .handin import hand_in
+from .handin import hand_in, progress
 from .identification import Identification
 from .judges import (
     AtMost,
@@ -26,7 +26,7 @@ from .own_arm import PUBLIC_ARMS, Bug, OwnArm, commanded, my_arm, my_bug
 from .predictions import Prediction, predict
 from .question import Call, Chase, Choice, Loop, Mistake, Question, Raised, Test, Tuned
 from .serialize import question_data, read_question
-from .student import case, check, use
+from .student import case, check, restore, use
 from .verdict import Outcome, TestResult, Verdict
 
 __all__ = [
@@ -68,7 +68,9 @@ __all__ = [
     "my_arm",
     "my_bug",
     "predict",
+    "progress",
     "question_data",
     "read_question",
+    "restore",
     "use",
 ]

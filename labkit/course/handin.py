@@ -74,8 +74,13 @@ def _told(name: str, folder: Path) -> str:
     saved = path.stat().st_mtime
     if saved < last_run():
         return "Save this notebook (Ctrl+S), then run this cell again."
-    if data["questions"] and not any(last_verdict(cells, x["name"]) for x in data["questions"]):
-        return f"{path.name} holds no result of a check; run all cells, save, run this one again."
+    code = [cell["source"] for cell in cells if cell["cell_type"] == "code"]
+    bound = {name for source in code for name in analyse(source)["binds"]}
+    gone = [x["name"] for x in data["questions"] if x["name"] not in bound]
+    if gone and not any("exec(" in source for source in code):
+        return f"No cell defines {gone[0]}; lk.restore({gone[0]!r}) brings its cell back."
+    if problem := _too_large(path):
+        return f"Do not hand in yet: {problem}."
     when = datetime.fromtimestamp(saved, UTC).astimezone()
     text = receipt(cell["source"] for cell in cells)
     return f"receipt: {text} of {path.name}, saved {when:%Y-%m-%d %H:%M %Z}. Hand in this file."
@@ -89,6 +94,23 @@ def receipt(sources: Iterable[str]) -> str:
     """
     text = "\0".join(filter(str.strip, sources)).encode(errors="surrogatepass")
     return hashlib.sha256(text).hexdigest()[:16]
+
+
+def progress(folder: Path | None = None) -> None:
+    """Print the points and the time left of each notebook, as the saved files say.
+
+    Args:
+        folder: The folder that holds a folder for each notebook; by default the working directory.
+    """
+    for checks in sorted((folder or Path.cwd()).glob("*/checks.json")):
+        data = read_checks(checks.parent)
+        name = data["assignment"]
+        cells = read_cells(checks.parent / f"{name}.ipynb")
+        found = [last_verdict(cells, question["name"]) for question in data["questions"]]
+        earned, of = sum(v.earned for v in found if v), sum(x["points"] for x in data["questions"])
+        hours = re.search(r"\*\*Time\*\* \|\D*([\d.]+) hour", cells[0]["source"])
+        left = 60.0 * float(hours[1]) * (1.0 - earned / of) if hours else 0.0
+        print(f"{name:20} {earned:5.1f} of {of:g} points, about {left:3.0f} minutes left")
 
 
 @dataclass(frozen=True)
@@ -142,8 +164,7 @@ def submit_check(path: Path, seconds: float = 600.0) -> Tried:
     problems, notes = [], []
     if path.name != f"{name}.ipynb":
         problems.append(f"the file is called {path.name}; rename it {name}.ipynb")
-    if (size := path.stat().st_size / 1e6) > LARGEST:
-        problems.append(f"the file has {size:.0f} MB, over {LARGEST:g}; clear the largest outputs")
+    problems += filter(None, [_too_large(path)])
     problems += [stopped] if stopped else errors
     for question, verdict in verdicts.items() if not stopped else ():
         problems += _gaps(question, at_check[question], verdict, question in own)
@@ -158,6 +179,12 @@ def submit_check(path: Path, seconds: float = 600.0) -> Tried:
     return Tried(name, (*problems, *lost), (*notes, *told), verdicts)
 
 
+def _too_large(path: Path) -> str:
+    size = path.stat().st_size / 1e6
+    says = f"the file has {size:.0f} MB, over {LARGEST:g}; clear the largest outputs"
+    return says if size > LARGEST else ""
+
+
 def _gaps(
     question: str, at_check: Verdict | None, at_end: Verdict | None, measured: bool
 ) -> Iterator[str]:
@@ -165,7 +192,7 @@ def _gaps(
     if at_end is None and measured:
         yield f"{question} comes from runs of your arm, which marking does not repeat; type a value"
     elif at_end is None:
-        yield f"no cell defines {question}; write it in its cell, which a fresh notebook has"
+        yield f"no cell defines {question}; lk.restore({question!r}) brings its cell back"
     elif at_end.withheld:
         yield head(at_end)
     elif at_check and at_check.right and not at_end.right:

@@ -31,10 +31,10 @@ FILE = "checks.json"
 
 
 def read_checks(folder: Path) -> dict[str, Any]:
-    """The data in a notebook's folder: its ``assignment``, its ``questions`` and its ``texts``.
+    """The data in a notebook's folder: its ``assignment``, ``questions``, ``texts`` and ``stubs``.
 
-    The texts, which a person marks, map the name of each to the id of its cell; the files of older
-    releases have none.
+    The texts, which a person marks, map the name of each to the id of its cell, and the stubs the
+    name of each answer to its cell's text.
 
     Raises:
         LabkitError: The file is missing or damaged.
@@ -42,13 +42,9 @@ def read_checks(folder: Path) -> dict[str, Any]:
     file = folder / FILE
     remedy = "fetch the assignment's whole folder again"
     try:
-        data: dict[str, Any] = json.loads(file.read_text(encoding="utf-8"))
-        if not isinstance(data, dict):
-            raise TypeError
+        data = {"texts": {}, "stubs": {}, **json.loads(file.read_text(encoding="utf-8"))}
         check_stamp(data, f"{FILE} in {folder.name!r}", remedy)
         if not isinstance(data["assignment"], str) or not isinstance(data["questions"], list):
-            raise TypeError
-        if not isinstance(data.setdefault("texts", {}), dict):
             raise TypeError
     except (FileNotFoundError, KeyError, TypeError, ValueError) as error:
         there = "no" if isinstance(error, FileNotFoundError) else "only a damaged"

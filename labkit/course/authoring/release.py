@@ -24,7 +24,7 @@ import nbformat
 
 from ...errors import LabkitError
 from ...formats import stamp
-from ..notebook import FILE, Notebook, grade_id, kind, manifest, source_notebook
+from ..notebook import BLANK, FILE, Notebook, grade_id, kind, manifest, source_notebook
 from ..question import Question
 from ..serialize import question_data
 from ..source import needed
@@ -162,8 +162,18 @@ def _checks(made: Prepared) -> str:
         kept = before.get(name)
         questions.append(_lines(kept if same_but_for_rounding(kept, data) else data))
     texts = {m["grade_id"]: m["id"] for m in manifest(made.source) if "points" in m}
-    head = _lines({**stamp(), "assignment": made.name, "texts": texts})
+    answers = [cell for cell in made.source.cells if kind(cell) == "answer"]
+    stubs = {grade_id(cell): _stub(cell) for cell in answers}
+    head = _lines({**stamp(), "assignment": made.name, "texts": texts, "stubs": stubs})
     return f'{head[:-1]},\n"questions":[\n' + ",\n".join(questions) + "\n]}\n"
+
+
+def _stub(cell: Any) -> str:
+    """An answer's cell as students get it."""
+    region = r"^( *)### BEGIN SOLUTION\n.*### END SOLUTION$"
+    todo = r"\1# Your code goes here\n\1raise NotImplementedError"
+    blank: str | None = cell.metadata.get(BLANK)
+    return blank or re.sub(region, todo, cell.source, flags=re.MULTILINE | re.DOTALL)
 
 
 def _lines(data: Any) -> str:
