@@ -56,15 +56,13 @@ def for_student(
         return step(*arguments)
     except of_all:
         raise
-    except LabkitError as error:
-        return Failure(student, clean_line(str(error)))
-    except OSError as error:
-        if error.errno in _OF_THE_MACHINE:
-            raise
-        where = "" if error.filename is None else f"{error.filename}: "
-        return Failure(student, clean_line(f"{where}{error.strerror or error}"))
     except Exception as error:
-        return Failure(student, clean_line(f"{type(error).__name__}: {error}"))
+        says = str(error) if isinstance(error, LabkitError) else f"{type(error).__name__}: {error}"
+        if isinstance(error, OSError):
+            if error.errno in _OF_THE_MACHINE:
+                raise
+            says = f"{error.filename or type(error).__name__}: {error.strerror or error}"
+        return Failure(student, clean_line(says))
 
 
 class Failures:

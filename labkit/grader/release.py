@@ -7,26 +7,20 @@ are reported before anything is written: the file, the question, and what to do.
 
 from __future__ import annotations
 
-import ast
 import re
 import shutil
-import traceback
-from collections.abc import Iterator, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
 
 import nbformat
 
-from ..course.authoring.bundle import Bundle
 from ..course.authoring.layout import Course, check_outcomes
-from ..course.authoring.problem import Problem
 from ..course.authoring.release import Prepared, prepare, write
-from ..course.notebook import BLANK, by_hand, grade_id, kind, manifest, nbgrader_info
-from ..course.source import analyse, parsed
+from ..course.notebook import BLANK, grade_id, manifest
+from ..course.source import analyse
 from ..errors import LabkitError
-from .clean import how_many
 from .gradebook import nbgrader_api, open_gradebook, reason
-from .results import Results
 from .roster import lay_arms
 
 FORBIDDEN = (
@@ -46,35 +40,20 @@ class Released:
 
     Attributes:
         name: The assignment.
-        folder: The students' copy.
         questions: The number of questions.
-        points: The total of points.
-        hidden: The number of hidden cases.
+        points: The total of points, which is the maximum that a platform needs.
         by_hand: The points of each cell that a person marks, by its name.
-        outdated: The number of submissions that were graded with another release.
     """
 
     name: str
-    folder: Path
     questions: int
     points: float
-    hidden: int
     by_hand: Mapping[str, float]
-    outdated: int
 
     def __str__(self) -> str:
-        by_hand = self.by_hand.items()
-        lines = [
-            f"{self.name}: {self.questions} questions, {self.points:g} points, "
-            f"{self.hidden} hidden cases",
-            *(f"to be marked by hand: {k}, {how_many(v, 'point')}" for k, v in by_hand),
-        ]
-        if self.outdated:
-            lines.append(
-                f"graded with another release: {how_many(self.outdated, 'submission')}; "
-                f"type: labkit grade {self.name}, and with --lower if a mark is then kept"
-            )
-        return "\n  ".join(lines)
+        by_hand = ", ".join(f"{k} {v:g}" for k, v in self.by_hand.items())
+        says = f"{self.name}: {self.questions} questions, {self.points:g} points"
+        return f"{says}; by hand: {by_hand}" if by_hand else says
 
 
 def release(course: Course, name: str, seed: int) -> Released:
@@ -99,17 +78,13 @@ def release(course: Course, name: str, seed: int) -> Released:
     generate(course, name)
     _verify(course.release / name)
     lay_arms(course, name)
-    questions = made.questions.values()
-    hidden = sum(case.hidden for q in questions for t in q.tests for case in t.cases)
     by_hand = {m["grade_id"]: m["points"] for m in manifest(made.source) if "points" in m}
-    points = sum(q.points for q in questions) + sum(by_hand.values())
-    bundle = Bundle.of(course, name)
-    outdated = sum(
-        result.hashes["bundle"] != bundle.of_student(result.student).data["hash"]
-        for result in Results(course, name)
-        if not result.rejected
-    )
-    return Released(name, course.release / name, len(questions), points, hidden, by_hand, outdated)
+    return Released(name, len(made.questions), _points(made), by_hand)
+
+
+def _points(made: Prepared) -> float:
+    by_hand = sum(m.get("points", 0.0) for m in manifest(made.source))
+    return float(sum(q.points for q in made.questions.values()) + by_hand)
 
 
 def _refuse_other_questions(course: Course, made: Prepared) -> None:
@@ -155,89 +130,26 @@ def _verify(folder: Path) -> None:
 
 
 def prepared(course: Course, name: str, seed: int) -> Prepared:
-    """The prepared assignment, or an error that explains the author's mistake.
+    """The prepared assignment.
 
     Raises:
         LabkitError: The text, a problem, an answer or a known mistake must be corrected.
     """
     path = course.notebook_source(name)
-    try:
-        _check_types(path, course.problems(name))
-        for problem in course.problems(name):
-            check_outcomes(path.with_name("problems.py"), problem.name, problem.outcomes)
-        for asked in course.predictions(name):
-            outcomes = getattr(asked, "outcomes", ())  # a prediction has none
-            check_outcomes(path.with_name("predictions.py"), asked.name, outcomes)
-        made = prepare(course, name, seed)
-    except (LabkitError, MemoryError):
-        raise
-    except Exception as error:
-        raise LabkitError(_where(course, error)) from error
-    if reasons := [*_unreadable(made), *_not_importable(made), *_sums(made)]:
+    for problem in course.problems(name):
+        check_outcomes(path.with_name("problems.py"), problem.name, problem.outcomes)
+    for asked in course.predictions(name):
+        outcomes = getattr(asked, "outcomes", ())  # a prediction has none
+        check_outcomes(path.with_name("predictions.py"), asked.name, outcomes)
+    made = prepare(course, name, seed)
+    reasons = []
+    for number, cell in enumerate(made.source.cells, start=1):
+        if cell.cell_type == "code" and (why := analyse(cell.source)["broken"]):
+            reasons.append(f"cell {number} {grade_id(cell)} is not Python: {why}")
+    promised = _POINTS.findall(made.source.cells[0].source) if made.source.cells else []
+    if promised and _points(made) not in map(float, promised):
+        says = f"the first cell says {promised[0]} points, the questions come to {_points(made):g}"
+        reasons.append(says)
+    if reasons:
         raise LabkitError("\n".join([f"{path.name}:", *reasons]))
     return made
-
-
-def _check_types(path: Path, problems: object) -> None:
-    """Raise a LabkitError unless PROBLEMS is a tuple of problems with points."""
-    file = path.with_name("problems.py")
-    if not isinstance(problems, tuple) or not all(isinstance(x, Problem) for x in problems):
-        raise LabkitError(f"{file}: PROBLEMS has to be a tuple of Problem(...)")
-    for problem in problems:
-        points = problem.points
-        if (
-            isinstance(points, bool)
-            or not isinstance(points, int | float)
-            or not 0 <= points <= 1000
-        ):
-            raise LabkitError(f"{file}: {problem.name} has points={points!r}; give it 0 or more")
-
-
-def _where(course: Course, error: Exception) -> str:
-    """Where in the course's own files an exception arose, in which question, and its message."""
-    said = f"{type(error).__name__}: {error}"
-    if isinstance(error, SyntaxError) and error.filename:
-        return f"{error.filename}, line {error.lineno}: {said}; correct it"
-    place, question = "", ""
-    for frame, line in traceback.walk_tb(error.__traceback__):
-        file = Path(frame.f_code.co_filename)
-        if file.is_relative_to(course.root / "solutions"):
-            place = f"{file}, line {line}"
-        asked = frame.f_locals.get("self")
-        question = asked.name if isinstance(asked, Problem) else question
-    of = f"the question {question}: " if question else ""
-    return f"{of}{place}{': ' * bool(place)}{said}; correct it"
-
-
-def _unreadable(made: Prepared) -> Iterator[str]:
-    """A sentence for each cell that Python cannot parse, so that no student could run it."""
-    for number, cell in enumerate(made.source.cells, start=1):
-        broken = analyse(cell.source)["broken"] if cell.cell_type == "code" else ""
-        if broken:
-            what = f"the stub of {grade_id(cell)}" if grade_id(cell) else f"cell {number}"
-            yield f"{what} is not Python: {broken}"
-
-
-def _not_importable(made: Prepared) -> Iterator[str]:
-    """A sentence for each import in a stub or its solution that fails."""
-    for cell in made.source.cells:
-        if kind(cell) != "answer" or analyse(cell.source)["broken"]:
-            continue
-        nodes = list(ast.walk(parsed(cell.source)[1]))
-        tried = {x for node in nodes if isinstance(node, ast.Try) for x in ast.walk(node)}
-        for node in nodes:
-            if isinstance(node, ast.Import | ast.ImportFrom) and node not in tried:
-                try:
-                    exec(ast.unparse(node), {"__name__": "stub"})
-                except (Exception, SystemExit) as error:
-                    says = ast.unparse(node)
-                    yield f"the stub of {grade_id(cell)} says `{says}`: {error}; correct it"
-
-
-def _sums(made: Prepared) -> Iterator[str]:
-    """A sentence if the questions do not add up to the points that the first cell promises."""
-    found = _POINTS.findall(made.source.cells[0].source) if made.source.cells else []
-    manual = sum(float(nbgrader_info(x)["points"]) for x in made.source.cells if by_hand(x))
-    points = sum(q.points for q in made.questions.values()) + manual
-    if found and points not in map(float, found):
-        yield f"the first cell says {found[0]} points, and the questions come to {points:g}"

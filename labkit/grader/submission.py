@@ -5,10 +5,8 @@ from __future__ import annotations
 import hashlib
 import os
 import stat
-from collections.abc import Iterable
 from dataclasses import dataclass
 from datetime import UTC, datetime, tzinfo
-from difflib import get_close_matches
 from pathlib import Path
 
 from ..course.authoring.layout import Course
@@ -67,16 +65,8 @@ def students(course: Course, name: str) -> list[str]:
 
 def misnamed(course: Course, name: str) -> list[Failure]:
     """A failure for each folder whose name is unsafe for a database, page or terminal."""
-    return [unfit_name(student) for student in _folders(course, name) if not is_name(student)]
-
-
-def unfit_name(student: str) -> Failure:
-    """The failure for a folder whose name is not allowed."""
-    return Failure(
-        plain_name(student),
-        "a folder in submitted/ has this name, in which a page would see markup or a terminal "
-        "commands; rename the folder and grade again",
-    )
+    why = "a folder in submitted/ has this name; rename the folder and grade again"
+    return [Failure(ascii(x), why) for x in _folders(course, name) if not is_name(x)]
 
 
 def is_name(student: str) -> bool:
@@ -91,23 +81,9 @@ def plain_name(student: str) -> str:
 
 def none_of(course: Course, assignment: str, student: str | None = None) -> str:
     """The message that a student, or everybody, has handed in nothing, and what to do."""
-    found = students(course, assignment)
-    if student and found:
-        return f"no submission of {student!r} for {assignment}{did_you_mean(student, found)}"
-    return (
-        f"nothing was handed in for {assignment}; type: labkit collect {assignment} DOWNLOAD.zip, "
-        "or put notebooks there as submitted/STUDENT/ASSIGNMENT/ASSIGNMENT.ipynb"
-    )
-
-
-def did_you_mean(name: str, known: Iterable[str]) -> str:
-    """Similar names, or else some known ones, as the end of a sentence; "" if none is known."""
-    plain = {one.casefold(): one for one in known}
-    near = [one for key, one in plain.items() if name.casefold() in key]
-    near = near or [plain[key] for key in get_close_matches(name.casefold(), plain)]
-    if near:
-        return f"; did you mean {', '.join(near[:5])}?"
-    return f"; there are {few(sorted(plain.values()))}" if plain else ""
+    if student and (found := students(course, assignment)):
+        return f"no submission of {student!r} for {assignment}; there are {few(found)}"
+    return f"nothing was handed in for {assignment}; type: labkit collect {assignment} DOWNLOAD.zip"
 
 
 def _folders(course: Course, name: str) -> list[str]:
@@ -126,21 +102,18 @@ def read_file(path: Path, most: int = NOTEBOOK) -> bytes:
     Raises:
         LabkitError: The file is too large, is not a plain file, or cannot be read.
     """
-    name = path.name[:80]
+    says = f"{path.name[:80]} is a link or no file; hand in the notebook itself"
     try:
-        kind = path.lstat().st_mode  # before it is opened: opening a device may do something
-        if not (stat.S_ISREG(kind) or stat.S_ISLNK(kind)):
-            raise LabkitError(f"{name} is not a file; hand in the notebook itself")
+        if not path.is_symlink() and not path.is_file():  # opening a device may do something
+            raise LabkitError(says)
         with open(os.open(path, os.O_RDONLY | os.O_NOFOLLOW | os.O_NONBLOCK), "rb") as file:
             about = os.fstat(file.fileno())
             if not stat.S_ISREG(about.st_mode):
-                raise LabkitError(f"{name} is not a file; hand in the notebook itself")
+                raise LabkitError(says)
             check_size(about.st_size, most)
             return file.read()
     except OSError:
-        raise LabkitError(
-            f"{name} is a link or cannot be opened; hand in the file itself"
-        ) from None
+        raise LabkitError(says) from None
 
 
 def digest(data: bytes) -> str:
