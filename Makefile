@@ -21,7 +21,7 @@ SECOND := .venv-313/bin
 # Modules that the installation left uncompiled are compiled at their first import.
 unexport PYTHONDONTWRITEBYTECODE
 
-.PHONY: help demo test dev soak lab book book-zip stills vendor campaign record tag-bench count lint lock format clean
+.PHONY: help demo test dev soak lab book vendor campaign record tag-bench count lint lock clean
 
 help: ## list the targets
 	@grep -hE '^[a-z0-9-]+:.*##' $(MAKEFILE_LIST) | awk -F':.*## ' '{printf "  make %-16s %s\n", $$1, $$2}'
@@ -44,14 +44,8 @@ soak: for-tests .venv/.dev browser ## what the gate leaves out: attacks, kills, 
 lab: .venv/.course ## open the notebooks of this checkout; students start theirs from the zip
 	@PATH="$(CURDIR)/$(BIN):$$PATH" $(BIN)/jupyter lab --notebook-dir assignments $(if $(AS_ROOT),--allow-root)
 
-book: .venv/.course ## build the book: book/_build/html/index.html
-	@$(BIN)/python book/_tools/build_book.py
-
-book-zip: .venv/.course ## make one file of the book to hand out
+book: .venv/.course ## build the book, book/_build/html/index.html, and dist/book.zip to hand out
 	@$(BIN)/python book/_tools/build_book.py --zip
-
-stills: for-tests .venv/.dev browser ## make the live arm's stills from the built book
-	@$(BIN)/python book/_tools/make_stills.py
 
 vendor: .venv/.dev ## make the book's browser files again (node 20)
 	@sh .ci/need.sh node:nodejs npm:npm
@@ -86,9 +80,6 @@ lock: .venv/.dev ## choose the versions in constraints.txt, and look for wheels 
 	  pyproject.toml --output-file constraints.txt
 	@for system in $(SYSTEMS); do $(UV) compile --quiet --system-certs --only-binary :all: --extra notebook $(PIN) \
 	  --python-platform $$system --python-version 3.12 pyproject.toml >/dev/null || echo "no wheels: $$system"; done
-
-format: .venv/.dev ## correct the style of the code
-	@$(BIN)/ruff check --fix .; fault=$$?; $(BIN)/ruff format . && exit $$fault
 
 clean: ## delete generated files; students' work, marks and hidden cases are kept
 	rm -rf .venv .venv-313 dist book/_build book/generated build/[!c]* build/campaign*

@@ -9,7 +9,7 @@ Its argument is the kind of panel, its options are the settings, and its text is
     Drag the arm.
     :::
 
-Before the click the figure shows a still picture of the panel.  `make stills` takes one for each
+Before the click the figure shows a still picture of the panel.  `make_stills.py` takes one for each
 page and names it after the page.
 """
 

@@ -1,4 +1,4 @@
-"""Take a still picture of each live panel of the built book before any input: `make stills`.
+"""Take a still picture of each live panel of the built book before any input.
 
 Chromium loads the panel of a page and takes a screenshot.  The background of the arm becomes
 transparent, because pages may be light or dark.  The program writes book/static/stills/PAGE.webp,

@@ -211,7 +211,6 @@ def student_zip(course: Course, names: tuple[str, ...], to: Path | None, book: s
 @_of_assignment
 @click.argument("sources", nargs=-1, required=True, type=PATH, metavar="ZIP|DIR...")
 @click.option("--unverified", is_flag=True, help="Exchange: take what unknown users handed in.")
-@click.option("--named", metavar="PATTERN", help="Such as 'paths-{github}/*.ipynb'.")
 @click.option("--at", metavar="TIME", help="Time of the hand-ins, where the download has none.")
 @_course
 def collect(
@@ -219,34 +218,29 @@ def collect(
     assignment: str,
     sources: tuple[Path, ...],
     unverified: bool,
-    named: str | None,
     at: str | None,
 ) -> int:
     """Collect what students handed in, from any platform.
 
-    A source is a zip from Moodle or Canvas, or the inbound folder of nbgrader's exchange. Clones
-    of GitHub Classroom, and any other folder or zip of files, need --named, which says where in a
-    file's path a column of the roster is. Every notebook that was taken is kept, in attempts/. A
-    file that fits no one student of the roster is named and left, with exit code 1.
+    A source is a zip from Moodle or Canvas, or the inbound folder of nbgrader's exchange. Every
+    notebook that was taken is kept, in attempts/. A file that fits no one student of the roster is
+    named and left, with exit code 1. Put files from elsewhere into submitted/STUDENT/ASSIGNMENT/.
     """
     from .collect import collect
 
-    found = [x for source in sources for x in collect(course, assignment, source, named=named,
-             at=at, unverified=unverified)]  # fmt: skip
-    _tell(one for one in found if one.fine)
-    _tell((one for one in found if not one.fine), doubtful=True)
-    return int(any(not one.fine for one in found))
+    bad = False
+    for source in sources:
+        for one in collect(course, assignment, source, at=at, unverified=unverified):
+            _tell([one], doubtful=not one.fine)
+            bad |= not one.fine
+    return int(bad)
 
 
 @verb("01_paths --student ada")
 @_of_assignment
 @_students
 @click.option(
-    "--jobs",
-    type=click.IntRange(min=1),
-    metavar="N",
-    default=lambda: len(os.sched_getaffinity(0)),
-    help="Number of workers; one for each core by default.",
+    "--jobs", type=click.IntRange(1), metavar="N", help="Workers; one a core if not given."
 )
 @click.option("--again", is_flag=True, help="Also grade what is already graded.")
 @click.option("--diff", is_flag=True, help="Change no mark; list the marks that would change.")
@@ -264,7 +258,7 @@ def grade(
     course: Course,
     assignment: str,
     student: tuple[str, ...],
-    jobs: int,
+    jobs: int | None,
     again: bool,
     diff: bool,
     lower: bool,
@@ -284,18 +278,17 @@ def grade(
     from .roster import idle_extensions
     from .submission import misnamed, none_of, students
 
-    say = partial(print, file=sys.stderr, flush=True)
-    options = GradeOptions(
-        jobs=jobs, isolated=isolated, dask=dask, again=again, lower=lower, tell=say
-    )
+    jobs, say = jobs or len(os.sched_getaffinity(0)), partial(print, file=sys.stderr, flush=True)
+    options = GradeOptions(jobs, isolated, dask, again, lower, tell=say)
     with Failures() as failures:
         failures.add("ATTENTION", idle_extensions(course))  # an error in the rules stops here
         found = students(course, assignment)
         who = [*student] or found
         if not student:
             failures.add("not graded", misnamed(course, assignment))
-        if unknown := [x for x in who if x not in found] or [""] * (not who and not failures.code):
-            raise LabkitError(none_of(course, assignment, unknown[0]))
+        for name in who or [""] * (not failures.code):
+            if name not in found:
+                raise LabkitError(none_of(course, assignment, name))
         graded = grade_class(course, assignment, who, options, change=not diff)
         done = failures.sift(graded, "not graded")
         if diff:
@@ -407,13 +400,7 @@ def feedback(
 
 @verb("01_paths --to marks.csv")
 @click.argument("assignment", required=False)
-@click.option(
-    "--layout",
-    type=click.Choice(LAYOUTS),
-    default="questions",
-    help="moodle: for Moodle's gradebook; moodle-worksheet: for the assignment's page in Moodle; "
-    "gradescope: the zip with which Gradescope grades ASSIGNMENT itself.",
-)
+@click.option("--layout", type=click.Choice(LAYOUTS), default="questions", help="For whom.")
 @click.option("--column", metavar="NAME", help="canvas, moodle: its name there: 'Paths (4711)'.")
 @click.option("--absent-zero", is_flag=True, help="Write 0 where nothing was handed in.")
 @_to
@@ -429,7 +416,9 @@ def export(
     """Write marks.
 
     The marks are those of an assignment or, without ASSIGNMENT, of the term: every assignment that
-    was graded, and the total with the weights of course.toml.
+    was graded, and the total with the weights of course.toml. The layout moodle is for Moodle's
+    gradebook, moodle-worksheet for the assignment's page in Moodle; gradescope is the zip with
+    which Gradescope grades ASSIGNMENT itself.
     """
     from .export import LAYOUTS, as_csv, of_term, remarks, unmatched
     from .marks import marks_of

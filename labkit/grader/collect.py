@@ -1,9 +1,8 @@
 """Collect hand-ins from a platform's download into ``submitted/``, by one rule.
 
 Each file has an owner by what the platform itself says: Moodle a full name, Canvas its number of
-the user, nbgrader's exchange a login whose user owns the folder, other files the part of their path
-that the instructor names.  The owner is the one student of the roster with this value.  A file that
-fits none or several is listed and left where it is.
+the user, nbgrader's exchange a login whose user owns the folder.  The owner is the one student of
+the roster with this value.  A file that fits none or several is listed and left where it is.
 
 The newest file counts.  Every file that was collected is kept in ``attempts/STUDENT/ASSIGNMENT/``.
 
@@ -39,7 +38,7 @@ from ..errors import LabkitError
 from .clean import clean_line
 from .each import Failure, for_student
 from .files import write
-from .roster import COLUMNS, Roster, read_roster
+from .roster import Roster, read_roster
 from .rules import read_rules
 from .submission import NOTEBOOK, TIMESTAMP, check_size, digest, read_file, read_stamp, read_time
 
@@ -114,7 +113,6 @@ def collect(
     assignment: str,
     source: Path,
     *,
-    named: str | None = None,
     at: str | None = None,
     unverified: bool = False,
 ) -> Iterator[Taken]:
@@ -124,8 +122,6 @@ def collect(
         course: The course.
         assignment: The assignment.
         source: A zip from Moodle or Canvas, or the inbound folder of nbgrader's exchange.
-        named: The pattern of the paths of other files, such as ``paths-{github}/*.ipynb``; the
-            source is then a folder or a zip of such files.
         at: When the files were handed in, if the source does not say.
         unverified: Whether to collect from users of the exchange whom this machine does not know.
 
@@ -141,18 +137,11 @@ def collect(
         raise LabkitError(f"{at!r} is no time, or in the future; write 2026-11-02 23:59")
     if not roster.students:
         raise LabkitError("there is no list of students yet; first type: labkit roster LIST.csv")
-    if source.is_file():
-        files = [*in_zip(source, named)]
-    elif source.is_dir():  # a device or a pipe may never end
-        found = in_folder(source, named) if named else in_exchange(source, assignment, unverified)
-        files = [*found]
-    else:
+    if not (source.is_file() or source.is_dir()):  # a device or a pipe may never end
         raise LabkitError(f"{source} is neither a file nor a folder; give the download as it is")
-    if named:  # a clone or a folder of mails holds other assignments too
-        others = {f"{x}.ipynb" for x in course.names() if x != assignment}
-        files = [x for x in files if _REPEATED.sub(".ipynb", Path(x.label).name) not in others]
-    if not files:
-        raise LabkitError(f"nothing in {source} is for {assignment}; other files need --named")
+    read = in_zip(source) if source.is_file() else in_exchange(source, assignment, unverified)
+    if not (files := [*read]):
+        raise LabkitError(f"nothing in {source} was handed in for {assignment}")
     mine, left = _by_owner(course, assignment, roster, files)
     for student, theirs in sorted(mine.items()):
         kept = _keep(course, assignment, student, theirs, when)
@@ -285,32 +274,12 @@ def reading(entry: str) -> dict[str, Any]:
     return about | {"name": clean_line(match["file"])}
 
 
-def reader(pattern: str) -> Callable[[str], dict[str, Any]]:
-    """Reads the owner of a file from its path, by a pattern such as ``paths-{github}/*.ipynb``.
-
-    Raises:
-        LabkitError: The pattern does not name exactly one column.
-    """
-    before, column, *after = re.split(r"\{(\w+)\}", pattern) + [""]
-    if len(after) != 2 or column not in {*COLUMNS, "name"}:
-        raise LabkitError(f"{pattern!r} needs one column of the roster, such as {{login}}, once")
-    parts = [re.escape(x).replace(r"\*", "[^/]*") for x in (before, after[0])]
-    whole = re.compile("([^/]+?)".join(parts), re.IGNORECASE)
-
-    def read(path: str) -> dict[str, Any]:
-        match, name = whole.fullmatch(path), clean_line(Path(path).name)
-        return {"column": column, "value": clean_line(match[1], 200), "name": name} if match else {}
-
-    return read
-
-
-def in_zip(source: Path, named: str | None) -> Iterator[File]:
+def in_zip(source: Path) -> Iterator[File]:
     """The files of a zip, with the times at which the download shows them.
 
     Raises:
         LabkitError: It is damaged, or no zip.
     """
-    read = reader(named) if named else reading
     try:
         archive = zipfile.ZipFile(source, metadata_encoding="utf-8")
     except (zipfile.BadZipFile, ValueError, OSError) as error:
@@ -319,7 +288,7 @@ def in_zip(source: Path, named: str | None) -> Iterator[File]:
         name = entry.orig_filename
         if not entry.is_dir():
             refused = _refused(entry, name)
-            about = {"refused": refused} if refused else read(name)
+            about = {"refused": refused} if refused else reading(name)
             label, when = clean_line(name[-LONGEST:])[-120:], _when(entry, _written(source))
             yield File(label, when, partial(_read, archive, entry), **about)
 
@@ -348,20 +317,6 @@ def _read(archive: zipfile.ZipFile, entry: zipfile.ZipInfo) -> bytes:
         data = file.read(NOTEBOOK * 2**20 + 1)
     check_size(len(data), NOTEBOOK)
     return data
-
-
-def in_folder(folder: Path, named: str) -> Iterator[File]:
-    """The files in a folder and in those below it that fit a pattern, or are notebooks."""
-    read = reader(named)
-    for top, folders, names in os.walk(folder):
-        folders[:] = sorted(x for x in folders if not x.startswith("."))
-        for name in sorted(names):
-            path = Path(top, name)
-            label = str(path.relative_to(folder))
-            about = read(label)
-            if about or name.lower().endswith(".ipynb"):
-                bytes_of = partial(read_file, path)
-                yield File(clean_line(label)[-120:], _written(path), bytes_of, **about)
 
 
 def in_exchange(folder: Path, assignment: str, unverified: bool) -> Iterator[File]:

@@ -26,6 +26,7 @@ from ..course.source import parsed
 from ..course.verdict import Outcome
 from ..errors import LabkitError
 from . import evidence
+from .clean import few
 from .each import Failure
 from .feedback import error_over_time, measures, number_by_number
 from .files import write
@@ -42,7 +43,7 @@ from .sandbox.launch import Sandbox
 from .sandbox.limits import Limits, slowness
 from .sandbox.session import RemoteFunction, Session
 from .seeds import key_of, rank
-from .submission import Submission, did_you_mean, is_name
+from .submission import Submission, is_name
 
 ASKED = 3
 """The number of questions in one defence."""
@@ -153,11 +154,10 @@ def accepted(course: Course, student: str) -> Iterator[Accepted]:
 
 def known(course: Course, student: str) -> None:
     """Raise a LabkitError if nobody has this folder."""
-    people = [str(one) for one in read_roster(course).students]
     folders = [path.name for path in course.submitted.glob("*") if is_name(path.name)]
     if student not in folders and read_roster(course).get(student) is None:
-        near = did_you_mean(student, [*people, *folders])
-        raise LabkitError(f"there is no student {student!r}; give the name of a folder{near}")
+        says = f"there is no student {student!r}; give the name of a folder: {few(folders)}"
+        raise LabkitError(says)
 
 
 def _ask(

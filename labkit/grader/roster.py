@@ -37,7 +37,6 @@ HEADS = {
     "id_number": "id number, sis user id, student number, student id, matrikelnummer, id-nummer, "
     "numéro d’identification, número de id",
     "lms_user_id": "lms user id, canvas id",
-    "github": "github, github username",
     "team": "team",
     "email": "email, e-mail, email address, mail, e-mail-adresse, adresse de courriel, "
     "dirección de correo",
@@ -52,7 +51,7 @@ _STUDENT = re.compile("student|teilnehme|étudiant|estudiante", re.IGNORECASE)
 """What the role of a student says; who has another role is left out."""
 _NO_TEAM = {"no groups", "keine gruppen"}
 """What Moodle writes for a student who is in no group."""
-KEYS = ("login", "email", "lms_user_id", "id_number", "github")
+KEYS = ("login", "email", "lms_user_id", "id_number")
 """What identifies a student."""
 
 
@@ -68,7 +67,6 @@ class Student:
         lms_user_id: Canvas's number for the user.
         login: Login name.
         id_number: Student number at the university.
-        github: User name on GitHub.
         team: Name of the team; the students of a team share an arm.
     """
 
@@ -79,7 +77,6 @@ class Student:
     lms_user_id: str = ""
     login: str = ""
     id_number: str = ""
-    github: str = ""
     team: str = ""
 
     @property

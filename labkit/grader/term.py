@@ -1,4 +1,4 @@
-"""A term: its secret, the record of what was released, its archive, what is deleted afterwards."""
+"""A term: its secret, its archive, and what is deleted of a student."""
 
 from __future__ import annotations
 
@@ -9,7 +9,6 @@ import shutil
 from collections.abc import Iterator, Sequence
 from datetime import UTC, datetime
 from pathlib import Path
-from typing import Any
 
 from ..course.authoring.layout import Course
 from ..course.own_arm import FILE as ARMS
@@ -46,10 +45,7 @@ _OF_THE_CLASS = (
 
 
 def new_term(course: Course, names: Sequence[str] = (), even_with_work: bool = False) -> list[str]:
-    """Begin a term: archive the last one, release with a new secret, keep a record.
-
-    The record has the secret of 128 random bits, the date, the archive of the last term, and each
-    bundle's hash, by which every result identifies its release.
+    """Begin a term: archive the last one, and release with a new secret of 128 random bits.
 
     Args:
         course: The course.
@@ -68,27 +64,13 @@ def new_term(course: Course, names: Sequence[str] = (), even_with_work: bool = F
     if (there := running(course)) and not even_with_work:
         raise LabkitError(f"the term under way has {there}; add --yes to archive all this")
     old = archive(course)
-    record: dict[str, Any] = {
-        "secret": secrets.token_hex(16),
-        "begun": datetime.now(UTC).date().isoformat(),
-        "bundles": {},
-        "archived": old.name if old else "",
-    }
-    _keep(course, record)  # first, so that a failed release is repeated with this secret
+    record = {"secret": secrets.token_hex(16), "begun": datetime.now(UTC).date().isoformat()}
+    write(course.term, json.dumps(record) + "\n")  # first: a failed release keeps this secret
     made = [release(course, name, seed_of(course)) for name in names or course.names()]
-    record["bundles"] = {
-        path.stem: json.loads(path.read_text(encoding="utf-8"))["hash"]
-        for path in sorted(course.bundle.glob("*.json"))
-    }
-    _keep(course, record)
     says = [f"archived: {old}"] if old else []
     says += [f"released: {one.name}, maximum {one.points:g}" for one in made]
     says += [f"{RULES} is as it was; change its dates"] * (course.root / RULES).exists()
     return [*says, f"the term's secret is in {_TERM}; keep a copy of course_private/"]
-
-
-def _keep(course: Course, record: dict[str, Any]) -> None:
-    write(course.term, json.dumps(record, indent=1) + "\n")
 
 
 def running(course: Course) -> str:

@@ -93,7 +93,7 @@ def test_every_command_of_the_instructors_guide_works(tmp_path):
     assert "Bob-Hope,Bob,Hope" in (course / "term.csv").read_text()
     assert "Ada,Lovelace,,,ada@uni.org," in (course / "marks.csv").read_text()
     assert (course / "report.md").read_text().strip()
-    assert "01_paths" in json.loads((course / "course_private/term.json").read_text())["bundles"]
+    assert (course / "build/course/bundle/01_paths.json").exists()
 
 
 def test_the_rules_that_the_guide_shows_can_be_followed(tmp_path):

@@ -14,8 +14,8 @@ from labkit.grader.roster import Roster, Student, save_roster
 
 MOODLE = "{}_{}_assignsubmission_file"
 CLASS = (
-    Student("ada", "Ada", "Lovelace", "ada@x.test", "42", "ada", "4711", "gh-ada"),
-    Student("eve", "Eve", "Mallory", "eve@x.test", "77", "eve", "4712", "gh-eve"),
+    Student("ada", "Ada", "Lovelace", "ada@x.test", "42", "ada", "4711"),
+    Student("eve", "Eve", "Mallory", "eve@x.test", "77", "eve", "4712"),
 )
 
 

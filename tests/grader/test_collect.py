@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import os
-import shutil
 import struct
 import tempfile
 from datetime import UTC, datetime
@@ -31,7 +29,6 @@ from labkit.__main__ import main
 from labkit.errors import LabkitError
 from labkit.grader.collect import SECRET, participants, reading
 from labkit.grader.roster import FILE, Roster, Student, save_roster
-from labkit.grader.submission import read_file
 
 NOBODY = 64990
 """A user number that this machine does not know."""
@@ -149,22 +146,6 @@ def test_a_file_that_could_be_anothers_is_left(bare, tmp_path, name):
     take(bare, zipped(tmp_path / "1.zip", [("lovelaceada_42_900_x.ipynb", "ada's")]))
     _, left = take(bare, zipped(tmp_path / "2.zip", [(name, "another's")], (2030, 1, 1, 0, 0, 0)))
     assert left and counting(bare) == {"ada": "ada's"}
-
-
-@pytest.mark.parametrize("column", ["login", "email", "id_number", "github", "name", "id"])
-def test_files_from_anywhere_are_found_by_the_column_that_is_named(bare, tmp_path, column):
-    """In a folder or a zip; other assignments beside them are passed over."""
-    clones = tmp_path / "clones"
-    for one in CLASS:
-        place = clones / f"paths-{getattr(one, column)}"
-        place.mkdir(parents=True)
-        (place / f"{NAME.upper()}.IPYNB").write_text(one.id)
-        (place / "02_essays.ipynb").write_text("{}")
-    for source in (clones, shutil.make_archive(str(tmp_path / "z"), "zip", clones)):
-        _, left = take(bare, Path(source), named=f"paths-{{{column}}}/*.ipynb")
-        assert counting(bare) == {"ada": "ada", "eve": "eve"} and not left
-    with pytest.raises(LabkitError, match="needs one column"):
-        take(bare, clones, named="paths-{who}/*")
 
 
 # nbgrader's exchange
@@ -303,13 +284,3 @@ def test_a_folder_that_is_a_link_is_not_written_to(bare, tmp_path):
     source = from_moodle(tmp_path / "1.zip", [(ADA, "x.ipynb", "a"), (EVE, "x.ipynb", "e")])
     _, left = take(bare, source)
     assert left and not [*elsewhere.iterdir()] and "eve" in counting(bare)
-
-
-@pytest.mark.parametrize("kind", ["link", "pipe", "folder"])
-def test_a_file_is_read_without_following_or_waiting(tmp_path, kind):
-    """A link, a pipe or a folder is refused at once."""
-    path = tmp_path / "x.ipynb"
-    {"link": lambda: path.symlink_to("/etc/passwd"), "pipe": lambda: os.mkfifo(path),
-     "folder": path.mkdir}[kind]()  # fmt: skip
-    with pytest.raises(LabkitError):
-        read_file(path)

@@ -168,7 +168,7 @@ def test_only_one_student_is_meant(tmp_path):
     """By a column, or by the name, in any spelling; nobody by an empty cell or two of a name."""
     roster = Roster((Student("a", "Kim", "Lee", login="K1"), Student("b", "Lee", "Kim", "k@x")))
     assert roster.known_as("login", "k1").id == "a" and roster.known_as("email", "K@x").id == "b"
-    assert not roster.known_as("name", "Kim Lee") and not roster.known_as("github", "")
+    assert not roster.known_as("name", "Kim Lee") and not roster.known_as("id_number", "")
     path = tmp_path / "x.csv"
     path.write_text("Full name,Identifier,Email address\nAda Lovelace,Participant 4,a@x\n")
     ((line, one),), others = read_list(path)

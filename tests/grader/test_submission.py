@@ -11,7 +11,7 @@ from handmade import ROOT
 
 from labkit.course.authoring.layout import Course
 from labkit.errors import LabkitError
-from labkit.grader.submission import Submission, none_of, read_file
+from labkit.grader.submission import Submission, read_file
 
 NAME = "01_curves"
 
@@ -36,9 +36,9 @@ def put_there(kind, path):
 @pytest.mark.parametrize(
     "kind", ["folder", "fifo", "dangling link", "link", "socket", "unreadable"]
 )
-def test_what_is_not_a_plain_file_is_refused_in_a_sentence(kind, course, monkeypatch):
+def test_what_is_not_a_plain_file_is_refused_in_a_sentence(kind, tmp_path, monkeypatch):
     """Whatever is called like the notebook, nothing but a plain file is read, and it is said."""
-    submission = Submission.of(course, NAME, "eve")
+    submission = Submission.of(Course(tmp_path), NAME, "eve")
     submission.folder.mkdir(parents=True)
     put_there(kind, submission.folder / f"{NAME}.ipynb")
     if kind == "unreadable":  # to root, nothing is
@@ -48,23 +48,11 @@ def test_what_is_not_a_plain_file_is_refused_in_a_sentence(kind, course, monkeyp
 
         monkeypatch.setattr(os, "open", refuse)
     data, _, why = submission.read()
-    assert not data
-    assert "is not a file" in why or "is a link or cannot be opened" in why
+    assert not data and f"{NAME}.ipynb" in why
 
 
-def test_a_device_is_not_opened():
+def test_a_device_is_not_opened(monkeypatch):
     """Opening a device may do something, so that it is looked at first."""
-    with pytest.raises(LabkitError, match="zero is not a file"):
+    monkeypatch.setattr(os, "open", lambda *args: pytest.fail("opened"))
+    with pytest.raises(LabkitError):
         read_file(Path("/dev/zero"), 1)
-
-
-def test_who_handed_in_nothing_is_answered_with_near_names(tmp_path):
-    """Or with the command that collects, where nobody did."""
-    course = Course(tmp_path)
-    assert "type: labkit collect 01_curves" in none_of(course, "01_curves", "ada")
-    for student in ("Ada-Lovelace", "Bob-Hope"):
-        (course.submitted / student / "01_curves").mkdir(parents=True)
-    said = "no submission of {!r} for 01_curves; {}"
-    near = (("ada", "did you mean Ada-Lovelace?"), ("bobhope", "did you mean Bob-Hope?"))
-    for name, end in (*near, ("zz", "there are Ada-Lovelace, Bob-Hope")):
-        assert none_of(course, "01_curves", name) == said.format(name, end)
