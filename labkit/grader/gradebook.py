@@ -16,6 +16,7 @@ import warnings
 from collections.abc import Iterable, Iterator, Mapping, Set
 from contextlib import contextmanager, suppress
 from datetime import datetime
+from itertools import groupby
 from pathlib import Path
 from typing import Any
 
@@ -270,7 +271,8 @@ def automatic_scores(notebook: Any, result: Result) -> dict[str, float | None]:
         if nbgrader_info(cell).get("task"):
             found[name] = 0.0 if result.rejected else None
         elif by_hand(cell):
-            found[name] = determine_grade(cell)[0] if words_of(cell.source) else 0.0
+            written = len(cell.source) > 5000 or words_of(cell.source)
+            found[name] = determine_grade(cell)[0] if written else 0.0
         elif nbgrader_info(cell).get("grade"):
             found[name] = earned.get(question_of(name), 0.0)
     return found
@@ -360,7 +362,8 @@ def with_verdicts(notebook: Notebook, result: Result) -> Notebook:
 
 def as_typed(source: str, language: str = "markdown") -> str:
     """What a student typed as a block of text, in which no page finds markup to obey."""
-    fence = "`" * (max(map(len, re.findall("`+", source)), default=0) + 3)
+    runs = [len([*run]) for tick, run in groupby(source) if tick == "`"]
+    fence = "`" * (max(runs, default=0) + 3)
     return f"{fence}{language}\n{source}\n{fence}"
 
 
