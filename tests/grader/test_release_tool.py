@@ -16,9 +16,9 @@ from labkit.__main__ import main
 from labkit.course import read_question
 from labkit.course.authoring.layout import Course
 from labkit.course.authoring.problem import _none
-from labkit.course.authoring.refusals import refusals, stand_ins
+from labkit.course.authoring.refusals import refusals
 from labkit.course.authoring.release import inlined, solution_notebook
-from labkit.course.notebook import brief, source_notebook
+from labkit.course.notebook import source_notebook
 from labkit.errors import LabkitError
 from labkit.grader.release import FORBIDDEN, release
 
@@ -52,12 +52,6 @@ def test_each_question_gets_brief_stub_and_check():
         assert test.metadata["nbgrader"]["points"] == QUESTIONS[name].points
         assert test.metadata["nbgrader"]["locked"] and not stub.metadata["nbgrader"]["locked"]
         assert test.source.endswith(f'check("{name}", {name})')
-
-
-def test_the_brief_says_what_it_is_worth_and_what_is_withheld():
-    """Points and withheld names stand above each stub."""
-    words = brief(QUESTIONS["circle"])
-    assert "4 points" in words and "`lk.Circle`" in words
 
 
 def test_stand_ins_plots_and_set_up_are_folded():
@@ -154,26 +148,6 @@ def test_a_withheld_name_must_exist(tmp_path, monkeypatch):
     assert not course.build.exists()
 
 
-def test_a_students_environment_is_told_what_an_instructors_has(monkeypatch, capsys):
-    """Where a package of the instructor's is missing, the line that brings it is said."""
-
-    def missing(*args):
-        raise ModuleNotFoundError("No module named 'nbgrader'", name="nbgrader.apps")
-
-    monkeypatch.setattr("labkit.grader.release.release", missing)
-    assert main(["release", "00_warmup", "--course", str(REAL.root)]) == 2
-    said = "labkit release: nbgrader is missing; type: pip install 'labkit[grader]'\n"
-    assert capsys.readouterr().err == said
-
-
-def test_mistakes_of_the_caller_are_one_sentence(capsys):
-    """An unknown assignment, a folder without a course: exit code 2 and a way out."""
-    assert main(["release", "09_nothing", "--course", str(REAL.root)]) == 2
-    assert "'00_warmup'" in capsys.readouterr().err
-    assert main(["release", "--course", "/"]) == 2
-    assert "nbgrader_config.py" in capsys.readouterr().err
-
-
 def test_one_refusal_stops_no_other_release(monkeypatch, capsys):
     """The others are released, and the reason comes at the end, with the name."""
 
@@ -183,13 +157,10 @@ def test_one_refusal_stops_no_other_release(monkeypatch, capsys):
         return f"{name} is made"
 
     monkeypatch.setattr("labkit.grader.release.release", release)
-    words = ["00_warmup", "01_paths", "08_report", "--course", str(REAL.root)]
-    assert main(["release", *words]) == 1
+    assert main(["release", "00_warmup", "01_paths", "08_report", "--course", str(REAL.root)]) == 1
     said = capsys.readouterr()
-    assert said.out.startswith("00_warmup is made\n08_report is made\ntried: ")
+    assert said.out.startswith("00_warmup is made\n08_report is made\n")
     assert said.err == "01_paths is not released: the first cell says 24 points\n"
-    assert main(["release", "01_paths", *words[3:]]) == 1
-    assert capsys.readouterr().out == ""
 
 
 def test_the_public_file_is_small_and_valid():
@@ -221,16 +192,6 @@ def with_trials(name, change):
     return PROBLEMS | {name: replace(problem, trials=trials)}
 
 
-@pytest.mark.slow
-@pytest.mark.parametrize("name", REAL.names())
-def test_the_course_itself_is_refused_nothing(name):
-    """No question pays without work or takes one mistake for another, whatever its hidden cases."""
-    problems = {p.name: p for p in REAL.problems(name)}
-    questions = {key: p.question(41) for key, p in problems.items()}
-    source = source_notebook(REAL.notebook_source(name), questions, REAL.predictions(name))
-    assert refusals(source, problems, questions) == []
-
-
 def test_a_weighted_test_needs_a_hidden_case():
     """Without one the public file has its points, and who memorises it earns them."""
     bare, by_heart = refused(with_trials("circle", lambda k, t: replace(t, hidden=_none)))
@@ -250,12 +211,6 @@ def test_a_stand_in_pays_nothing(tmp_path):
     open_door = {"bang_bang": replace(PROBLEMS["bang_bang"], withheld=())}
     (sentence,) = refused(PROBLEMS | open_door, text)
     assert "bang_bang: the stand-in" in sentence and "earns 3 of 3 points" in sentence
-
-
-def test_a_stand_in_is_run_alone():
-    """Of the notebook only what the stand-in needs is run: no arm, no figure, no other check."""
-    (text,) = stand_ins(source()).values()
-    assert "def given_bang_bang" in text and "check(" not in text and "hand_in" not in text
 
 
 def test_known_mistakes_must_be_told_apart():
@@ -283,13 +238,6 @@ def test_a_known_mistake_must_give_an_answer():
     divides = replace(broken, function=lambda *args: np.full(3, np.nan))
     (sentence,) = refused(PROBLEMS | {problem.name: replace(problem, wrong=(divides,))})
     assert "its known mistake 'no turn' returns NaN on each public call" in sentence
-
-
-def test_a_solved_cell_brings_only_what_it_needs():
-    """A variable of the answer brings no function of its module that has the same name."""
-    (coriolis,) = (p for p in REAL.problems("02_model") if p.name == "coriolis")
-    text = inlined(coriolis)
-    assert "def coriolis" in text and "def mass_matrix" not in text
 
 
 def test_a_release_with_a_reason_against_it_writes_nothing(course, monkeypatch):
