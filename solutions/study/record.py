@@ -17,6 +17,7 @@ from typing import Any
 
 from labkit.course.authoring.layout import PUBLIC_SEED, Course
 from labkit.course.authoring.problem import Problem
+from labkit.course.calling import called
 from labkit.course.marking import mark
 from labkit.course.verdict import Verdict
 
@@ -53,7 +54,7 @@ def verdicts(course: Course, names: tuple[str, ...]) -> Verdicts:
         for problem in course.problems(name):
             question = problem.question(PUBLIC_SEED)
             for label, function in answers(problem):
-                found[f"{name}/{problem.name}/{label}"] = as_data(mark(question, function))
+                found[f"{name}/{problem.name}/{label}"] = as_data(mark(question, called(function)))
     return found
 
 

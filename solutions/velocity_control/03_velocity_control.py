@@ -1,61 +1,111 @@
 # %% [markdown]
 # # 03 · Velocity control
 #
-# The arm knows where it should be at every moment. Now it must get there, although it starts somewhere else,
-# answers late and measures with noise. The controllers of this notebook command the *speeds* of the joints,
-# and the motors keep these speeds. That is the easiest method to drive an arm, and it is good enough for
-# most tasks.
+# The arm knows where it should be. Now it must get there, although it starts somewhere else,
+# answers late and measures with noise. The controllers here command the *speeds* of the joints,
+# and the motors keep them: the easiest way to drive an arm.
 #
 # | | |
 # |---|---|
-# | **You need** | numpy; notebook 00 or its conventions: the error is target minus actual, the error of an orientation is a rotation, R_wd R_wtᵀ, and not a difference; twists are (v, w) |
-# | **Given** | the simulated arm, as the textbook has it (`lk.IDEAL`) and with friction, lag and noise like Baxter's (`lk.BAXTER`); trajectories; the model with its Jacobian |
-# | **You write** | two controllers, the rate at which an error decays, a damped inverse, joint motion that leaves the tip at rest; the lag of your own arm |
-# | **Time** | core about 3 hours, all about 4 hours; 26 points |
-#
-# Questions marked *core* are for everybody. Those marked *extension* take the rest of the time: they earn points
-# too, but no later question depends on them.
-#
-# Every cell runs from the start, solved or not. If your part is missing, a stand-in replaces it and says so.
-# After each stub a check tells you in words what it found. The functions, your predictions, the numbers to
-# find out and the text at the end are marked; play with everything else as you like.
-
-# %% setup=true
-import labkit as lk
-from labkit.course import check, predict, use
-
-lk.ready()
+# | **You need** | numpy; the error is target minus actual, that of an orientation is the turn R_wd R_wtᵀ; twists are (v, w) (notebook 00) |
+# | **Given** | the arm as the textbook has it (`lk.IDEAL`) and with friction, lag and noise (`lk.BAXTER`); trajectories; the Jacobian |
+# | **You write** | a mended controller and what was wrong with it, a decay rate, a damped inverse, a controller of the tip, the lag of an arm |
+# | **Time** | core 3.2 hours, 22 points; with the extension 26 points. Stop after 3 hours; what is left is read, not written. |
 
 # %% setup=true
 import matplotlib.pyplot as plt
 import numpy as np
 
+import labkit as lk
+from labkit.course import check, predict, use
+
+lk.ready()
+
 # %% [markdown]
-# ## Feed-forward and feedback
+# ## Find and mend
 #
-# A target that says how fast it moves makes half of the work easy: turn the joints at just that speed. This
-# is *feed-forward*. If the arm were perfect and its start exact, you would need nothing else. But no arm is
-# perfect, and feed-forward alone leaves every small error as it is. So add *feedback*, which pulls the arm
-# towards its target, in proportion to the error (P) and to the rate of the error (D). What are the
-# units of the two gains?
-#
-# Because feed-forward does so well on its own, it hides feedback that is broken, even one with the
-# wrong sign. So the check starts off the path, and with a target that stands still (Lynch and Park,
-# *Modern Robotics*, section 11.3).
+# *Feed-forward* turns the joints at the target's own speed; *feedback* adds a pull in proportion to the error (P) and to its
+# rate (D). The report prints two such laws. This is *our reading of the printed formulas*, in the
+# course's sign. **Some terms are right. Change what is wrong, nothing else.**
+
+# %%
+def equation_17(state, target, *, kp, kd):
+    """The report's joint velocity controller."""
+    a = state.dq
+    b = kp * (target.position - state.q)
+    c = kd * (target.velocity - state.dq)
+    return lk.JointVelocity(a + b + c)
+
+
+def equation_16(state, target, *, kp=4.0, k_turn=0.04):
+    """The report's workspace velocity controller, its speed mended."""
+    T_wt = model.pose(state.q)
+    move = kp * (target.pose[:3, 3] - T_wt[:3, 3])
+    turn = k_turn * roll_pitch_yaw_difference(target.pose[:3, :3], T_wt[:3, :3])
+    twist = target.twist + np.concatenate([move, turn])
+    return lk.JointVelocity(np.linalg.pinv(model.tip_jacobian(state.q)) @ twist)
+
+
+# %% [markdown]
+# Each drives the textbook's arm in three runs: **H**, a held target, with the arm started beside it (under 16 also tilted by 5°);
+# **P**, on the path from its start; **F**, a quick move, from beside.
+
+# %%
+ideal, baxter = lk.Arm("left", lk.IDEAL), lk.Arm("left", lk.BAXTER, seed=1)
+model, q0 = ideal.model, ideal.robot.ready
+T_wt = model.pose(q0)
+start, upright = T_wt[:3, 3], T_wt[:3, :3]
+
+
+def roll_pitch_yaw_difference(R_wd, R_wt):
+    """The difference of the angles, brought to half a turn."""
+    both = np.array([R_wd, R_wt])
+    tilt = np.hypot(both[:, 2, 1], both[:, 2, 2])
+    across = np.array([both[:, 2, 1], -both[:, 2, 0], both[:, 1, 0]])
+    angles = np.arctan2(across, np.array([both[:, 2, 2], tilt, both[:, 0, 0]]))
+    return (angles[:, 0] - angles[:, 1] + np.pi) % (2 * np.pi) - np.pi
+
+
+beside = 0.1 * np.array([1, -1, 1, 1, -1, 1, 1])
+way = lk.Line(q0, q0 + [0.6, 0.2, 0.0, -0.4, 0.3, 0.2, 0.4])
+reach = lk.Trajectory(way, lk.Quintic(2.0))
+shifted = lk.se3.pose(upright, start + [0.02, -0.01, 0.01])
+tilted = lk.se3.pose(upright @ lk.se3.rotation(np.radians([3.0, 4.0, 0.0])), shifted[:3, 3])
+circle = lk.Circle(start, start + [0.0, -0.12, 0.0])
+poses = lk.Trajectory(lk.PosePath(circle, upright), lk.Quintic(5.0))
+dash = lk.Trajectory(lk.PosePath(lk.Line(start, start + [0.1, -0.2, 0.1]), upright), lk.Quintic(0.8))
+figure, (above, below) = plt.subplots(2, 3, figsize=(9, 4), sharey="row", layout="constrained")
+says = []
+for panel, name, target, q in zip(
+    above, "HPF", (lk.Hold(q0, 3.0), reach, lk.Trajectory(way, lk.Quintic(0.7))), (q0 + 0.02, q0, q0 + beside)
+):
+    ideal.reset(q)
+    log = lk.run(ideal, target, lambda state, target: equation_17(state, target, kp=3.0, kd=0.0001))
+    largest = np.abs(lk.metrics.joint_error(log)).max(axis=1)
+    panel.plot(log.t, largest)
+    panel.set_title(f"17, run {name}")
+    says.append(f"17 {name}: {largest[0]:.3f} rad at first, {largest.max():.3f} rad at most")
+for panel, name, target, T in zip(below, "HPF", (lk.Hold(T_wt, 3.0), poses, dash), (tilted, T_wt, shifted)):
+    ideal.reset(model.inverse_kinematics(T, q0))
+    log = lk.run(ideal, target, equation_16)
+    error = lk.metrics.tip_error(log)
+    off = 1e3 * np.linalg.norm(error[:, :3], axis=1)
+    turned = np.degrees(np.linalg.norm(error[:, 3:], axis=1))
+    panel.plot(log.t, off, label="position [mm]")
+    panel.plot(log.t, turned, "--", label="tilt [degrees]")
+    panel.set(title=f"16, run {name}", xlabel="time [s]")
+    says.append(f"16 {name}: {off[-1]:.1f} mm and {turned[-1]:.1f} degrees at the end")
+above[0].set_ylabel("largest error [rad]")
+below[0].legend(frameon=False)
+lk.plotting.show("The report's two laws in three runs. " + "; ".join(says) + ".")
+
+# %% [markdown]
+# A run that looks good proves little. Copy equation 17 into the stub and mend it. (The check starts beside a
+# resting target, because feed-forward hides even feedback of the wrong sign.)
 
 # %% question="joint_velocity_pd"
 def joint_velocity_pd(state, target, *, kp, kd):
-    """Joint speeds that follow a joint trajectory.
-
-    Args:
-        state: An lk.State: angles q in [rad] and speeds dq in [rad/s], shape (7,) each.
-        target: An lk.Sample of joint angles: position, velocity, acceleration, shape (7,) each.
-        kp: Gain on the error of the angles, a number or shape (7,), in [1/s].
-        kd: Gain on the error of the speeds, a number or shape (7,), without unit.
-
-    Returns:
-        An lk.JointVelocity of shape (7,), in [rad/s].
-    """
+    """An lk.JointVelocity; kp [1/s] and kd [1] are numbers or (7,)."""
     ### BEGIN SOLUTION
     from solutions.velocity_control.answers import joint_velocity_pd as answer
 
@@ -63,10 +113,19 @@ def joint_velocity_pd(state, target, *, kp, kd):
     ### END SOLUTION
 
 
+# %% question="what_shows"
+def what_shows(run):
+    """Replace the question marks in this line and use it:"""
+    # return {"H": "?", "P": "?", "F": "a", "tilt": "?"}[run]
+    ### BEGIN SOLUTION
+    from solutions.velocity_control.answers import what_shows as answer
+
+    return answer(run)
+    ### END SOLUTION
+
+
 # %% [markdown]
-# Here is Baxter with your controller, started a tenth of a radian off. If yours is not ready, the arm runs on
-# feed-forward alone, so you see what it lacks. Turn the dials: when does the arm become restless? Does D
-# help? (When the notebook is graded nobody turns the dials, and they keep their starting values.)
+# Baxter with your controller, started a tenth of a radian off. When does the arm become restless? Does D help?
 
 # %%
 def feedforward(state, target, **gains):
@@ -77,11 +136,6 @@ def feedforward(state, target, **gains):
 my_joint_velocity_pd = use("joint_velocity_pd", joint_velocity_pd, feedforward)
 yours = my_joint_velocity_pd is joint_velocity_pd
 joint_law = "joint velocity PD" if yours else "feed-forward (a stand-in)"
-
-ideal, baxter = lk.Arm("left", lk.IDEAL), lk.Arm("left", lk.BAXTER, seed=1)
-model, q0 = ideal.model, ideal.robot.ready
-off_the_path = q0 + 0.1 * np.array([1, -1, 1, 1, -1, 1, 1])
-reach = lk.Trajectory(lk.Line(q0, q0 + [0.6, 0.2, 0.0, -0.4, 0.3, 0.2, 0.4]), lk.Quintic(2.0))
 
 
 def with_gains(kp, kd):
@@ -96,7 +150,7 @@ def with_gains(kp, kd):
 
 def try_gains(kp, kd):
     """One run of Baxter from off the path, as a figure and its caption."""
-    baxter.reset(off_the_path)
+    baxter.reset(q0 + beside)
     log = lk.run(baxter, reach, with_gains(kp, kd))
     error = lk.metrics.joint_error(log)
     figure, (above, below) = plt.subplots(
@@ -122,23 +176,17 @@ def try_gains(kp, kd):
 dials = lk.plotting.dials(try_gains, kp=(0.0, 40.0, 5.0, "1/s"), kd=(0.0, 3.0, 0.0))
 
 # %% [markdown]
+# A larger kp is quicker, until lag and the age of the state make the commands jump.
+#
 # ## What D does here
 #
-# In most textbooks D adds damping and so lets you raise P. These books think of a mass that a force pushes.
-# Here you command the speed itself. Suppose that a joint moves at exactly the commanded speed, and that its
-# target does not move. Write down the equation for the error, and see how quickly the error decays.
+# In most textbooks D adds damping and so lets you raise P: they push a mass with a force.
+# Here you command the speed itself. Suppose that a joint moves at exactly the commanded speed, and its
+# target rests. Write down the equation of the error.
 
 # %% question="decay_rate"
 def decay_rate(kp, kd):
-    """The rate at which the error of a joint decays that moves at exactly the commanded speed.
-
-    Args:
-        kp: Gain on the error of the angle, in [1/s].
-        kd: Gain on the error of the speed, without unit.
-
-    Returns:
-        The rate r of exp(-r t), in [1/s].
-    """
+    """The r of exp(-r t), in [1/s], for kp in [1/s] and kd without unit."""
     ### BEGIN SOLUTION
     from solutions.velocity_control.answers import decay_rate as answer
 
@@ -147,13 +195,6 @@ def decay_rate(kp, kd):
 
 
 # %% predict="with_more_d"
-
-# %% [markdown]
-# Compare with an arm whose motors take 50 ms to follow a command. (On paper the controller knows the speed of
-# the same instant. A computer knows it a tick late: with motors that obey at once it *is* the last command, so
-# with kd above 1 the commands would grow from tick to tick. The report's authors ended with a kd of 0.0001.) kd is useful with a moving target,
-# because it reduces the error that the motors' lag causes; here the target rests. The thick lines are
-# the arm, the thin dotted ones your rate.
 
 # %%
 def nobody_knows(kp, kd):
@@ -201,41 +242,27 @@ else:
 predict("with_more_d", truth=errors[3.0])
 
 # %% [markdown]
-# Two things change with D. The thick line is nearer to its dotted one, because D makes the loop less sensitive
-# to the motors' lag. And the arm arrives later. The second effect matters more. So
-# from here on kd is 0, and you choose only kp.
-
-# %% [markdown]
+# <details><summary>After your prediction: what you see</summary>The motors of this arm take 50 ms. With D the thick line (the arm) is nearer to its
+# dotted one (your rate), because D makes the loop less sensitive to lag. And the arm arrives later, which matters more. So from here on kd
+# is 0. (A computer knows the speed a tick late: with motors that obey at once and kd above 1 the commands would grow from tick to tick.
+# The report's authors ended with 0.0001. With a moving target kd reduces what the lag costs.)</details>
+#
 # ## From the tip to the joints
 #
-# Often it is the tip that matters, and the target is a pose. The Jacobian says how the tip moves when the
-# joints do, $V = J\,\dot q$: six numbers (velocity of the tip, then angular velocity, in world axes) from
-# seven. `model.tip_jacobian(q)` gives it. To command a motion of the tip you need the inverse: joint speeds
-# from a motion of the tip.
-#
-# Seven unknowns for six equations: there are many answers, and the *pseudo-inverse* finds the one with
-# the smallest joint speeds. But some poses have a direction in which the tip cannot go, whatever the
-# joints do: with the elbow straight, towards or away from the shoulder. Near such a *singularity* the
-# exact answer is absurd. It pays to be a little wrong instead: minimise
+# The Jacobian says how the tip moves, $V = J\,\dot q$: six numbers from
+# seven. To command a motion of the tip you need an inverse; the *pseudo-inverse* finds
+# the smallest joint speeds. The trap: with the elbow straight the tip cannot go towards the shoulder, whatever the
+# joints do. Near such a *singularity* the
+# exact answer is absurd. It pays to be a little wrong: minimise
 #
 # $$ |V - J\,\dot q|^2 + \lambda^2\,|\dot q|^2 $$
 #
-# over $\dot q$. Set the gradient to zero; the matrix that multiplies $V$ is the one that you need (Nakamura
-# and Hanafusa 1986; Siciliano, *Robotics: Modelling, Planning and Control*, section 3.5.2). In the stub,
-# `damping` is the whole factor $\lambda^2$. Note that $|V - J\,\dot q|^2$ adds squares of m/s and of rad/s, so
-# that one metre counts as much as one radian: a choice, which another unit of length would change.
+# over $\dot q$. Set the gradient to zero; you need the matrix that multiplies $V$ (Siciliano,
+# *Robotics*, section 3.5.2). `damping` is the whole factor $\lambda^2$.
 
 # %% question="damped_inverse"
 def damped_inverse(J, damping):
-    """The damped pseudo-inverse of a Jacobian.
-
-    Args:
-        J: Jacobian, rows (v, w), shape (6, 7).
-        damping: The factor of |dq|^2, at least 0; 0 is the pseudo-inverse.
-
-    Returns:
-        The matrix that turns a twist (v, w) into joint speeds, shape (7, 6).
-    """
+    """Of shape (7, 6), for J (6, 7) and damping >= 0."""
     ### BEGIN SOLUTION
     from solutions.velocity_control.answers import damped_inverse as answer
 
@@ -244,8 +271,7 @@ def damped_inverse(J, damping):
 
 
 # %% [markdown]
-# How fast would the joints have to turn to move the tip at 10 cm/s in the direction that is hardest, while
-# the elbow stretches? The grey line is the limit of the larger joints, 1.5 rad/s.
+# How fast must the joints turn to move the tip at 10 cm/s in the hardest direction? Grey is the limit.
 
 # %%
 def truncated_inverse(J, damping):
@@ -299,25 +325,17 @@ lk.plotting.show(
 # %% [markdown]
 # ## A controller for the tip
 #
-# Now put it together: how the tip should move, and the joint speeds that do it. The tip should move as its
-# target does and, in addition, towards the target, in position and in orientation. The orientation error is
-# that of notebook 00, a turn in world axes; `lk.se3.orientation_error(R_wd, R_wt)` gives it. Most wrong
-# versions of this controller draw a fine circle as long as the hand starts upright, so the check tilts it.
+# Now mend equation 16; `lk.se3.orientation_error(R_wd, R_wt)` is the turn of notebook 00. The trap: most wrong
+# versions draw a fine circle as long as the hand starts upright, so the check tilts it.
 
 # %% question="workspace_velocity_pd"
 def workspace_velocity_pd(state, target, model, *, kp, damping):
-    """Joint speeds that make the tip follow a target of poses.
+    """An lk.JointVelocity; all in world axes.
 
     Args:
-        state: An lk.State: angles q in [rad], shape (7,).
-        target: An lk.PoseSample: pose T_wd (4, 4), twist (v, w) and its rate dtwist, (6,) each,
-            in world axes, [m/s] and [rad/s].
-        model: The lk.Model: pose(q) is T_wt, (4, 4), and tip_jacobian(q) is (6, 7), world axes.
-        kp: Gain on the error of position and orientation, a number or shape (6,), in [1/s].
-        damping: Of the inverse, as in damped_inverse.
-
-    Returns:
-        An lk.JointVelocity of shape (7,), in [rad/s].
+        target: lk.PoseSample: pose T_wd (4, 4), twist (v, w) and dtwist, (6,) each.
+        model: lk.Model: pose(q) is T_wt, tip_jacobian(q) is (6, 7).
+        kp: Gain, a number or (6,), in [1/s].
     """
     ### BEGIN SOLUTION
     from solutions.velocity_control.answers import workspace_velocity_pd as answer
@@ -341,20 +359,11 @@ def in_the_workspace(state, target):
     return my_workspace_velocity_pd(state, target, model, kp=4.0, damping=1e-5)
 
 
-T_wt = model.pose(q0)
-start, upright = T_wt[:3, 3], T_wt[:3, :3]
-circle = lk.Circle(start, start + [0.0, -0.12, 0.0])
-poses = lk.Trajectory(lk.PosePath(circle, upright), lk.Quintic(5.0))
-
 tilted = lk.se3.pose(upright @ lk.se3.rotation([0.15, 0.1, -0.1]), start + [0.03, -0.02, 0.02])
 ideal.reset(model.inverse_kinematics(tilted, q0))
 log = lk.run(ideal, poses, in_the_workspace)
 lk.plotting.tracking(log)
 lk.plotting.show(lk.plotting.describe(log))
-
-# %% [markdown]
-# Here is the run in three dimensions, beside an arm that starts where it should. If your controller is not
-# ready, the arm has feed-forward only, and keeps the error of its start all round the circle.
 
 # %%
 ideal.reset(q0)
@@ -366,71 +375,41 @@ lk.replay.show(
 )
 
 # %% [markdown]
-# ## What the tip does not feel
+# Both errors are gone within two seconds; feed-forward alone keeps the error of its start all round.
 #
-# Six numbers for the tip, seven joints: one freedom is left. You can see this freedom on yourself: keep your
-# hand on the table and swing your elbow. An arm can use it to stay clear of things or of its joints' limits,
-# if you can move the elbow *without* moving the tip. Suppose the joints would like to turn at some speeds
-# $\dot q_w$. Which part of that wish does the tip not feel?
+# ## Measure an arm
 #
-# The joint speeds with $J\,\dot q = 0$ are called the *null space* of $J$ (Siciliano, section 3.5.1).
-
-# %% question="posture_velocity"
-def posture_velocity(J, dq_wish):
-    """The part of a wish that does not move the tip.
-
-    Args:
-        J: Jacobian, shape (6, 7), of full rank.
-        dq_wish: Joint speeds one would like, shape (7,), in [rad/s].
-
-    Returns:
-        Joint speeds with J @ dq = 0, as near to the wish as can be, shape (7,).
-    """
-    ### BEGIN SOLUTION
-    from solutions.velocity_control.answers import posture_velocity as answer
-
-    return answer(J, dq_wish)
-    ### END SOLUTION
-
-
-# %% [markdown]
-# With your part the tip holds its place while the elbow swings from side to side.
-
-# %%
-def stays(J, dq_wish):
-    """The stand-in: no motion, so the tip feels none."""
-    return np.zeros(7)
-
-
-my_posture_velocity = use("posture_velocity", posture_velocity, stays)
-
-
-def swings_the_elbow(state, target):
-    J = model.tip_jacobian(state.q)
-    hold = in_the_workspace(state, target).value
-    wish = np.zeros(7)
-    wish[2] = 0.6 * np.cos(2.0 * np.pi * state.t / 4.0)
-    return lk.JointVelocity(hold + my_posture_velocity(J, wish))
-
-
-swinger = lk.Arm("left", lk.IDEAL, q0=q0)
-log = lk.run(swinger, lk.Hold(T_wt, 4.0), swings_the_elbow)
-tip = 1e3 * np.linalg.norm(lk.metrics.tip_error(log)[:, :3], axis=1)
-print(f"The upper arm turned by {np.ptp(log.q[:, 2]):.2f} rad, the tip moved by {tip.max():.2f} mm.")
-lk.replay.show(lk.replay.motion_of(log, "Only the elbow should move", reference=False))
-
-# %% [markdown]
-# ## An arm of your own
-#
-# From here on you have your own arm. It is a Baxter, but its motors, the friction of its joints, its payload
-# and the wall in front of it are particular to this arm. Each team has an arm that nobody else has, and so has each
-# student without a team. Open it with the name that your instructor gave you: put the name in place of `"demo"`,
-# which is a public arm to practise on. When it is marked, the numbers
-# that you find are compared with the true numbers of your arm, and the report of notebook 08 is about this arm.
+# A real arm has numbers that nobody tells you. Yours is a Baxter with motors, friction, a payload
+# and a wall of its own; the report of notebook 08 is about it. Put the name that your instructor gave you in place of
+# `"demo"`, a public arm.
 
 # %%
 HANDLE = "demo"  # in a course: the name that your instructor gave you
 mine = lk.my_arm(HANDLE)
+
+# %% [markdown]
+# Its motors follow a commanded speed with a lag. Write the experiment as a function: a step of the speed of one joint. The
+# trap: `log.q` and `log.dq` are true, `log.measured` is what the controller saw, noisy and late. The grader tries two arms that you
+# have not seen.
+
+# %% question="find_lag"
+def find_lag(arm):
+    """In [s], of an lk.Arm at rest in its ready pose."""
+    ### BEGIN SOLUTION
+    from solutions.velocity_control.answers import find_lag as answer
+
+    return answer(arm)
+    ### END SOLUTION
+
+
+# %%
+def not_measured(arm):
+    """The stand-in: not a number."""
+    return np.nan
+
+
+my_find_lag = use("find_lag", find_lag, not_measured)
+found = my_find_lag(lk.my_arm(HANDLE))
 
 
 def steps(state, target, speed=0.4):
@@ -438,26 +417,23 @@ def steps(state, target, speed=0.4):
     return lk.JointVelocity(speed * np.eye(7)[0])
 
 
-mine.reset(mine.robot.ready)
 own_step = lk.run(mine, lk.Hold(mine.robot.ready, 1.2), steps)
 plt.figure(figsize=(8, 2.6), layout="constrained")
 plt.plot(own_step.t, own_step.dq[:, 0], label="s0 of your arm")
 plt.plot(own_step.t, own_step.command[:, 0], "--", label="commanded")
+plt.axvline(found, color="0.7", linestyle=":", label="your lag")
 plt.xlim(0.0, 0.4)
 plt.xlabel("time [s]")
 plt.ylabel("speed [rad/s]")
 plt.legend(frameon=False)
-lk.plotting.show(f"A step of the commanded speed, and how joint s0 of the arm {HANDLE} follows it.")
-
-# %% find_out="my_lag"
+lk.plotting.show(
+    f"A step of the commanded speed, and how joint s0 of the arm {HANDLE} follows it. find_lag gives {1e3 * found:.0f} ms."
+)
 
 # %% [markdown]
 # ## Baxter, at last
 #
-# Now the arm has friction, lag and noise like Baxter's. It publishes 100 states a second while you command 200
-# times; the speeds are noisy, the motors lag, and now and then a command is late. Some of its numbers are published and others assumed;
-# `labkit.plant.EVIDENCE` says which. Three controllers draw the same circle, from the same start a little off
-# the path.
+# Three controllers draw the same circle on Baxter, with friction, lag and noise, from a little off the path.
 
 # %%
 joints = model.joint_trajectory(poses, q0)
@@ -497,11 +473,9 @@ lk.replay.show(
 )
 
 # %% [markdown]
-# If your own controllers are in place, you see this: feed-forward draws a good circle, but in the wrong place.
-# Feedback removes the error of the start within a second, and with it nearly all of the error. What is left
-# is a few millimetres, largest where the tip is fastest: the motors lag, and the state is some milliseconds
-# old. And the two controllers? One has kp = 5, the other 4. Give both the same gain before you call one of
-# them better.
+# Feed-forward draws a good circle in the wrong place. Feedback removes the error of the start; a few
+# millimetres are left where the tip is fastest: motors lag, and the state is
+# old. And the two controllers? Give both the same kp before you call one better.
 
 # %% [markdown] why="why_with_more_d"
 # What did you see happen to the error of a resting joint when D grew, and why? In your mechanics lecture a
@@ -515,12 +489,10 @@ lk.replay.show(
 # ### END SOLUTION
 
 # %% [markdown]
-# Now the same in real time, and you can push. Press *Start* and try to drag the arm off its circle. You hardly
-# can: velocity mode is stiff, and the motors give all they have to keep the speed. Only where a motor reaches its
-# torque limit does the arm give way: push at the tip with 60 N along +y. Now choose a kp of 30 and raise
-# *state_delay* until the arm begins to swing. Repeat this with half the kp: how much more delay can the arm bear?
-# (The line beside or below the picture begins with what moves the arm: your controller, or a stand-in. The
-# stand-in has no kp.)
+# Now in real time. Press *Start* and drag the arm off its circle. You hardly
+# can: velocity mode is stiff, until a motor reaches its
+# torque limit: push at the tip with 60 N along +y. Then raise kp to 30, and
+# *state_delay* until the arm swings. With half the kp, how much more delay can it bear?
 
 # %%
 def circling(state, target, kp):
@@ -534,12 +506,56 @@ view = lk.live(
 view
 
 # %% [markdown]
+# ## Appendix: an extension
+#
+# No later question depends on it.
+#
+# ### What the tip does not feel
+#
+# Six numbers for the tip, seven joints: one freedom is left. Keep your
+# hand on the table and swing your elbow. Suppose the joints would like to turn at some speeds
+# $\dot q_w$. Which part of that wish does the tip not feel? (The joint speeds with $J\,\dot q = 0$ are the *null space* of $J$; Siciliano, section 3.5.1.)
+
+# %% question="posture_velocity"
+def posture_velocity(J, dq_wish):
+    """Joint speeds (7,) with J @ dq = 0, nearest to dq_wish (7,) [rad/s]; J (6, 7) has full rank."""
+    ### BEGIN SOLUTION
+    from solutions.velocity_control.answers import posture_velocity as answer
+
+    return answer(J, dq_wish)
+    ### END SOLUTION
+
+
+# %% [markdown]
+# With your part the tip holds its place while the elbow swings.
+
+# %%
+def stays(J, dq_wish):
+    """The stand-in: no motion, so the tip feels none."""
+    return np.zeros(7)
+
+
+my_posture_velocity = use("posture_velocity", posture_velocity, stays)
+
+# %%
+def swings_the_elbow(state, target):
+    J = model.tip_jacobian(state.q)
+    hold = in_the_workspace(state, target).value
+    wish = np.zeros(7)
+    wish[2] = 0.6 * np.cos(2.0 * np.pi * state.t / 4.0)
+    return lk.JointVelocity(hold + my_posture_velocity(J, wish))
+
+
+swinger = lk.Arm("left", lk.IDEAL, q0=q0)
+log = lk.run(swinger, lk.Hold(T_wt, 4.0), swings_the_elbow)
+tip = 1e3 * np.linalg.norm(lk.metrics.tip_error(log)[:, :3], axis=1)
+print(f"The upper arm turned by {np.ptp(log.q[:, 2]):.2f} rad, the tip moved by {tip.max():.2f} mm.")
+lk.replay.show(lk.replay.motion_of(log, "Only the elbow should move", reference=False))
+
+# %% [markdown]
 # ## Hand in
 #
-# Run everything once more from the top (*Kernel, Restart Kernel and Run All Cells*) and save the file. Then
-# run only the last cell once more: it prints a receipt for the saved file; keep it. `!labkit submit-check 03_velocity_control.ipynb`
-# in a new cell runs a copy of that file and says what is missing. Hand in the file without renaming it, in the way your course asks. The grader runs your
-# functions on further cases; the text above each stub says what kind of cases.
+# Run all cells, save, and run the last one once more: it prints a receipt.
 
 # %% setup=true
 lk.hand_in("03_velocity_control")

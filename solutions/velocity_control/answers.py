@@ -20,6 +20,11 @@ def joint_velocity_pd(state: lk.State, target: lk.Sample, *, kp: Any, kd: Any) -
     return lk.JointVelocity(target.velocity + kp * e + kd * de)
 
 
+def what_shows(run: str) -> str:
+    """The term that spoils a run of equation 17, and the run of 16 in which the tilt stays."""
+    return {"H": "a", "P": "-", "F": "a", "tilt": "H"}[run]
+
+
 def decay_rate(kp: float, kd: float) -> float:
     """Of de/dt = -(kp e + kd de/dt): the speed that is commanded is the speed that is damped."""
     return kp / (1.0 + kd)
@@ -39,6 +44,17 @@ def workspace_velocity_pd(
     e = np.concatenate([target.pose[:3, 3] - T_wt[:3, 3], turn])
     J = model.tip_jacobian(state.q)
     return lk.JointVelocity(damped_inverse(J, damping) @ (target.twist + kp * e))
+
+
+def find_lag(arm: lk.Arm) -> float:
+    """How far the angle of a joint stays behind, in steady motion, over its speed."""
+
+    def steps(state: lk.State, target: lk.Sample) -> lk.JointVelocity:
+        return lk.JointVelocity(0.4 * np.eye(7)[0])
+
+    log = lk.run(arm, lk.Hold(arm.robot.ready, 1.0), steps)
+    behind = log.t - (log.q - log.q[0])[:, 0] / 0.4
+    return float(np.mean(behind[log.t > 0.5]))
 
 
 def posture_velocity(J: Any, dq_wish: Any) -> Array:

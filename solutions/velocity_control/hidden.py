@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 import labkit as lk
-from labkit.course import Call, Loop
+from labkit.course import Call, Loop, OwnArm
 from labkit.course.authoring.problem import call
 
 Random = np.random.Generator
@@ -85,6 +85,18 @@ def joint_runs(random: Random) -> Iterator[Loop]:
     yield joint_run(random.uniform(-0.1, 0.1, 7), 0.5 * np.array([1, -0.6, 0.3, 1, 0.4, -0.5, 0.8]))
 
 
+def runs_of_the_figure(random: Random) -> Iterator[Call]:
+    """The runs whose letters are not told."""
+    for run in ("H", "P", "tilt"):
+        yield call(run)
+
+
+def other_arms(random: Random) -> Iterator[Call]:
+    """Two arms that nobody has seen."""
+    for _ in range(2):
+        yield call(OwnArm.drawn(random))
+
+
 def rates(random: Random) -> Iterator[Call]:
     """Other gains."""
     for _ in range(3):
@@ -148,12 +160,13 @@ def pose_stretched(random: Random) -> Iterator[Call]:
 
 
 def pose_run(shift: Any, turn: Any) -> Loop:
-    """A run along a circle from a shifted and tilted start, with time to recover."""
+    """A run along a circle, turning, from a shifted and tilted start, with time to recover."""
     T = MODEL.pose(READY)
     circle = lk.Circle(T[:3, 3], T[:3, 3] + [0.0, -0.1, 0.0])
+    goal = T[:3, :3] @ lk.se3.rotation([0.4, -0.3, 0.5])
     tilted = lk.se3.pose(T[:3, :3] @ lk.se3.rotation(turn), T[:3, 3] + shift)
     return Loop(
-        lk.Trajectory(lk.PosePath(circle, T[:3, :3]), lk.Quintic(4.0)),
+        lk.Trajectory(lk.PosePath(circle, T[:3, :3], goal), lk.Quintic(4.0)),
         {"model": MODEL, "kp": 4.0, "damping": 1e-5},
         q0=MODEL.inverse_kinematics(tilted, READY),
         settle=1.5,

@@ -27,37 +27,16 @@ def no_feedforward(state: lk.State, target: lk.Sample, *, kp: Any, kd: Any) -> l
     return lk.JointVelocity(kp * e + kd * de)
 
 
-def damps_the_motion(state: lk.State, target: lk.Sample, *, kp: Any, kd: Any) -> lk.JointVelocity:
-    """Damps the speed itself, not its error."""
-    e = target.position - state.q
-    return lk.JointVelocity(target.velocity + kp * e - kd * state.dq)
-
-
-def gains_swapped(state: lk.State, target: lk.Sample, *, kp: Any, kd: Any) -> lk.JointVelocity:
-    """Kp on the speeds, kd on the angles."""
+def pushes_away(state: lk.State, target: lk.Sample, *, kp: Any, kd: Any) -> lk.JointVelocity:
+    """The error of the angles with the other sign."""
     e, de = target.position - state.q, target.velocity - state.dq
-    return lk.JointVelocity(target.velocity + kd * e + kp * de)
+    return lk.JointVelocity(target.velocity - kp * e + kd * de)
 
 
-@dataclass(frozen=True)
-class JointLaw:
-    """The joint law with weighted terms; 1 is right, 0 omits a term, -1 reverses it.
-
-    Attributes:
-        e: Weight of the error of the angles.
-        de: Weight of the error of the speeds.
-        ddq: Weight of the target's acceleration, which does not belong there.
-    """
-
-    e: float = 1.0
-    de: float = 1.0
-    ddq: float = 0.0
-
-    def __call__(self, state: lk.State, target: lk.Sample, *, kp: Any, kd: Any) -> lk.JointVelocity:
-        """The command."""
-        e, de = target.position - state.q, target.velocity - state.dq
-        feed = target.velocity + self.ddq * target.acceleration
-        return lk.JointVelocity(feed + self.e * kp * e + self.de * kd * de)
+def kp_on_all(state: lk.State, target: lk.Sample, *, kp: Any, kd: Any) -> lk.JointVelocity:
+    """Multiplies the feed-forward by kp, too."""
+    e, de = target.position - state.q, target.velocity - state.dq
+    return lk.JointVelocity(kp * (target.velocity + e) + kd * de)
 
 
 def joint_terms(
@@ -213,6 +192,14 @@ def damping_ignored(
     return _law(state, target, J, _turn(state, target), kp, 0.0, 1.0)
 
 
+def transpose_for_inverse(
+    state: lk.State, target: lk.PoseSample, model: lk.Model, *, kp: Any, damping: float
+) -> lk.JointVelocity:
+    """The transpose of the Jacobian, as if it undid the Jacobian."""
+    T_wt, J = model.pose(state.q), model.tip_jacobian(state.q)
+    return lk.JointVelocity(J.T @ (target.twist + kp * lk.se3.pose_error(target.pose, T_wt)))
+
+
 def sine_of_the_turn(R_wd: Array, R_wt: Array) -> Array:
     """Half the sum of the axes' cross products: the sine of the angle, not the angle."""
     return np.asarray(0.5 * np.cross(R_wt.T, R_wd.T).sum(axis=0))
@@ -252,22 +239,6 @@ def damped_projector(J: Any, dq_wish: Any) -> Array:
 def the_rest(J: Any, dq_wish: Any) -> Array:
     """The other part, which moves the tip."""
     return np.asarray(np.linalg.pinv(J) @ (J @ dq_wish))
-
-
-@dataclass(frozen=True)
-class Fed:
-    """The joint law with other inputs.
-
-    Attributes:
-        law: The joint speeds, given feed-forward, e, de, kp, kd, state and target.
-    """
-
-    law: Callable[..., Any]
-
-    def __call__(self, state: lk.State, target: lk.Sample, *, kp: Any, kd: Any) -> lk.JointVelocity:
-        """The command."""
-        e, de = target.position - state.q, target.velocity - state.dq
-        return lk.JointVelocity(self.law(target.velocity, e, de, kp, kd, state, target))
 
 
 @dataclass(frozen=True)
@@ -332,3 +303,33 @@ def a_column_of_v(J: Any, dq_wish: Any) -> Array:
     """The last column of V^T where its last row belongs."""
     n = np.linalg.svd(np.asarray(J))[2][:, -1]
     return np.asarray(n * (n @ dq_wish))
+
+
+@dataclass(frozen=True)
+class Lag:
+    """A wrong reading of a step of the speed.
+
+    Attributes:
+        read: What is read from the log.
+    """
+
+    read: Callable[[lk.Log], Any]
+
+    def __call__(self, arm: lk.Arm) -> float:
+        """The lag."""
+        command = lk.JointVelocity(STEP * np.eye(7)[0])
+        return float(self.read(lk.run(arm, lk.Hold(arm.robot.ready, 1.0), lambda *_: command)))
+
+
+STEP = 0.4
+"""The speed of the step, in [rad/s]."""
+
+
+def behind(log: lk.Log, q: Any) -> Array:
+    """How far the first joint is behind in time, in [s], in the second half of a step."""
+    return np.asarray((log.t - (q - q[0])[:, 0] / STEP)[log.t > 0.5])
+
+
+def reaches(log: lk.Log, share: float) -> float:
+    """When the speed reaches a share of the step, in [s]."""
+    return float(log.t[np.argmax(log.dq[:, 0] >= share * STEP)])

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from labkit.course import Close
+from labkit.course import PUBLIC_ARMS, Close, OwnArm
 from labkit.course.authoring.problem import Problem, Trial, Wrong, call
 
 from . import answers, hidden, mistakes, variants
@@ -26,11 +26,9 @@ COMMAND = Close(rtol=1e-6, atol=1e-8)
 
 JOINT_VELOCITY_PD = Problem(
     name="joint_velocity_pd",
-    points=5,
+    points=3,
     outcomes=("control",),
-    asks="Return a command of joint speeds that follows a joint trajectory: the target's own "
-    "speed, plus `kp` times the error of the angles, plus `kd` times the error of the "
-    "speeds. Gains are numbers or arrays of shape (7,).",
+    asks="Mend equation 17.",
     answer=answers.joint_velocity_pd,
     judge=COMMAND,
     trials=(
@@ -59,7 +57,6 @@ JOINT_VELOCITY_PD = Problem(
             ),
             hidden.joint_targets,
             "any states, targets and gains",
-            weight=2.5,
         ),
         Trial(
             "closed loop: the arm starts with an error, reaches the path and stays on it",
@@ -71,84 +68,80 @@ JOINT_VELOCITY_PD = Problem(
             ),
             hidden.joint_runs,
             "other starts and paths",
-            weight=1.5,
         ),
     ),
     hints=(
-        "Suppose there is no error at all: what should the arm do then? And in which direction "
-        "should an error push the arm? (The error is always target minus actual.)",
-        "e = target.position - state.q and de = target.velocity - state.dq. The first term of "
-        "the command is the target's speed, not the measured one.",
-        "Add three terms of seven numbers each; one of them needs no gain. Return a command, not "
-        "an array.",
+        "Suppose there is no error at all, neither of the angles nor of the speeds: what should "
+        "the command be then?",
+        "Look at run H: the target rests and the arm is beside it. Which terms pull it back, and "
+        "which one adds what was commanded before?",
+        "Three terms are right in number, and two in content. One term should say how fast the "
+        "target moves, not how fast the arm does.",
     ),
     terms=mistakes.joint_terms,
     wrong=(
         Wrong(
-            "a correction of the measured speed",
-            "You add the corrections to the measured speed, so they accumulate two hundred times "
-            "a second: without kd nothing damps the arm, and it swings. Add them to the target's "
-            "speed. The report's equation 17 has this mistake.",
+            "equation 17 as it stands",
+            "Your corrections are added to the speed that the joint already has, so they "
+            "accumulate two hundred times a second: without kd nothing damps the arm, and it "
+            "swings.",
             mistakes.adds_to_the_measured,
             "Adding to the measured speed puts one more integrator in the loop.",
+            cure="Put the target's speed in place of `state.dq` in the first term.",
         ),
         Wrong(
-            "no feed-forward",
-            "The arm follows, but stays behind by the target's speed divided by kp. The target "
-            "includes its own speed: add this speed to the command.",
+            "feed-forward lost in mending",
+            "The arm follows, but stays behind by the target's speed divided by kp: nothing in "
+            "your command says how fast the target moves.",
             mistakes.no_feedforward,
             "Feedback waits for an error; feed-forward does not.",
-        ),
-        Wrong(
-            "damping of the motion, not of its error",
-            "Your kd brakes the arm even where the target moves at the same speed. Multiply kd "
-            "by the error of the speeds.",
-            mistakes.damps_the_motion,
-            "D acts on the derivative of the error.",
-        ),
-        Wrong(
-            "kp and kd swapped",
-            "Multiply the error of the angles by kp, and the error of the speeds by kd.",
-            mistakes.gains_swapped,
-            "The units show it: kp is in 1/s, kd has none.",
+            cure="Add the target's own speed.",
         ),
         Wrong(
             "the error of the angles reversed",
-            "Your error of the angles has the wrong sign, so kp pushes the arm away. Use target "
-            "minus actual.",
-            mistakes.JointLaw(e=-1.0),
+            "kp pushes the arm away from its target. The sign of this term was right.",
+            mistakes.pushes_away,
             "Every error has the same sign convention: target minus actual.",
-        ),
-        Wrong(
-            "the error of the speeds reversed",
-            "Your error of the speeds has the wrong sign, so kd accelerates what it should "
-            "brake. Use target minus actual.",
-            mistakes.JointLaw(de=-1.0),
-            "Every error has the same sign convention: target minus actual.",
-        ),
-        Wrong(
-            "kd left out",
-            "The error of the speeds is missing. Add kd times this error.",
-            mistakes.JointLaw(de=0.0),
-            "Test each gain by itself.",
+            cure="Use target minus actual.",
         ),
         Wrong(
             "kp on the feed-forward too",
-            "Multiply only the error by the gain. The target's speed is commanded as it is.",
-            mistakes.Fed(lambda ff, e, de, kp, kd, *_: kp * (ff + e) + kd * de),
+            "The target's speed is multiplied by kp, which gives it another unit.",
+            mistakes.kp_on_all,
             "A gain with a unit changes the unit of what it multiplies.",
+            cure="Multiply only the error by the gain.",
         ),
     ),
-    variants=(variants.joint_in_a_loop, variants.joint_with_matrices),
+    variants=(variants.joint_in_a_loop, variants.joint_with_matrices, variants.joint_mended),
+)
+
+WHAT_SHOWS = Problem(
+    name="what_shows",
+    points=2,
+    outcomes=("control", "experiment"),
+    asks='Return for "H", "P" and "F" of equation 17 the letter of the term that made the run go '
+    'wrong, or "-" if it shows nothing wrong; for "tilt" the run of equation 16 in which the '
+    "tilt does not die. F is done for you.",
+    answer=answers.what_shows,
+    trials=(
+        Trial("F, which is done for you", (call("F"),), weight=0.0),
+        Trial("H, P and the tilt", (), hidden.runs_of_the_figure),
+    ),
+    hints=(
+        "A run shows a mistake if its error grows, or does not die. Compare the scales.",
+        "In H the target rests. Which of the three terms should then vanish with the error, and "
+        "which one need not?",
+        "Two runs of 16 start upright. Of 17, one run's error stays a hundred times smaller than "
+        "the others': corrections that add up can follow a path, too.",
+    ),
 )
 
 DECAY_RATE = Problem(
     name="decay_rate",
     points=2,
     outcomes=("control",),
-    asks="A joint moves at exactly the commanded speed, and its target stands still. Return the "
-    "rate, in 1/s, at which the error decays under the gains `kp` and `kd`: the r in exp(-r "
-    "t).",
+    asks="Return the rate at which the error decays under the gains `kp` and `kd`: the r in "
+    "exp(-r t).",
     answer=answers.decay_rate,
     judge=Close(rtol=1e-6, atol=1e-9),
     trials=(
@@ -171,50 +164,54 @@ DECAY_RATE = Problem(
         Wrong(
             "kd making the decay faster",
             "kd does not make the decay faster: here it slows the decay. The speed is on both "
-            "sides: (1 + kd) de/dt = -kp e.",
+            "sides of the equation.",
             mistakes.faster_with_d,
             "In a velocity loop, D brakes the very speed that reduces the error.",
+            cure="(1 + kd) de/dt = -kp e.",
         ),
         Wrong(
             "kd left out",
             "kp alone is right only for kd = 0. The measured speed is the commanded one, so the "
-            "command depends on itself through kd: solve for the speed.",
+            "command depends on itself through kd.",
             mistakes.without_d,
             "Write down the whole loop.",
+            cure="Solve for the speed.",
         ),
         Wrong(
             "a rate with a minus",
-            "exp(-r t) already contains the minus, so the rate of an error that decays is "
-            "positive.",
+            "exp(-r t) already contains the minus, and yours is a second one.",
             mistakes.minus_the_rate,
             "A pole and a decay rate differ by their sign.",
+            cure="The rate of an error that decays is positive.",
         ),
         Wrong(
             "kd with the wrong sign",
-            "The target is at rest, so the error of the speeds is minus the joint's speed, and "
-            "kd brakes. At kd = 1 your rate divides by zero.",
+            "At kd = 1 your rate divides by zero. The target is at rest, so the error of the "
+            "speeds is minus the joint's speed.",
             mistakes.d_turned_round,
             "Write down de/dt before you collect its terms.",
+            cure="kd brakes: (1 + kd) de/dt = -kp e.",
         ),
         Wrong(
             "the gains added",
-            "kp is in 1/s and kd has no unit, so they cannot be added. Write down the equation of the "
-            "error.",
+            "kp is in 1/s and kd has no unit, so they cannot be added.",
             mistakes.gains_added,
             "Quantities of different units cannot be added.",
+            cure="Write down the equation of the error, and collect the terms with de/dt.",
         ),
         Wrong(
             "the fraction upside down",
-            "The rate grows with kp, so kp belongs in the numerator.",
+            "Your rate falls when kp grows.",
             mistakes.Rate(lambda kp, kd: (1.0 + kd) / kp),
             "Check the formula at kd = 0: the rate must be kp.",
+            cure="The rate grows with kp, so kp belongs in the numerator.",
         ),
         Wrong(
             "kd subtracted from kp",
-            "kd is not subtracted from kp; it belongs to the factor of de/dt: (1 + kd) de/dt = "
-            "-kp e.",
+            "kd is not subtracted from kp; it belongs to the factor of de/dt.",
             mistakes.Rate(lambda kp, kd: kp - kd),
             "Collect the terms of de/dt and of e.",
+            cure="(1 + kd) de/dt = -kp e.",
         ),
     ),
     variants=(variants.rate_from_the_root,),
@@ -227,9 +224,8 @@ DAMPED_INVERSE = Problem(
         "control",
         "model",
     ),
-    asks="Return the damped pseudo-inverse, of shape (7, 6), of a Jacobian of shape (6, 7). For "
-    "a twist V, this matrix finds the joint speeds with the least |V - J dq|² + `damping` "
-    "|dq|².",
+    asks="Return the matrix that finds, for a twist V, the joint speeds with the least |V - J "
+    "dq|² + `damping` |dq|².",
     answer=answers.damped_inverse,
     judge=COMMAND,
     trials=(
@@ -263,58 +259,64 @@ DAMPED_INVERSE = Problem(
     wrong=(
         Wrong(
             "no damping",
-            "This is the plain pseudo-inverse, np.linalg.pinv(J): when the elbow is nearly "
-            "straight, it commands speeds that no joint can reach. Add the damping times the "
-            "identity to J Jᵀ. As a cut-off for small singular values the damping changes "
-            "nothing here.",
+            "This is the plain pseudo-inverse: when the elbow is nearly straight, it commands "
+            "speeds that no joint can reach. (As a cut-off for small singular values the damping "
+            "changes nothing here.)",
             mistakes.undamped,
             "Where no exact inverse exists, a formula for it does not help.",
+            cure="Add the damping times the identity to J Jᵀ.",
         ),
         Wrong(
             "the damping squared",
-            "`damping` is already the factor of |dq|², which many books write as λ². Do not "
-            "square it.",
+            "`damping` is already the factor of |dq|², which many books write as λ².",
             mistakes.damping_squared,
             "Is it λ or λ²? Look at what is minimised.",
+            cure="Do not square it.",
         ),
         Wrong(
             "the damping added to every number",
-            "numpy adds a number to every entry of a matrix. The damping belongs only on the "
-            "diagonal: multiply it by an identity matrix.",
+            "numpy adds a number to every entry of a matrix, but the damping belongs only on the "
+            "diagonal.",
             mistakes.damping_everywhere,
             "λ is not λ I.",
+            cure="Multiply it by an identity matrix.",
         ),
         Wrong(
             "the damping subtracted",
-            "If you subtract the damping, J Jᵀ can become singular. Add it.",
+            "You subtract the damping, so J Jᵀ can become singular.",
             mistakes.damping_taken_off,
             "Damping pushes eigenvalues away from zero.",
+            cure="Add it.",
         ),
         Wrong(
             "the square root of the damping",
-            "`damping` is the factor of |dq|² itself. Do not take its root.",
+            "`damping` is the factor of |dq|² itself; you took its root.",
             mistakes.damping_rooted,
             "Is it λ or λ²? Look at what is minimised.",
+            cure="Use it as it is.",
         ),
         Wrong(
             "s where s² belongs",
-            "Each singular value s must become s/(s² + damping). Yours becomes 1/(s + damping), "
-            "which damps less where s is small.",
+            "Each singular value s becomes 1/(s + damping) in yours, which damps less where s is "
+            "small.",
             mistakes.BySingularValues(lambda s, d: 1.0 / (s + d)),
             "The damping has the unit of s².",
+            cure="It must become s/(s² + damping).",
         ),
         Wrong(
             "the pseudo-inverse made smaller",
-            "Damping should reduce only the directions that are nearly singular. Dividing "
-            "everything by 1 + damping makes all directions slower.",
+            "Damping should reduce only the directions that are nearly singular. Yours makes all "
+            "directions slower.",
             mistakes.BySingularValues(lambda s, d: 1.0 / (s * (1.0 + d))),
             "Damping acts where s is small.",
+            cure="Add the damping to J Jᵀ before you invert it.",
         ),
         Wrong(
             "twice the damping",
-            "Add the damping only once.",
+            "Your damping counts twice.",
             mistakes.BySingularValues(lambda s, d: s / (s**2 + 2.0 * d)),
             "In the gradient of a sum of squares, both factors 2 cancel.",
+            cure="In the gradient of a sum of squares both factors 2 cancel: add the damping once.",
         ),
     ),
     variants=(variants.inverse_the_other_way, variants.inverse_by_svd),
@@ -327,10 +329,8 @@ WORKSPACE_VELOCITY_PD = Problem(
     name="workspace_velocity_pd",
     points=6,
     outcomes=("control",),
-    asks="Return a command of joint speeds that makes the tip follow a target of poses. The tip "
-    "should move with the target's twist plus `kp` times the error of the tip's position "
-    "and orientation, both in world axes. `kp` is a number or an array of shape (6,). Use "
-    "the damped inverse of the tip Jacobian.",
+    asks="Return a command that makes the tip move with the target's twist plus `kp` times its "
+    "error of position and orientation, by the damped inverse.",
     answer=answers.workspace_velocity_pd,
     judge=COMMAND,
     trials=(
@@ -412,52 +412,66 @@ WORKSPACE_VELOCITY_PD = Problem(
             "roll, pitch and yaw subtracted",
             "With the gripper down and a yaw beyond 90 degrees, as in the ready pose, the "
             "difference of the angles drives roll and pitch in the wrong direction, and it jumps "
-            "at 180 degrees. Use the logarithm, as in notebook 00.",
+            "at 180 degrees. This is the mistake of equation 16.",
             mistakes.euler_error,
             "Orientations are compared by a product.",
+            cure="Use the logarithm, as in notebook 00.",
         ),
         Wrong(
             "the turn in the tool's axes",
             "The tip Jacobian is in world axes, but your error is in the tool's axes. With the "
-            "gripper down, two components then have the wrong sign. Use R_wd R_wtᵀ.",
+            "gripper down, two components then have the wrong sign.",
             mistakes.turn_in_tool_axes,
             "The error and the Jacobian must be in the same axes.",
+            cure="Use R_wd R_wtᵀ.",
         ),
         Wrong(
             "the body Jacobian with an error in world axes",
             "The body Jacobian gives the twist in the tool's axes, and with the gripper down the "
-            "tool's z axis points down. Use tip_jacobian, which is in world axes like the error.",
+            "tool's z axis points down. Your error is in world axes.",
             mistakes.body_jacobian,
             "There are three Jacobians; use the one that is in the axes of your error.",
+            cure="Use tip_jacobian.",
         ),
         Wrong(
             "the damping ignored",
             "This is the plain pseudo-inverse: when the elbow is straight, it commands speeds "
-            "that no joint can reach. Use the damped inverse.",
+            "that no joint can reach.",
             mistakes.damping_ignored,
             "Damping accepts a small error of the tip in exchange for speeds that the joints can "
             "reach.",
+            cure="Use the damped inverse.",
         ),
         Wrong(
             "the sine of the turn",
             "Half the cross products of the axes, or half of R - Rᵀ, is the axis times the sine "
-            "of the angle: nearly right for small turns, too weak at 90 degrees, zero at 180. "
-            "Take the logarithm, which gives the angle.",
+            "of the angle: nearly right for small turns, too weak at 90 degrees, zero at 180.",
             mistakes.WorkspaceLaw(turn=mistakes.sine_of_the_turn),
             "sin x is x only for small x.",
+            cure="Take the logarithm, which gives the angle.",
         ),
         Wrong(
             "the turn before the position",
-            "In this course a twist is (v, w), so the error of the position comes first, then "
-            "the turn. The error and the Jacobian must have the same order.",
+            "Your error has the turn first. In this course a twist is (v, w), and the error and "
+            "the Jacobian must have the same order.",
             mistakes.TwistLaw(turn_first=True),
             "The rows are (v, w), linear part first.",
+            cure="The error of the position comes first, then the turn.",
+        ),
+        Wrong(
+            "the transpose for the inverse",
+            "Jᵀ does not undo J: the tip moves by J Jᵀ times the twist that you wanted, in other "
+            "directions and at other speeds.",
+            mistakes.transpose_for_inverse,
+            "Jᵀ maps forces, J⁺ maps speeds.",
+            cure="Use the damped inverse.",
         ),
         Wrong(
             "kp on the feed-forward too",
-            "Multiply only the error by the gain. The target's twist is commanded as it is.",
+            "The target's twist is multiplied by kp, which gives it another unit.",
             mistakes.TwistLaw(on_all=True),
             "A gain with a unit changes the unit of what it multiplies.",
+            cure="Multiply only the error by the gain.",
         ),
     ),
     terms=mistakes.workspace_terms,
@@ -465,6 +479,71 @@ WORKSPACE_VELOCITY_PD = Problem(
 )
 
 ORTHONORMAL = np.eye(7)[[0, 2, 3, 4, 5, 6]]
+
+FIND_LAG = Problem(
+    name="find_lag",
+    points=3,
+    outcomes=("experiment",),
+    asks="Return the time constant of an arm's motors, in s, within 5 ms.",
+    answer=answers.find_lag,
+    judge=Close(rtol=0.0, atol=0.005),
+    expected=lambda arm: arm.lag,
+    trials=(
+        Trial("the public arm", (call(PUBLIC_ARMS[0]),), weight=0.0),
+        Trial(
+            "two more public arms, a quick one and a slow one",
+            (call(PUBLIC_ARMS[1]), call(OwnArm(0.5, 1.0, 0.088, 0.06))),
+            hidden.other_arms,
+            "two arms that you have not seen",
+        ),
+    ),
+    hints=(
+        "A joint that follows with the time constant τ has reached 63 % of a step of its speed "
+        "after τ. In steady motion at the speed v, its angle is v τ behind.",
+        "A controller is a function of (state, target) that returns lk.JointVelocity; let one "
+        "joint turn at 0.4 rad/s for a second: log = lk.run(arm, lk.Hold(arm.robot.ready, 1.0), "
+        "steps). Use log.t, log.q and log.dq.",
+        "Average t - (q(t) - q(0)) / v over the second half of the run.",
+    ),
+    wrong=(
+        Wrong(
+            "the time to half of the speed",
+            "This is the time to half of the step, which is 0.7 time constants.",
+            mistakes.Lag(lambda log: mistakes.reaches(log, 0.5)),
+            "After one time constant 63 % is reached, not half.",
+            cure="Wait for 63 %: 1 - 1/e.",
+        ),
+        Wrong(
+            "the time to nearly all of the speed",
+            "This is the time until the speed is reached, which is three time constants or more.",
+            mistakes.Lag(lambda log: mistakes.reaches(log, 0.95)),
+            "A time constant is not a settling time.",
+            cure="After one time constant 63 % of the step is reached.",
+        ),
+        Wrong(
+            "the angles that the controller measured",
+            "Your number is 7 ms too large on every arm: `log.measured` is what the controller "
+            "saw, and that is old.",
+            mistakes.Lag(lambda log: np.mean(mistakes.behind(log, log.measured.q))),
+            "A sensor has a delay of its own.",
+            cure="Use log.q and log.dq, the true angles and speeds.",
+        ),
+        Wrong(
+            "an angle for a time",
+            "This is how far the joint is behind, in rad.",
+            mistakes.Lag(lambda log: mistakes.STEP * np.mean(mistakes.behind(log, log.q))),
+            "Write the unit of every number.",
+            cure="Divide it by the speed.",
+        ),
+        Wrong(
+            "milliseconds",
+            "This is in ms. The question asks for s.",
+            mistakes.Lag(lambda log: 1e3 * np.mean(mistakes.behind(log, log.q))),
+            "Write the unit of every number.",
+        ),
+    ),
+    variants=(variants.lag_by_63_percent, variants.lag_by_logarithm),
+)
 
 POSTURE_VELOCITY = Problem(
     name="posture_velocity",
@@ -506,36 +585,38 @@ POSTURE_VELOCITY = Problem(
         Wrong(
             "the transpose in place of the inverse",
             "I - Jᵀ J is a projector only if the rows of J are orthonormal, as in the first "
-            "test. The rows of the arm's Jacobian are not, so the tip moves: use the "
-            "pseudo-inverse of J.",
+            "test. The rows of the arm's Jacobian are not, so the tip moves.",
             mistakes.transpose_projector,
             "Test a projector: applied twice it does the same.",
+            cure="Use the pseudo-inverse of J.",
         ),
         Wrong(
             "a damped inverse in the projector",
-            "A damped inverse does not undo J exactly, so the tip drifts. Use the plain "
-            "pseudo-inverse here.",
+            "A damped inverse does not undo J exactly, so the tip drifts.",
             mistakes.damped_projector,
             "The two inverses serve two purposes.",
+            cure="Use the plain pseudo-inverse here.",
         ),
         Wrong(
             "the part that moves the tip",
-            "This is the part of the wish that moves the tip. Subtract it from the wish.",
+            "This is the part of the wish that moves the tip.",
             mistakes.the_rest,
             "Wish = part that moves the tip + free part.",
+            cure="Subtract it from the wish.",
         ),
         Wrong(
             "the tip may turn",
-            "You kept only the tip's position still, with the three linear rows. The tip must "
-            "not turn either: use all six rows.",
+            "You kept only the tip's position still, with the three linear rows.",
             mistakes.place_alone,
             "The motion of the tip has six numbers.",
+            cure="The tip must not turn either: use all six rows.",
         ),
         Wrong(
             "a column of Vᵀ for its last row",
-            "np.linalg.svd returns Vᵀ: the null vector is its last row, not its last column.",
+            "np.linalg.svd returns Vᵀ, so the last column of what it returns is no null vector.",
             mistakes.a_column_of_v,
             "Test a null vector: J n = 0.",
+            cure="The null vector is its last row.",
         ),
     ),
     variants=(
@@ -547,8 +628,10 @@ POSTURE_VELOCITY = Problem(
 
 PROBLEMS = (
     JOINT_VELOCITY_PD,
+    WHAT_SHOWS,
     DECAY_RATE,
     DAMPED_INVERSE,
     WORKSPACE_VELOCITY_PD,
+    FIND_LAG,
     POSTURE_VELOCITY,
 )

@@ -28,6 +28,12 @@ def joint_with_matrices(state: Any, target: Any, *, kp: Any, kd: Any) -> Any:
     )
 
 
+def joint_mended(state: Any, target: Any, *, kp: Any, kd: Any) -> Any:
+    """Equation 17 with its first term taken off again and the target's speed added."""
+    c = state.dq + kp * (target.position - state.q) + kd * (target.velocity - state.dq)
+    return lk.JointVelocity(c - (state.dq - target.velocity))
+
+
 def rate_from_the_root(kp: Any, kd: Any) -> Any:
     """The root of (1 + kd) s + kp."""
     return -np.roots([1.0 + kd, kp])[0]
@@ -69,6 +75,26 @@ def workspace_in_tool_axes(state: Any, target: Any, model: Any, *, kp: Any, damp
     twist = target.twist + kp * e
     twist_b = np.concatenate([R.T @ twist[:3], R.T @ twist[3:]])
     return lk.JointVelocity(J_b.T @ np.linalg.inv(J_b @ J_b.T + damping * np.eye(6)) @ twist_b)
+
+
+def _step(arm: Any, speed: float, joint: int) -> lk.Log:
+    """One joint at a constant speed from the first tick on."""
+    command = lk.JointVelocity(speed * np.eye(7)[joint])
+    return lk.run(arm, lk.Hold(arm.robot.ready, 0.6), lambda state, target: command)
+
+
+def lag_by_63_percent(arm: Any) -> Any:
+    """The first tick with 63 % of the speed, of a wrist joint."""
+    log = _step(arm, -0.5, 4)
+    return log.t[np.argmax(-log.dq[:, 4] >= (1 - np.exp(-1)) * 0.5)]
+
+
+def lag_by_logarithm(arm: Any) -> Any:
+    """The slope of the logarithm of what is missing."""
+    log = _step(arm, 0.4, 0)
+    left = 1 - log.dq[:, 0] / 0.4
+    some = (left > 0.2) & (left < 0.95)
+    return -1 / np.polyfit(log.t[some], np.log(left[some]), 1)[0]
 
 
 def posture_by_projector(J: Any, dq_wish: Any) -> Any:

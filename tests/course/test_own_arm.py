@@ -4,7 +4,6 @@ import json
 import unicodedata
 from dataclasses import replace
 from pathlib import Path
-from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -24,7 +23,6 @@ from labkit.course import (
     own_arm,
     question_data,
     read_question,
-    student,
 )
 from labkit.course.authoring.layout import Course
 from labkit.course.authoring.problem import Problem, Trial, Wrong, call
@@ -262,26 +260,6 @@ def test_only_a_calculation_from_runs_is_warned_of_above_the_cell():
     """A fraction such as 1/33 counts, because the cell is run when it is marked; runs are not."""
     asked = Identification("m", "?", Measured("lag", "s", 0.0, 0.5, 0.01), 0.3, "a number", 3.0)
     assert "do not calculate them from your runs, which are not repeated" in asked.brief()
-
-
-def test_a_measurement_of_the_public_arm_is_right_or_wrong_at_once(monkeypatch):
-    """Its numbers are known: the check says which, and how far off a wrong one is."""
-    monkeypatch.chdir(COURSE.root / "assignments/03_velocity_control")
-    notebook = SimpleNamespace(
-        user_ns={"HANDLE": "Demo"}, history_manager=SimpleNamespace(input_hist_raw=[])
-    )
-    said = []
-    monkeypatch.setattr(student, "shell", lambda: notebook)
-    monkeypatch.setattr(student, "_say", lambda says, *_: said.append(str(says)))
-    student.check("my_lag", 0.1)
-    student.check("my_lag", 0.032)
-    notebook.user_ns["HANDLE"] = "kestrel"
-    student.check("my_lag", 0.1)
-    wrong, right, waiting = said
-    assert wrong.startswith("my_lag: not yet right.") and "it is 0.067 s more than there" in wrong
-    assert "Where it fails" not in wrong
-    assert "a possible answer" in right and "Your answer is right for the public arm" in right
-    assert "a possible answer" in waiting and "public arm" not in waiting
 
 
 def test_a_wrong_load_of_the_public_arm_is_asked_about_the_wall():

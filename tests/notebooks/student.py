@@ -11,6 +11,7 @@ from tempfile import TemporaryDirectory
 
 import matplotlib
 import nbformat
+import numpy as np
 
 import labkit
 from labkit.course import student as desk
@@ -95,7 +96,8 @@ def run_here(name, parts, folder, monkeypatch, *, shortest=0.1):
 
     def short_run(arm, target, controller, rate=200.0, duration=None):
         duration = getattr(target, "duration", None) if duration is None else duration
-        return run(arm, target, controller, rate, min(duration, shortest))
+        most = np.inf if arm.plant.name == "own" else shortest  # an answer measures on that one
+        return run(arm, target, controller, rate, min(duration, most))
 
     monkeypatch.setattr(labkit, "run", short_run)
     notebook, out, names = fill(name, parts), StringIO(), {"__name__": "__main__"}
