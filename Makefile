@@ -16,7 +16,7 @@ FOR_TESTS += $(shell grep -qs '^ID=debian' /etc/os-release && echo chromium,goog
 AS_ROOT = $(filter 0,$(shell id -u))
 # Systems for which `make lock` looks for wheels of all that students need.
 SYSTEMS := x86_64-unknown-linux-gnu aarch64-unknown-linux-gnu aarch64-apple-darwin x86_64-apple-darwin windows
-# A newer Python, for which PyBullet has no wheels, so MuJoCo moves the arm there.
+# A newer Python, with neither PyBullet nor Pinocchio: MuJoCo moves the arm and computes its model.
 SECOND := .venv-313/bin
 # Modules that the installation left uncompiled are compiled at their first import.
 unexport PYTHONDONTWRITEBYTECODE
@@ -114,4 +114,5 @@ browser: .venv/.dev
 .venv-313/.made: .venv/.dev pyproject.toml constraints.txt
 	@echo "making .venv-313 with Python 3.13"
 	@python=$$(PATH="$$PATH:$(CURDIR)/$(BIN)" sh .ci/find_python.sh 3.13) && "$$python" -m venv --clear --without-pip .venv-313
-	@$(INSTALL) --python $(SECOND)/python -e '.[test]' && touch $@
+	@$(INSTALL) --python $(SECOND)/python -e '.[test]'
+	@$(UV) uninstall --quiet --python $(SECOND)/python pin && touch $@

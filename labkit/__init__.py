@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from . import control, metrics, se3
+from . import control, dynamics, metrics, se3
 from .arm import Arm
 from .control import JointPosition, JointTorque, JointVelocity, State
 from .errors import LabkitError
@@ -92,7 +92,8 @@ def ready() -> None:
     off = abs(log.q[-1] - goal).max()
     if off > 0.01:
         raise LabkitError(f"the arm ended {off:.3f} rad from where it was sent; reinstall labkit")
-    engines = ", ".join(f"{name} {version(name)}" for name in (arm.world.engine, "pin"))
+    made_by = (arm.world.engine, "pin" if dynamics.chosen() == "pinocchio" else "mujoco")
+    engines = ", ".join(f"{name} {version(name)}" for name in dict.fromkeys(made_by))
     print(  # short enough for one line of a notebook beside its file browser
         f"labkit {__version__}: the arm moved {1e3 * np.linalg.norm(b - a):.0f} mm; Python "
         f"{platform.python_version()}, {sys.platform} {platform.machine()}, {engines}"

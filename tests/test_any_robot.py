@@ -6,9 +6,8 @@ from dataclasses import replace
 from importlib.util import find_spec
 
 import numpy as np
-import pinocchio as pin
 import pytest
-from arms import DATA, FILES, READY, TIPS, arm
+from arms import FILES, READY, TIPS, arm
 from curves import slope_along
 from numpy.testing import assert_allclose, assert_array_equal
 
@@ -66,45 +65,6 @@ def laws(model):
 
 
 LAWS = tuple(laws(lk.Model()))
-
-
-def test_each_link_is_where_pinocchio_puts_it_and_weighs_what_it_says(robot, model, motions):
-    """The lumped arm against the file as it is, its other joints at rest at zero."""
-    full = pin.buildModelFromUrdf(str(FILES[robot.name]))
-    data, tip = full.createData(), full.getFrameId(TIPS[robot.name])
-    at = [full.joints[full.getJointId(name)].idx_q for name in robot.joint_names]
-    for q, dq in motions:
-        x, v = np.zeros(full.nq), np.zeros(full.nv)
-        x[at], v[at] = q, dq
-        pin.framesForwardKinematics(full, data, x)
-        assert_allclose(model.pose(q), data.oMf[tip].homogeneous, rtol=0, atol=1e-9)
-        assert_allclose(
-            model.bias(q, dq), pin.nonLinearEffects(full, data, x, v)[at], rtol=0, atol=1e-9
-        )
-
-
-@pytest.mark.parametrize(
-    ("file", "base", "tip"),
-    [
-        ("tiago_description/robots/tiago.urdf", "torso_lift_link", "arm_tool_link"),
-        ("pr2_description/urdf/pr2.urdf", "torso_lift_link", "r_gripper_tool_frame"),
-        ("g1_description/urdf/g1_29dof_rev_1_0.urdf", "torso_link", "left_wrist_yaw_link"),
-    ],
-)
-def test_an_arm_of_a_larger_robot_begins_at_its_base(file, base, tip):
-    """Tiago's, PR2's and a humanoid's: seven joints, each where it is with the others at zero."""
-    middle = [(m["lower"] + m["upper"]) / 2 for m in lk.Robot.from_urdf(
-        DATA / file, base=base, tip=tip, ready=np.zeros(7), name="free").bodies]  # fmt: skip
-    robot = lk.Robot.from_urdf(DATA / file, base=base, tip=tip, ready=middle, name="an arm")
-    full = pin.buildModelFromUrdf(str(DATA / file))
-    data, q = full.createData(), pin.neutral(full)
-    for name, angle in zip(robot.joint_names, middle, strict=True):
-        joint = full.joints[full.getJointId(name)]
-        turned = (np.cos(angle), np.sin(angle)) if joint.nq == 2 else angle
-        q[joint.idx_q : joint.idx_q + joint.nq] = turned
-    pin.framesForwardKinematics(full, data, q)
-    T_wt = data.oMf[full.getFrameId(tip)].homogeneous
-    assert_allclose(lk.Model(robot).pose(middle), T_wt, rtol=0, atol=1e-9)
 
 
 def test_without_a_tip_the_error_lists_the_links_and_a_wrong_base_is_a_sentence():
