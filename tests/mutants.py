@@ -17,8 +17,8 @@ from queue import SimpleQueue
 
 ROOT = Path(__file__).parents[1]
 MODULES = {
-    "labkit/course/judges.py": "course/test_judge.py course/test_mark.py course/test_encounters.py",
-    "labkit/course/marking.py": "course/test_mark.py course/test_judge.py course/test_observed.py",
+    "labkit/course/judges.py": "course/test_judges.py course/test_marking.py course/test_predictions.py",
+    "labkit/course/marking.py": "course/test_marking.py course/test_judges.py course/test_causes.py",
     "labkit/trajectory.py": "test_trajectory.py test_paths.py",
     "labkit/model.py": "test_model.py test_kinematics.py test_model_terms.py test_impedance.py",
     "labkit/joints.py": "test_joints.py test_plant_effects.py test_plant.py test_limits.py",

@@ -103,16 +103,6 @@ def test_the_first_prediction_stays(place):
     assert predict("x", "a") == "b"
 
 
-def test_an_array_after_the_reveal_is_compared_with_the_first_prediction(place, monkeypatch):
-    """It is another prediction, or the same one, and no error."""
-    curve = FORMS[2][0]
-    made = desk.Desk({"y": Prediction("y", "?", curve, [0.0, 0.0]).question()})
-    monkeypatch.setattr("labkit.course.predictions.desk", lambda: made)
-    made.committed["y"], made.revealed = [0.1, 0.2], {"y"}
-    assert predict("y", np.array([0.3, 0.4])) == [0.1, 0.2]
-    assert predict("y", [0.1, 0.2]) == [0.1, 0.2]
-
-
 @pytest.mark.parametrize("said", [np.int64(3), np.float32(3.0), np.float64(3.0)])
 def test_a_number_of_numpys_is_a_number(said):
     """In the notebook as in a grader."""
@@ -128,21 +118,3 @@ def test_a_number_of_any_size_is_refused_in_a_sentence(said):
         asked = Prediction("x", "?", form, right).question()
         assert mark(asked, LocalFunction(said)).earned == 0.0
     assert Found(0)(("b", said), None) and Found(0)(said, None)
-
-
-def test_a_decimal_comma_is_told_how_to_be_written():
-    """A student who types 8,3 has written one number, and reads how to write it."""
-    form = Number("mm", 0.0, 9.0)
-    assert form.problem("8.3") == "it is '8.3'; write one number without quotes"
-    assert form.problem("far") == "it is 'far'; write one number (mm)"
-    assert form.problem("8,3") == "it is '8,3'; write one number with a point, such as 8.5"
-    assert form.problem("many").endswith("write one number (mm)")
-
-
-def test_a_number_that_is_the_arms_own_is_told_so(monkeypatch, capsys):
-    """Rather than that it is 1 times the arm's."""
-    made = desk.Desk({"x": Prediction("x", "?", Number("mm", 0.0, 9.0), 8.3).question()})
-    monkeypatch.setattr("labkit.course.predictions.desk", lambda: made)
-    predict("x", 8.3)
-    predict("x", truth=8.3)
-    assert "Your number is the arm's." in capsys.readouterr().out

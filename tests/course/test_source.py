@@ -1,8 +1,17 @@
-"""Withheld tools in an answer's text: found however they are imported, never where none is."""
+"""Names in a cell's text: what it binds and uses, and which withheld tools are in an answer."""
+
+import ast
+import json
+import subprocess
+import sys
+from pathlib import Path
 
 import pytest
 
-from labkit.course.source import analyse, needed, withheld_tools
+from labkit.course.authoring.layout import Course
+from labkit.course.authoring.release import inlined
+from labkit.course.source import analyse, dotted, needed, plain, withheld_tools
+from tests.synthetic.inline import inline
 
 WITHHELD = (
     "labkit.Circle",
@@ -112,8 +121,97 @@ def test_a_name_needs_what_its_definition_takes_from_outside():
     assert needed(MODULE, "nothing") == []
 
 
-def test_a_long_sum_is_readable():
-    """Its names are found, also where Python cannot rewrite its hundreds of terms."""
-    cell = analyse("total = " + " + ".join(f"a{k}" for k in range(600)))
-    assert not cell["broken"]
-    assert len(cell["uses"]) == 600
+BODY = "def answer(x):\n    return 2 * x\n"
+HEADS = [
+    "", "%%time\n", "%%time \n", "\n\n%%time\n", "%%capture\n", "%%capture out --no-stderr\n",
+    "%%prun -q\n", "%%time\n%%capture\n", "%%capture\n%%time\n", "%%timeit -n1 -r1\n",
+    "%%bash\n", "%%html\n", "%%writefile x.py\n", "%%no_such_magic\n",
+]  # fmt: skip
+SHELL = """
+import json, sys
+from IPython.core.interactiveshell import InteractiveShell
+shell, defined = InteractiveShell.instance(), []
+for cell in json.load(sys.stdin):
+    shell.user_ns.pop("answer", None)
+    shell.run_cell(cell)
+    defined.append("answer" in shell.user_ns)
+print()
+print(json.dumps(defined))
+"""
+
+
+def test_a_magic_defines_here_what_it_defines_in_a_notebook(tmp_path):
+    """IPython itself is asked: an answer is found just where a notebook has it."""
+    cells = [head + BODY for head in HEADS]
+    done = subprocess.run(
+        [sys.executable, "-c", SHELL],
+        input=json.dumps(cells), capture_output=True, text=True, check=True, cwd=tmp_path,
+    )  # fmt: skip
+    defined = json.loads(done.stdout.splitlines()[-1])
+    assert [("answer" in analyse(cell)["binds"]) for cell in cells] == defined
+    assert [not analyse(cell)["magic"] for cell in cells] == defined
+    assert len(set(defined)) == 2
+
+
+def test_lines_keep_their_numbers():
+    """An error below a magic has the number of the line that the student sees."""
+    assert plain("%%time\n\n%%capture\nx = 1").split("\n")[3] == "x = 1"
+    assert plain("x = 1\n%matplotlib inline\n!ls\ny = 2").split("\n")[3] == "y = 2"
+
+
+def test_what_a_cell_needs_and_binds():
+    """Names by def, class, import, loop and assignment, wherever they stand in a line."""
+    found = analyse(
+        "import a.b, c as d\nfor e in range(f): g = h; i = (\n 1)\nclass J(k): l = m\nn += 1"
+    )
+    assert found["binds"] == ["J", "a", "d", "e", "g", "i", "n"]
+    assert set(found["uses"]) == {"f", "h", "k", "m", "range"}
+    assert analyse("a = (1,\n 2); b = a; from x import *")["binds"] == ["*", "a", "b"]
+
+
+@pytest.mark.parametrize(
+    "source",
+    [
+        "(" * 500,
+        "x = '\0'",
+        "def f(:",
+        "-" * 100_000 + "1",
+        "a" + ".b" * 5000,
+        "\ud800",
+        "%%",
+        "%%\n",
+    ],
+)
+def test_no_text_is_too_odd(source):
+    """The analysis of any cell's text has the same parts as that of x = 1."""
+    assert set(analyse(source)) == set(analyse("x = 1"))
+
+
+def test_dotted_names():
+    """What a call gives is taken for what is called; a constant getattr is an attribute."""
+    for text, name in [
+        ("lk.Model('left').gravity(q)", "lk.Model.gravity"),
+        ("getattr(lk, 'Circle')(s)", "lk.Circle"),
+        ("getattr(lk, name)", "getattr"),
+        ("[lk][0].Circle", ""),
+    ]:
+        assert dotted(ast.parse(text, mode="eval").body) == name
+
+
+COURSE = Course.here(Path(__file__))
+
+
+@pytest.mark.parametrize("assignment", COURSE.names())
+def test_no_answer_of_the_course_is_suspected(assignment):
+    """Neither the notebooks, nor the answers, the right variants and the known mistakes."""
+    file = COURSE.release / assignment / f"{assignment}.ipynb"
+    cells = json.loads(file.read_text(encoding="utf-8"))["cells"]
+    walk = ["".join(cell["source"]) for cell in cells if cell["cell_type"] == "code"]
+    problems = COURSE.problems(assignment)
+    solved = [*map(analyse, (*walk, *map(inlined, problems)))]
+    for problem in problems:
+        assert withheld_tools(solved, problem.name, problem.withheld) == ()
+        known = [problem.answer, *problem.variants, *(w.function for w in problem.wrong)]
+        for text in (inlined(problem), *(inline(f, problem.name) for f in known)):
+            cells = [*solved, analyse(text)]
+            assert withheld_tools(cells, problem.name, problem.withheld) == (), text

@@ -1,4 +1,4 @@
-"""Values as JSON and back."""
+"""Values and verdicts as JSON and back; they are read strictly."""
 
 import json
 
@@ -6,10 +6,15 @@ import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
+from questions import DOUBLE, double, square
 
 import labkit as lk
-from labkit.course.serialize import decode, decode_answer, encode
-from labkit.errors import TypeMismatch
+from labkit.course.marking import mark
+from labkit.course.notebook import verdict_in, verdict_metadata
+from labkit.course.serialize import decode, decode_answer, encode, read_record, record_data
+from labkit.course.verdict import Kind, Verdict
+from labkit.errors import LabkitError, TypeMismatch
+from labkit.formats import FORMAT, stamp
 
 Q = np.linspace(-0.5, 0.5, 7)
 
@@ -45,14 +50,6 @@ def test_arrays_keep_shape_and_bits(shape):
     b = there_and_back(a)
     assert b.shape == shape and np.array_equal(a, b, equal_nan=True)
     assert not b.flags.writeable
-
-
-def test_numpy_scalars_become_plain():
-    """A numpy number is a number, a numpy truth value a truth value."""
-    assert there_and_back(np.float64(0.1)) == 0.1
-    assert there_and_back(np.int64(3)) == 3
-    assert there_and_back(np.bool_(True)) is True
-    assert np.isnan(there_and_back(float("nan")))
 
 
 @pytest.mark.parametrize(
@@ -152,3 +149,50 @@ def test_deep_nesting_is_a_sentence():
         data = [data]
     with pytest.raises(TypeMismatch):
         decode_answer(data)
+
+
+def travelled(verdict):
+    return read_record(Verdict, json.loads(json.dumps(record_data(verdict), allow_nan=False)))
+
+
+@pytest.mark.parametrize(
+    "answer",
+    [
+        double, square, lambda x: None, lambda x: "twice", lambda x: [x, x], lambda x: 1 / 0,
+        lambda x: np.nan, lambda x: np.inf, lambda x: np.ones((2, 3)), lambda x: object(),
+    ],
+)  # fmt: skip
+def test_any_verdict_survives_its_json(answer):
+    """Whatever an answer is, what came of it is read back equal, and has no NaN in it."""
+    verdict = mark(DOUBLE, answer)
+    assert travelled(verdict) == verdict
+    assert verdict_in({"metadata": verdict_metadata(verdict)}) == verdict
+
+
+def test_a_difference_says_what_where_and_by_how_much():
+    """The expected and the found number, and the factor between them, as numbers."""
+    (_, three, _) = mark(DOUBLE, lambda x: -2.0 * x).tests
+    assert three.call == "double(3.0)"
+    found = three.difference
+    assert (found.kind, found.expected, found.found) == (Kind.NUMBERS, 6.0, -6.0)
+    assert found.times == pytest.approx(-1.0)
+
+
+@pytest.mark.parametrize(
+    "change",
+    [{"earned": "4"}, {"earned": -1.0}, {"outcome": "perfect"}, {"name": "../up"}, {"tests": {}},
+     {"tests": [{"name": 1}]}, {"mistake": "squared"}, {"withheld": [1]}],
+)  # fmt: skip
+def test_what_is_not_a_verdict_is_refused(change):
+    """A field of another type or beyond its range is refused; a notebook's output shows nothing."""
+    data = record_data(mark(DOUBLE, square)) | change
+    with pytest.raises(LabkitError):
+        read_record(Verdict, data)
+    assert verdict_in({"metadata": {"labkit": stamp() | {"verdict": data}}}) is None
+
+
+def test_a_verdict_of_another_version_is_none():
+    """What another labkit wrote into a notebook counts as not run."""
+    metadata = verdict_metadata(mark(DOUBLE, double))
+    for number in ({"format": FORMAT + 1}, {"physics": 0}):
+        assert verdict_in({"metadata": {"labkit": metadata["labkit"] | number}}) is None

@@ -1,10 +1,12 @@
-"""Verdicts in words: the whole messages stand in a golden file, and laws hold for all.
+"""Verdicts in words: whole messages stand in a golden file, and laws hold for all.
 
-``pytest tests/course/test_words.py --golden`` writes the file again; read what changed.
+``pytest tests/course/test_messages.py --golden`` writes the file again; read what changed.
 """
 
 import re
 from dataclasses import replace
+from html import unescape
+from html.parser import HTMLParser
 from pathlib import Path
 
 import numpy as np
@@ -13,9 +15,12 @@ from questions import CALLS, DOUBLE, HIDDEN, double, square
 
 from labkit import Hold, JointVelocity, robot
 from labkit.course import Call, Close, Test
+from labkit.course.card import card
+from labkit.course.judges import COMMITTED
 from labkit.course.marking import mark, not_counted
-from labkit.course.messages import message, worth
+from labkit.course.messages import is_prediction, message, outcome_word, worth
 from labkit.course.question import Loop, in_points
+from labkit.course.verdict import Outcome, TestResult, Verdict
 
 GOLDEN = Path(__file__).with_name("words.txt")
 COMPLETE = replace(DOUBLE, tests=(*DOUBLE.tests[:2], Test("negative", CALLS[2:])))
@@ -86,14 +91,6 @@ def test_a_test_is_worth_what_it_earns_alone(points):
         assert worth(verdict.tests[passes], verdict) == f" {note}"
 
 
-def test_the_shares_of_the_points_have_their_sum():
-    """A share that has no two decimals is a fraction, so no hundredth is lost."""
-    tests = tuple(Test(f"test {k}", CALLS[:1], w) for k, w in enumerate((1.0, 1.0, 2.0, 3.0)))
-    verdict = mark(replace(DOUBLE, tests=tests), double)
-    shares = [worth(test, verdict) for test in verdict.tests]
-    assert shares == [f" (worth {x}/7 of the 4 points)" for x in (1, 1, 2, 3)]
-
-
 @pytest.mark.parametrize("expected", [1 / 3, np.sin(np.arange(4.0)), np.sin(np.ones((5, 7)))])
 def test_numbers_that_differ_little_do_not_look_the_same(expected):
     """The digits show the difference, and float32, if that is the cause, is named."""
@@ -126,3 +123,96 @@ def test_the_same_failure_is_told_once():
     tests = [Test(name, CALLS[:1]) for name in ("one", "a tour")]
     words = said(lambda x: 5.0, replace(DOUBLE, tests=tuple(tests), mistakes=()))
     assert words.count("double(2.0): expected 4, got 5") == 1
+
+
+def shown(function, printed="", picture=None):
+    verdict = mark(DOUBLE, function)
+    return card(message(DOUBLE, verdict, printed), verdict.outcome, picture)
+
+
+def words(page):
+    """What is to be read on a page."""
+    return " ".join(unescape(re.sub(r"<style>.*</style>|<[^>]*>", " ", page, flags=re.S)).split())
+
+
+@pytest.mark.parametrize("function", [double, square, stub, lambda x: 1 / 0, lambda x: None])
+def test_the_card_holds_the_words_of_the_plain_text(function):
+    """Nothing that is said in text is missing on the card, and the text is the text."""
+    found = shown(function, printed="a print of mine")
+    assert found["text/plain"] == str(message(DOUBLE, mark(DOUBLE, function), "a print of mine"))
+    page = words(found["text/html"])
+    for line in found["text/plain"].replace("`", " ").split("\n"):
+        if line.strip() != "Where it fails:":
+            assert " ".join(line.split()) in page, line
+
+
+def test_tests_and_numbers_are_folded():
+    """What helps stands open; tests and numbers open at a click or a key."""
+    page = shown(square)["text/html"]
+    folded = page[page.index("<details>") : page.index("</details>")]
+    assert "That is the square." in page and "That is the square." not in folded
+    assert "<summary>2 of 3 tests failed. Show" in folded and "double(3.0): expected 6" in folded
+    assert "Show them, with the numbers</summary>" in page
+    verdict = mark(DOUBLE, square)
+    bare = replace(message(DOUBLE, verdict), numbers=())
+    assert "Show them</summary>" in card(bare, verdict.outcome)["text/html"]
+    assert "<details>" not in shown(double)["text/html"]
+
+
+def test_hints_open_one_after_the_other():
+    """Each is folded within the one before; the last one follows an attempt."""
+    for function, count in ((stub, 2), (square, 3)):
+        page = shown(function)["text/html"]
+        first = page.index(f"Hint 1 of {count}<")
+        parts = page[first:].split("<summary>")
+        assert len(parts) == count
+        for k, part in enumerate(parts):
+            assert (
+                DOUBLE.hints[k] in unescape(part)
+                and part.count("</details>") == (0, count)[k == count - 1]
+            )
+
+
+def test_the_outcome_is_told_by_words_and_a_sign():
+    """Right, wrong and error differ without any colour, and a screen reader hears the words."""
+    heads = [words(shown(f)["text/html"]).split(". ")[0] for f in (double, square, lambda x: 1 / 0)]
+    assert heads[1:] == ["\N{MULTIPLICATION SIGN} double: not yet right",
+                         "! double: it stopped with an error"]  # fmt: skip
+    assert heads[0].startswith("\N{CHECK MARK} double: right on all cases here")
+
+
+def test_nothing_of_a_student_becomes_markup():
+    """Prints, messages of exceptions and names are text on the card, whatever they hold."""
+    attack = "<script>alert(1)</script><img src=x onerror='alert(2)'>`</code><b>`$x$\""
+
+    def says(x):
+        raise ValueError(attack)
+
+    page = shown(says, printed=attack, picture=(b"", attack))["text/html"]
+    tags = Tags()
+    tags.feed(page)
+    assert set(tags.found) == {
+        ("div", "class style"), ("p", ""), ("b", "aria-hidden"), ("code", ""), ("details", ""),
+        ("summary", ""), ("ul", ""), ("li", ""), ("pre", ""), ("img", "alt src"),
+        ("style", ""),
+    }  # fmt: skip
+    assert page.count("alert(1)") == 3, "as text"
+
+
+class Tags(HTMLParser):
+    """The tags of a page, with the names of their attributes."""
+
+    def __init__(self):
+        super().__init__()
+        self.found = []
+
+    def handle_starttag(self, tag, attrs):
+        self.found.append((tag, " ".join(name for name, _ in attrs)))
+
+
+def test_a_prediction_is_committed_and_not_right():
+    """Its point is for being made, so no page calls it right; an answer that is right is."""
+    for name, says in ((COMMITTED, "committed"), ("on a circle", "right")):
+        test = TestResult(name, 1.0, Outcome.RIGHT)
+        verdict = Verdict("it", Outcome.RIGHT, 1.0, 1.0, (test,))
+        assert outcome_word(verdict) == says and is_prediction(verdict) == (says == "committed")

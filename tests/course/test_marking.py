@@ -1,27 +1,39 @@
-"""Marking: four outcomes, gates first, mistakes named."""
+"""Marking: outcomes, gates first, mistakes named; calls, runs, and runs with chosen gains."""
 
+import json
+import shutil
 import sys
 from dataclasses import replace
+from pathlib import Path
 
 import numpy as np
 import pytest
+from numpy.testing import assert_array_equal
 from questions import CALLS, DOUBLE, HIDDEN, double, square
 
 import labkit as lk
+from labkit.control import springs
 from labkit.course import (
     Call,
     Close,
+    Gains,
     Loop,
     NoAnswer,
     Outcome,
+    Question,
     Raised,
     Test,
+    Tuned,
+    case,
+    check,
     fingerprint,
     question_data,
     read_question,
 )
 from labkit.course.marking import mark
 from labkit.course.messages import why
+from labkit.course.serialize import decode, encode
+from labkit.errors import LabkitError
 
 
 def stub(x):
@@ -196,3 +208,119 @@ def test_a_test_may_look_at_a_part_of_the_answer():
     question = replace(DOUBLE, judge=Close(parts=("kp", "kd")), tests=tests, mistakes=())
     earned = [mark(question, lambda x, y=y: y).earned for y in ((1.0, 0.0), (0.0, 2.0), (1.0, 2.0))]
     assert earned == [1.0, 3.0, 4.0]
+
+
+ROOT = Path(__file__).parents[2]
+
+
+@pytest.fixture
+def beside(tmp_path, monkeypatch):
+    shutil.copy(ROOT / "assignments/00_warmup/checks.json", tmp_path)
+    monkeypatch.chdir(tmp_path)
+
+
+def test_the_failing_call_can_be_run(beside, capsys):
+    """A check that shows <3 x 3 numbers> says how to get them, and they fail as it said."""
+
+    def orientation_error(R_wd, R_wt):
+        return lk.se3.rotation_log(R_wt.T @ R_wd)
+
+    check("orientation_error", orientation_error)
+    assert 'args, kwargs = lk.course.case("orientation_error")' in capsys.readouterr().out
+    args, kwargs = case("orientation_error")
+    right = lk.se3.orientation_error(*args)
+    assert not np.allclose(orientation_error(*args, **kwargs), right)
+
+
+def test_without_a_failing_call_there_is_a_sentence(beside):
+    """Before any check, and after a right answer."""
+    with pytest.raises(LabkitError, match="run its check first"):
+        case("orientation_error")
+    check("orientation_error", lk.se3.orientation_error)
+    with pytest.raises(LabkitError, match="did not stop at a call"):
+        case("orientation_error")
+
+
+READY = lk.robot("left").ready
+FLOATING = lk.Plant(name="floating", gravity_compensation=True, armature=0.05, viscous=0.7)
+STAY = lk.Hold(READY, 0.5)
+
+
+def travelled(value):
+    return decode(json.loads(json.dumps(encode(value))))
+
+
+def test_a_state_keeps_its_external_torque():
+    """What the arm feels travels with the state."""
+    state = lk.State(0.25, READY, np.ones(7), np.arange(7.0))
+    for a, b in zip(travelled(state), state, strict=True):
+        assert_array_equal(a, b)
+
+
+@pytest.mark.parametrize(
+    "thing",
+    [
+        lk.Push((1.0, 2.0, 3.0), start=0.1),
+        lk.Spring((0.5, 0.1, 0.2), 200.0, 3.0),
+        lk.Wall((0.9, 0.2, 0.1), (-1.0, 0.0, 0.0), stiffness=900.0),
+        lk.Table(height=-0.1),
+    ],
+    ids=lambda thing: type(thing).__name__,
+)
+def test_things_travel(thing):
+    """What an arm meets arrives as it was, an endless push included."""
+    again = travelled(thing)
+    assert type(again) is type(thing)
+    for name, value in vars(thing).items():
+        assert_array_equal(getattr(again, name), value)
+
+
+def hold(state, target):
+    return springs(40.0, 4.0)(state, target)
+
+
+def test_a_run_meets_its_things():
+    """A push moves the arm of a loop, and none is left where there is no push."""
+    alone = Loop(STAY, plant=FLOATING)
+    pushed = Loop(STAY, plant=FLOATING, things=(lk.Push((0.0, 10.0, 0.0)),))
+    left, moved = (case.measured(case.ask(hold))["max_mm"] for case in (alone, pushed))
+    assert left < 1e-6 < 1.0 < moved
+
+
+def soft(model):
+    return 50.0, 10.0 * np.ones(7)
+
+
+def tuned(limit):
+    loop = Loop(STAY, plant=FLOATING, q0=READY + 0.05)
+    return Tuned((lk.Model("left", FLOATING),), loop, {"max_mm": limit})
+
+
+def test_chosen_gains_drive_springs():
+    """The run is that of springs and dampers with the gains that the function gave."""
+    case = tuned(100.0)
+    assert_array_equal(case.ask(soft).q, case.loop.ask(springs(50.0, 10.0)).q)
+
+
+def question(limit):
+    model = lk.Model("left", FLOATING)
+    tests = (Test("a pair", (Call((model,)),), 0.0), Test("a run", (tuned(limit),)))
+    return Question("soft", 2.0, "Choose.", Gains(), tests)
+
+
+@pytest.mark.parametrize(("limit", "points"), [(200.0, 2.0), (1.0, 0.0)])
+def test_a_question_about_gains_travels(limit, points):
+    """As data and back, hidden or not, it gives the same marks."""
+    q = question(limit)
+    again = read_question(json.loads(json.dumps(question_data(q))))
+    assert mark(again, soft).earned == mark(q, soft).earned == points
+
+
+def test_gains_that_are_none_earn_nothing():
+    """A pair is two things, a number or seven each, none below 0."""
+    judge = Gains()
+    assert judge((1.0, np.ones(7)), None) is None
+    assert judge([0.0, [1, 2, 3, 4, 5, 6, 7]], None) is None
+    for wrong in (3.0, (1.0,), (1.0, -1.0), (1.0, np.ones(6)), (np.nan, 1.0), None):
+        assert judge(wrong, None) is not None
+        assert not judge.same(wrong, wrong)

@@ -15,14 +15,14 @@ from labkit.course import (
     Gains,
     Outcome,
     Question,
-    Response,
     Test,
     TipTorque,
     question_data,
     read_question,
 )
-from labkit.course.judges import Ratio, factor, value
+from labkit.course.judges import factor, value
 from labkit.course.marking import mark
+from labkit.course.verdict import Kind
 
 CLOSE = Close(rtol=1e-6, atol=1e-9)
 V = np.array([1.0, 2.0, 3.0])
@@ -57,8 +57,15 @@ def test_differences_are_sentences(answer, words):
 def test_a_command_is_asked_for_by_name():
     """Plain numbers are told how to become a command, another command is called by its name."""
     velocity = lk.JointVelocity(np.zeros(7))
-    assert "plain numbers; return lk.JointVelocity(...)" in says(CLOSE(np.ones(7), velocity))
-    assert says(CLOSE(lk.JointTorque(np.ones(7)), velocity)).endswith("not a JointTorque")
+    assert CLOSE(lk.JointVelocity(np.zeros(7)), velocity) is None
+    for answer, found in ((np.ones(7), ""), (lk.JointTorque(np.ones(7)), "JointTorque")):
+        differs = CLOSE(answer, velocity)
+        assert (differs.kind, differs.expected, differs.found) == (
+            Kind.TYPE,
+            "JointVelocity",
+            found,
+        )
+    assert CLOSE(lk.JointVelocity(np.ones(7)), velocity).kind is Kind.NUMBERS
 
 
 def test_mistakes_are_alike_within_a_rounding():
@@ -73,15 +80,6 @@ def test_numbers_are_numbers():
     assert "got 3" in says(CLOSE(3.0, 2.0))
     assert CLOSE(None, 2.0) is not None
     assert CLOSE(float("nan"), 2.0) is not None
-
-
-def test_commands_keep_their_type():
-    """A torque is not a speed, an array is not a command, and the numbers count too."""
-    wanted = lk.JointVelocity(np.zeros(7))
-    assert CLOSE(lk.JointVelocity(np.zeros(7)), wanted) is None
-    assert "JointVelocity" in says(CLOSE(lk.JointTorque(np.zeros(7)), wanted))
-    assert "JointVelocity" in says(CLOSE(np.zeros(7), wanted))
-    assert "expected" in says(CLOSE(lk.JointVelocity(np.ones(7)), wanted))
 
 
 def test_parts_are_named():
@@ -108,13 +106,8 @@ def test_at_most():
     """The first measure beyond its limit is told with its unit; NaN is beyond any."""
     judge = AtMost()
     assert judge({"max_mm": 1.0, "effort": 2.0}, {"max_mm": 1.5}) is None
-    assert says(judge({"max_mm": 2.0}, {"max_mm": 1.5})) == (
-        "the largest error of the tip is 2 mm; the limit is 1.5 mm"
-    )
-    assert says(judge({"worst_mm": float("inf")}, {"worst_mm": 3.5})) == (
-        "the worst error is infinite, because no error was recorded for gains as large as these; "
-        "the limit is 3.5 mm"
-    )
+    found = judge({"max_mm": 2.0}, {"max_mm": 1.5})
+    assert (found.kind, found.part, found.found) == (Kind.MEASURE, "max_mm", 2.0)
     assert judge({"max_mm": float("nan")}, {"max_mm": 1.5}) is not None
 
 
@@ -123,15 +116,6 @@ def test_a_mistake_that_is_not_a_number_is_known_by_it():
     nan = np.array([1.0, np.nan, 3.0])
     assert CLOSE.same(nan, nan) and CLOSE(nan, V) is not None
     assert not CLOSE.same(V, nan) and not CLOSE.same(nan, V)
-
-
-def test_a_transfer_function_is_no_plain_function():
-    """What cannot be multiplied and plotted is told so, though it gives the right numbers."""
-    judge, right = Response((1.0, 10.0)), Ratio((2.0,), (1.0, 0.0))
-    assert judge(right, right) is None
-    assert "it should be a transfer function, not <function" in says(
-        judge(lambda s: 2.0 / s, right)
-    )
 
 
 def at_tip():
@@ -158,13 +142,6 @@ def test_torques_are_judged_by_what_the_tip_does():
             words.startswith("expected [")
             and "or any that moves the tip in the same way, got [" in words
         )
-
-
-@pytest.mark.parametrize("answer", [np.zeros(7), None, lk.JointVelocity(np.zeros(7))])
-def test_a_torque_is_asked_for_by_name(answer):
-    """Anything but a torque has no acceleration to be judged by; the sentence asks for a torque."""
-    judge, (expected, _) = AtTip(), at_tip()
-    assert "it should be a JointTorque" in says(judge(answer, expected))
 
 
 def test_a_question_of_torques_travels():

@@ -13,7 +13,7 @@ from questions import DOUBLE
 from scipy.spatial.transform import Rotation
 
 import labkit as lk
-from labkit.course import Call, Close, Outcome, Question, Response, Test
+from labkit.course import Outcome, Response
 from labkit.course import calling as reply_module
 from labkit.course.calling import ArgumentChanged, LocalFunction, NoAnswer, answer, call, reply
 from labkit.course.judges import Ratio
@@ -26,41 +26,28 @@ def pops(durations, t):
     return durations.pop(0)
 
 
-def clears(table):
-    table.clear()
-    return 0
-
-
 def writes_deep(rows):
     rows[0][0] = 5.0
     return 0
 
 
-class Eats:
-    """A callable without a name."""
-
-    def __call__(self, *things):
-        return things[1].append(1)
-
-
 @pytest.mark.parametrize(
-    ("function", "args", "says"),
+    ("function", "args"),
     [
-        (pops, ([2.0, 0.5], 1.5), "pops changes the list `durations` {}, list(durations)"),
-        (clears, ({"a": 1},), "clears changes the dict `table` {}, dict(table)"),
-        (writes_deep, ([[1.0]],), "writes_deep changes the list `rows` {}, copy.deepcopy(rows)"),
-        (writes_deep, (([1.0],),), "writes_deep changes the tuple `rows` {}, copy.deepcopy(rows)"),
-        (Eats(), (0, [1]), "the function changes the list {}"),
+        (pops, ([2.0, 0.5], 1.5)),
+        (dict.clear, ({"a": 1},)),
+        (writes_deep, ([[1.0]],)),
+        (writes_deep, (([1.0],),)),
     ],
-)  # fmt: skip
-def test_what_is_changed_is_told_and_whole_again(function, args, says):
+)
+def test_what_is_changed_is_told_and_whole_again(function, args):
     """A function that writes to a list or dict hears of it, and the next call has it whole."""
     before = json.dumps(args)
     for _ in range(2):
-        with pytest.raises(ArgumentChanged) as caught:
+        with pytest.raises(ArgumentChanged):
             call(function, args, {})
-        assert str(caught.value) == says.format("that it is given; work on a copy")
     assert json.dumps(args) == before
+    assert mark(DOUBLE, LocalFunction(lambda x: call(function, args, {}))).outcome is Outcome.WRONG
 
 
 def test_arrays_are_copies_that_can_be_written_to_and_a_change_is_told():
@@ -87,37 +74,6 @@ def test_scipy_can_read_what_a_function_is_given():
     turned = call(lambda R, p, x: Rotation.from_matrix(R).apply(p), (R, p, np.full(2, np.nan)), {})
     assert np.array_equal(turned, p)
     assert call(lambda v: Rotation.from_rotvec(v).magnitude(), (p,), {}) > 0.0
-
-
-def test_arguments_by_name_are_copied_too():
-    """A table given by name is as safe as one given by place."""
-
-    def f(*, gains):
-        gains["kp"] = 0
-
-    with pytest.raises(ArgumentChanged, match=r"dict `gains` .* dict\(gains\)"):
-        call(f, (), {"gains": {"kp": 1}})
-
-
-def test_what_has_no_arrays_is_handed_on_as_it_is():
-    """A model, a text, a number, and a tuple of these are themselves."""
-    args = (lk.Model(), "text", 2.0, (1, "a"))
-    assert all(x is y for x, y in zip(call(lambda *x: x, args, {}), args, strict=True))
-
-
-SEGMENTS = Question(
-    "pops", 3.0, "Which?", Close(), (Test("one", (Call(([2.0, 0.5], 1.5), expected=2.0),)),)
-)
-
-
-def test_an_answer_that_changes_its_argument_is_wrong_every_time():
-    """It is told so, not that its numbers are wrong; a mended one is right at once."""
-    for _ in range(2):
-        verdict = mark(SEGMENTS, LocalFunction(pops))
-        assert verdict.outcome is Outcome.WRONG
-        words = " ".join(str(message(SEGMENTS, verdict)).split())
-        assert " pops changes the list `durations` that it is given; work on a copy" in words
-    assert mark(SEGMENTS, LocalFunction(lambda durations, t: durations[0])).outcome is Outcome.RIGHT
 
 
 class Raises:
@@ -163,15 +119,6 @@ class Endless:
             yield 1.0
 
 
-class Long(float):
-    """Shows itself at length."""
-
-    def __repr__(self):
-        return "x" * 10_000_000
-
-    __str__ = __repr__
-
-
 def throw(error):
     def f(x):
         raise error
@@ -188,10 +135,8 @@ def deep():
 
 ODD = [
     Raises, Endless, deep, OrderedDict,
-    lambda: "\ud800", lambda: "x" * 10_000_000, lambda: b"4", lambda: 1j, lambda: 10**5000,
-    lambda: float("nan"), lambda: Long(2.0), lambda: [Long(4.0)] * 3, lambda: [[1], [1, 2]],
-    lambda: {1: 2}, lambda: {"a": Raises()}, lambda: iter([1]), lambda: range(10**12),
-    lambda: lk.State, lambda: type("T", (), {}), lambda: np.array([Raises(), 1]),
+    lambda: "\ud800" * 10_000_000, lambda: 1j, lambda: 10**5000, lambda: [[1], [1, 2]],
+    lambda: {1: 2}, lambda: range(10**12), lambda: lk.State, lambda: np.array([Raises(), 1]),
     lambda: np.zeros((0, 10**9)), lambda: np.float32(4.5), lambda: np.ma.masked,
 ]  # fmt: skip
 
@@ -208,9 +153,8 @@ def test_no_answer_is_too_odd(make):
 @pytest.mark.parametrize(
     "error",
     [
-        Mute(), Nameless(), Base(), Base("\ud800"), SystemExit("x" * 10_000_000), GeneratorExit(),
-        StopIteration(3), ValueError(Raises()), RecursionError(), MemoryError(), LabkitError("odd"),
-        NoAnswer("TypeError", "forged"), ExceptionGroup("many", [ValueError(1), Mute()]),
+        Mute(), Nameless(), Base("\ud800"), SystemExit("x" * 10_000_000), StopIteration(3),
+        ValueError(Raises()), MemoryError(), LabkitError("odd"), NoAnswer("TypeError", "forged"),
     ],
 )  # fmt: skip
 def test_no_exception_is_too_odd(error):
@@ -236,29 +180,11 @@ def test_a_value_of_a_wrong_kind_is_returned_and_not_raised(made):
     assert "It returned a wrong kind of value: a" in words and "raised" not in words
 
 
-@pytest.mark.parametrize("made", [lambda: np.complex128(2j), lambda: 2j, object])
-def test_what_may_be_returned_is_told_in_full(made):
-    """A transfer function is named too, by its own name, and one number is not called an array."""
-    says = reply(made, (), {})["says"]
-    assert "a transfer function of python-control" in says
-    assert "an array of" not in says and "Ratio" not in says
-
-
 def test_a_state_space_model_is_judged_as_its_transfer_function():
     """Both have the same frequency response, which is all that counts."""
     loop = control.ss([[-20.0, 0.0], [1.0, 0.0]], [[80.0], [0.0]], [[0.0, 1.0]], [[0.0]])
     given = answer(json.loads(json.dumps(reply(lambda: loop, (), {}))))
     assert Response((1.0, 25.0), 1e-6)(given, Ratio((80.0,), (1.0, 20.0, 0.0))) is None
-
-
-@pytest.mark.filterwarnings("ignore:the matrix subclass")
-def test_a_matrix_is_judged_as_an_array():
-    """Numbers in an np.matrix are right if their shape is; otherwise the shape is told."""
-    calls = (Call((), expected=np.eye(2)),)
-    question = replace(DOUBLE, tests=(Test("a matrix", calls),), mistakes=())
-    assert mark(question, LocalFunction(lambda: np.matrix(np.eye(2)))).right
-    verdict = mark(question, LocalFunction(lambda: np.matrix(np.ones(2))))
-    assert "has shape (1, 2), expected (2, 2)" in why(verdict.tests[0])
 
 
 @pytest.mark.parametrize("interrupt", [reply_module._interrupt, _thread.interrupt_main])
