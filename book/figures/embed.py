@@ -60,8 +60,6 @@ def motion_html(
 
 
 DEMOS = {
-    "scaling": "Live: four time scalings of the same distance in the same time, with position,"
-    " speed and acceleration plotted against time and their numbers in a table.",
     "jacobian": "Live: Baxter's arm with a slider for each joint; the tip's pose, the Jacobian as a"
     " table and its chosen column as arrows, and the manipulability.",
     "rotation": "Live: two orientations by roll, pitch and yaw; the error between them by the"
@@ -72,7 +70,7 @@ DEMOS = {
 def demo_html(
     name: str, *, caption: str = "", poster: str | None = None, root: str | None = None
 ) -> str:
-    """One of the live demos: "scaling", "jacobian" or "rotation".
+    """One of the live demos: "jacobian" or "rotation".
 
     Args:
         name: Which.

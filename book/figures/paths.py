@@ -14,8 +14,7 @@ from labkit import metrics, plotting
 from solutions.study.joint_velocity import JointVelocityPD
 
 from .claims import holds, shows
-from .embed import demo_html
-from .page import Question, figure, number, numbers, quiz, replay, still, table, tracking
+from .page import Question, figure, number, numbers, quiz, replay, table, tracking
 
 SEED = 1
 DURATION = 4.0
@@ -72,18 +71,6 @@ def scalings() -> HTML:
         "ends without a jump of the acceleration.",
         f"Three panels over two seconds: s, its speed and its acceleration. Peaks: {told}.",
     )
-
-
-def scaling_demo() -> HTML:
-    """The live demo of the four scalings; on paper, their speeds in the first view."""
-    length, t = 0.4, np.linspace(0.0, 2.0, 81)
-    _, ax = plt.subplots(figsize=(5.0, 2.6))
-    for k, (name, s) in enumerate(_scalings()):
-        ax.plot(t, [length * s(x)[1] for x in t], **plotting.curve(k), label=name)
-    ax.set(xlabel="time [s]", ylabel="speed [m/s]", title=f"{length:g} m in {t[-1]:g} s")
-    ax.legend(fontsize="small")
-    caption = "Live: choose a length and a duration, and compare the peaks."
-    return HTML(demo_html("scaling", caption=caption, poster=still()))
 
 
 def peak_table() -> HTML:

@@ -1,6 +1,5 @@
 // A tag in a picture whose corners can be dragged: it shows the two poses that they allow, and when the better one changes.
 import { add, dot, length, scale } from "./algebra.js";
-import { dial } from "./dial.js";
 import { TAG } from "./numbers.js";
 import { product } from "./space.js";
 import { cornersOf, seen, twoPoses } from "./two_poses.js";
@@ -36,7 +35,7 @@ function told({ R, p, miss }) {
 }
 
 /** The fieldset with the picture, the descriptions and the controls. */
-export function corners({ h, svg, unique }) {
+export function corners({ h, svg, unique, dial }) {
   let image, found, chosen = 0, at = { distance: 0.9, tilt: 15 };
   const art = svg("svg", { class: "lk-corners", viewBox: `${-WIDE / 2} ${-TALL / 2} ${WIDE} ${TALL}`, role: "img",
     "aria-label": "The tag in the picture, and its two poses" });
@@ -104,7 +103,7 @@ export function corners({ h, svg, unique }) {
   const dials = [
     { label: "Distance", unit: "m", min: 0.5, max: 1.5, value: at.distance, oninput: (distance) => start({ distance }) },
     { label: "Turned by", unit: "°", min: 0, max: 60, value: at.tilt, oninput: (tilt) => start({ tilt }) }]
-    .map((spec) => dial({ h, unique }, spec).element);
+    .map((spec) => dial(spec).element);
   const id = unique("corner");
   const choose = h("select", { id, onchange: () => { chosen = +choose.value; draw(); } }, NAMES.map((name, k) => h("option", { value: k }, name)));
   const keys = Object.entries({ left: [-STEP, 0], right: [STEP, 0], up: [0, -STEP], down: [0, STEP] }).map(([name, by]) =>

@@ -1,6 +1,5 @@
 // The fields of a live panel, with its choices, dials and push buttons.
 import { ARM_DIALS, gainDials } from "./controls.js";
-import { dial } from "./dial.js";
 import { AXES, pushTip } from "./hands.js";
 import { NAMES } from "./settings.js";
 import { SCALINGS } from "./paths.js";
@@ -48,7 +47,7 @@ export class Form {
         onchange: (shape) => this.change({ shape }) }) };
   }
 
-  dial(spec, oninput) { return dial({ h: this.h, unique: this.viewer.unique }, { ...spec, oninput }); }
+  dial(spec, oninput) { return this.viewer.dial({ ...spec, oninput }); }
 
   showGains() {
     const { plant, controller, gains } = this.settings;

@@ -331,7 +331,7 @@ def test_replay_moves_by_keyboard(chromium, visit):
     """The time slider takes the arrow keys, and the arm is elsewhere after them."""
     opened = visit(chromium)
     wake(opened)
-    tip = "() => document.querySelector('[data-ready]').labkit.joints().left_w2.p"
+    tip = "() => document.querySelector('[data-ready]').labkit.picture.frames.left_w2.p"
     before = opened.evaluate(tip)
     opened.get_by_role("slider", name="Time").first.focus()
     for _ in range(30):

@@ -1,4 +1,4 @@
-(()=>{var i=`.lk-embed, .lk-player, .lk-demo {
+(()=>{var a=`.lk-embed, .lk-player, .lk-demo {
   --lk-text: #1f2328; --lk-quiet: #57606a; --lk-edge: #b6bec8; --lk-face: #ffffff; --lk-sky: #e9edf2;
   --lk-grid: #c3cad3; --lk-accent: #0a5aa6; --lk-trace: #b3001b; --lk-path: #1f2328;
   --lk-line-0: #b3001b; --lk-line-1: #0a5aa6; --lk-line-2: #a35200; --lk-line-3: #1a7f4b;
@@ -19,7 +19,7 @@ html[data-theme="dark"] .cell_output .text_html:has(.lk-embed) { /* the theme ma
 .lk-embed details { margin-top: 0.3rem; }
 .lk-embed .lk-poster { max-width: 100%; height: auto; display: block; border-radius: 6px; }
 .lk-embed[data-mounted]:not(.lk-flat) > :is(.lk-poster, .lk-alt) { display: none; }
-.lk-load { display: block; width: 100%; padding: 1rem; }
+.lk-load { display: block; width: 100%; height: auto !important; padding: 1rem; }
 .lk-player, .lk-demo { background: var(--lk-face); border: 1px solid var(--lk-edge); border-radius: 8px; overflow: hidden; }
 .lk-demo { padding: 0.75rem; }
 .lk-demo > .lk-player { margin: 0.6rem -0.75rem -0.75rem; border-width: 1px 0 0; border-radius: 0; }
@@ -33,7 +33,6 @@ html[data-theme="dark"] .cell_output .text_html:has(.lk-embed) { /* the theme ma
 .lk-tag[hidden] { display: none; }
 .lk-note { margin: 0; padding: 1rem; }
 .lk-bar { display: flex; flex-wrap: wrap; align-items: center; gap: 0.4rem; padding: 0.45rem 0.75rem; }
-.lk-bar[hidden] { display: none; }
 .lk-bar + .lk-bar { padding-top: 0; }
 .lk-range { flex: 1 1 10rem; min-width: 8rem; }
 :is(.lk-player, .lk-demo, .lk-embed) :is(button, select, input[type="number"]) {
@@ -50,7 +49,7 @@ html[data-theme="dark"] .cell_output .text_html:has(.lk-embed) { /* the theme ma
 .lk-more { border-top: 1px solid var(--lk-edge); color: var(--lk-text); }
 .lk-more > summary { padding: 0.3rem 0.75rem; cursor: pointer; }
 .lk-say { margin: 0; padding: 0.45rem 0.75rem; border-bottom: 1px solid var(--lk-edge); color: var(--lk-text); }
-.lk-say[hidden], .lk-dials[hidden] { display: none; }
+.lk-player [hidden] { display: none !important; }
 .lk-say.lk-alarm { border-left: 5px solid var(--lk-trace); font-weight: 600; }
 .lk-player:has(> .lk-beside) { container-type: inline-size; }
 @container (min-width: 38rem) { /* the curve beside the picture */
@@ -61,10 +60,8 @@ html[data-theme="dark"] .cell_output .text_html:has(.lk-embed) { /* the theme ma
 .lk-livedials { padding: 0.1rem 0.75rem 0.4rem; }
 .lk-live button[aria-pressed="true"] { background: var(--lk-accent); color: var(--lk-face); }
 .lk-live button:disabled { opacity: 0.55; cursor: default; }
-.lk-check[hidden] { display: none !important; }
 .lk-check { display: flex; align-items: center; gap: 0.3rem; white-space: nowrap; font-size: 0.9rem; }
-.lk-choice[hidden] { display: none; }
-.lk-word, .lk-unit, .lk-speed, .lk-dial output { color: var(--lk-quiet); }
+.lk-unit, .lk-speed, .lk-dial output { color: var(--lk-quiet); }
 .lk-speed { display: flex; align-items: center; gap: 0.4rem; white-space: nowrap; }
 .lk-legend { display: flex; flex-wrap: wrap; gap: 0.1rem 1.2rem; list-style: none; margin: 0; padding: 0.1rem 0.75rem; font-size: 0.85rem; color: var(--lk-text); }
 .lk-legend li { margin: 0; display: flex; align-items: center; gap: 0.4rem; }
@@ -88,7 +85,6 @@ html[data-theme="dark"] .cell_output .text_html:has(.lk-embed) { /* the theme ma
 .lk-name { fill: var(--lk-text); font-size: 11.5px; }
 .lk-demo fieldset { border: 1px solid var(--lk-edge); border-radius: 6px; margin: 0 0 0.5rem; padding: 0.4rem 0.7rem; min-width: 0; }
 .lk-demo legend { font-size: 0.9rem; font-weight: 600; padding: 0 0.3rem; margin: 0; width: auto; float: none; color: var(--lk-text); }
-.lk-load { height: auto !important; }
 .lk-demo > :is(.lk-readout, .lk-plots) { padding-inline: 0; }
 .lk-dials { display: grid; grid-template-columns: repeat(auto-fit, minmax(min(100%, 19rem), 1fr)); gap: 0.35rem 1.2rem; }
 .lk-dial, .lk-choice { display: flex; align-items: center; gap: 0.45rem; min-width: 0; }
@@ -111,7 +107,6 @@ fieldset .lk-dial label { flex-basis: 2.6rem; }
   .lk-canvas { aspect-ratio: 1; }
   .lk-beside .lk-canvas { aspect-ratio: 16 / 11; }
   .lk-range { flex-basis: 100%; order: -1; }
-  .lk-word { display: none; }
     .lk-speed label { position: absolute; width: 1px; height: 1px; overflow: hidden; clip-path: inset(50%); } /* a screen reader still reads the name */
   .lk-table :is(th, td) { padding-inline: 0.3rem; }
 }
@@ -119,4 +114,4 @@ fieldset .lk-dial label { flex-basis: 2.6rem; }
   .lk-bar, .lk-load, .lk-dial { display: none !important; }
   .lk-player, .lk-demo { break-inside: avoid; }
 }
-`;function r(){if(globalThis.labkitStyled)return;let e=new CSSStyleSheet;e.replaceSync(i),document.adoptedStyleSheets=[...document.adoptedStyleSheets,e],globalThis.labkitStyled=!0}var o=document.currentScript.src.split("?")[0].replace(/[^/]*$/,""),m=matchMedia("(max-width: 500px)"),p={};function n(e){return p[e]??=new Promise((l,a)=>{let t=document.createElement("script");t.src=e,t.addEventListener("load",l),t.addEventListener("error",()=>a(new Error(`${e} is missing`))),document.head.append(t)})}var c=globalThis.labkitLoad=async()=>(await Promise.all([n(`${o}viewer.js`),n(`${o}robot.js`)]),globalThis.labkitViewer);async function s(e){if(e.dataset.mounted)return;e.dataset.mounted="1",e.querySelector(".lk-load")?.remove();let l=JSON.parse(e.querySelector('script[type="application/json"]').textContent);try{let{mount:a}=await c(),t=document.createElement("div");e.insertBefore(t,e.querySelector("figcaption")),a(t,l),t.querySelector(".lk-note")&&e.classList.add("lk-flat")}catch(a){delete e.dataset.mounted,console.error(a)}}function b(e){let l=document.createElement("button");l.type="button",l.className="lk-load",l.textContent="Tap to load the interactive view",l.addEventListener("click",()=>s(e).then(()=>e.querySelector("button, input, select")?.focus())),e.insertBefore(l,e.querySelector("figcaption"))}function d(){if(globalThis.labkitStarted)return;globalThis.labkitStarted=!0,r();let e=new IntersectionObserver(l=>{for(let{isIntersecting:a,target:t}of l)a&&(e.unobserve(t),s(t))},{rootMargin:"400px"});for(let l of document.querySelectorAll(".lk-embed"))m.matches?b(l):e.observe(l)}document.readyState==="loading"?document.addEventListener("DOMContentLoaded",d):d();})();
+`;function i(){if(globalThis.labkitStyled)return;let e=new CSSStyleSheet;e.replaceSync(a),document.adoptedStyleSheets=[...document.adoptedStyleSheets,e],globalThis.labkitStyled=!0}var o=document.currentScript.src.split("?")[0].replace(/[^/]*$/,""),m=matchMedia("(max-width: 500px)"),p={};function n(e){return p[e]??=new Promise((t,r)=>{let l=document.createElement("script");l.src=e,l.addEventListener("load",t),l.addEventListener("error",()=>r(new Error(`${e} is missing`))),document.head.append(l)})}var c=globalThis.labkitLoad=async()=>(await Promise.all([n(`${o}viewer.js`),n(`${o}robot.js`)]),globalThis.labkitViewer);async function s(e){if(e.dataset.mounted)return;e.dataset.mounted="1",e.querySelector(".lk-load")?.remove();let t=JSON.parse(e.querySelector('script[type="application/json"]').textContent);try{let{mount:r}=await c(),l=document.createElement("div");e.insertBefore(l,e.querySelector("figcaption")),r(l,t),l.querySelector(".lk-note")&&e.classList.add("lk-flat")}catch(r){delete e.dataset.mounted,console.error(r)}}function b(e){let t=document.createElement("button");t.type="button",t.className="lk-load",t.textContent="Tap to load the interactive view",t.addEventListener("click",()=>s(e).then(()=>e.querySelector("button, input, select")?.focus())),e.insertBefore(t,e.querySelector("figcaption"))}function d(){if(globalThis.labkitStarted)return;globalThis.labkitStarted=!0,i();let e=new IntersectionObserver(t=>{for(let{isIntersecting:r,target:l}of t)r&&(e.unobserve(l),s(l))},{rootMargin:"400px"});for(let t of document.querySelectorAll(".lk-embed"))m.matches?b(t):e.observe(t)}document.readyState==="loading"?document.addEventListener("DOMContentLoaded",d):d();})();

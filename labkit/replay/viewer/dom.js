@@ -41,27 +41,29 @@ export const unique = (stem) => `lk-${stem}-${++count}`;
 
 export const reducedMotion = () => matchMedia("(prefers-reduced-motion: reduce)").matches;
 
-/** A slider; `oninput` receives the value, which stands in a box for a number, or beside it if not `typed`. */
-export function dial({ label, unit = "", typed = true, min, max, step, value, digits = 3, oninput }) {
-  const id = unique("dial");
-  const show = (x) => String(+Number(x).toFixed(digits));
-  const range = h("input", { type: "range", id, min, max, step });
+/**
+ * A slider with linear or logarithmic steps; its value stands in a box for a number, where any value
+ * within the limits can be typed, or beside it if not `typed`.  `oninput` receives each new value.
+ */
+export function dial({ label, unit = "", min, max, value = min, ratio = false, typed = true, digits = 3, oninput }) {
+  const id = unique("dial"), STEPS = 1000;
+  const toShare = (x) => (ratio ? Math.log(x / min) / Math.log(max / min) : (x - min) / (max - min));
+  const toValue = (s) => (ratio ? min * (max / min) ** s : min + s * (max - min));
+  const round = (x) => +Number(x).toPrecision(digits);
+  const range = h("input", { type: "range", id, min: 0, max: STEPS, step: 1 });
   const number = typed ? h("input", { type: "number", "aria-label": `${label}, typed`, min, max, step: "any" }) : h("output", { for: id });
-  const get = () => +range.value;
-  const set = (x) => {
-    range.value = x;
-    number.value = show(get());
-    range.setAttribute("aria-valuetext", `${show(get())}${unit && ` ${unit}`}`);
+  let now = value;
+  const show = () => {
+    range.value = Math.round(STEPS * toShare(now));
+    number.value = String(round(now));
+    range.setAttribute("aria-valuetext", `${round(now)} ${unit}`.trim());
   };
-  const changed = () => { set(get()); oninput?.(get()); };
-  range.addEventListener("input", changed);
-  number.addEventListener("change", () => {
-    if (Number.isFinite(number.valueAsNumber)) set(number.valueAsNumber);
-    changed();
-  });
-  set(value ?? min);
+  const change = (x) => { now = x; show(); oninput?.(now); };
+  range.addEventListener("input", () => change(round(toValue(range.value / STEPS))));
+  number.addEventListener("change", () => change(Number.isFinite(number.valueAsNumber) ? Math.min(max, Math.max(min, number.valueAsNumber)) : now));
+  show();
   const element = h("div", { class: "lk-dial" }, h("label", { for: id }, label), range, number, h("span", { class: "lk-unit" }, unit));
-  return { element, get, set };
+  return { element, get: () => now, set: (x) => { now = x; show(); } };
 }
 
 /** A number with three decimals, without "-0.000". */

@@ -15,7 +15,7 @@ export class JacobianDemo {
     const redraw = () => this.draw();
     const joint = (name) => robot.joints.find((j) => j.name === `${side}_${name}`);
     this.dials = ARM.map((name, i) => dial({
-      label: name, unit: "rad", min: joint(name).lower, max: joint(name).upper, step: "any", value: NEUTRAL[i], oninput: redraw }));
+      label: name, unit: "rad", min: joint(name).lower, max: joint(name).upper, value: NEUTRAL[i], oninput: redraw }));
     this.column = choice({ label: "Column", values: ARM, value: "s1", onchange: redraw });
     this.frame = choice({ label: "Axes", values: ["base (at the tip)", "tip (body)"], onchange: redraw });
     this.stagebox = h("div", { class: "lk-stage" });
@@ -58,7 +58,6 @@ export class JacobianDemo {
       this.linear.lay(p, v);
       this.angular.lay(p, w);
       this.ends = [v, w].map((x) => x.map((c, i) => c + p[i]));
-      this.stage.rig.hand = p;
       this.stage.draw();
     }
     const shown = this.frame.index() ? bodyJacobian(this.robot, this.side, q) : columns;

@@ -132,7 +132,7 @@ export class LiveArm {
   }
 
   dials() {
-    const made = this.data.dials.map((d) => dial({ label: d.name.replaceAll("_", " "), unit: d.unit, typed: false, min: d.min, max: d.max, step: "any", value: d.value,
+    const made = this.data.dials.map((d) => dial({ label: d.name.replaceAll("_", " "), unit: d.unit, typed: false, min: d.min, max: d.max, value: d.value,
       oninput: (value) => this.turn(d.name, value) }).element);
     return h("div", { class: "lk-dials lk-livedials", hidden: !made.length }, made);
   }

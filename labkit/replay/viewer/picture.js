@@ -41,7 +41,6 @@ export class Picture {
     this.body.pose(side, q);
     this.frames = frames(this.robot, posture(this.robot, side, q));
     this.tip = tip(this.robot, side, q);
-    this.stage.rig.hand = this.tip.p;
     this.stage.draw();
   }
 

@@ -1,5 +1,5 @@
 // The replay of one motion: the robot, its controls, and plots that share a time cursor.
-import { frames, joints, posture, tip } from "./kinematics.js";
+import { joints, tip } from "./kinematics.js";
 import { dispose, line } from "./marks.js";
 import { Picture } from "./picture.js";
 import { DASHES, letters, Plot } from "./plots.js";
@@ -200,11 +200,6 @@ export class Player {
   speak() {
     clearTimeout(this.spoken);
     this.spoken = setTimeout(() => { this.status.textContent = this.numbers(); }, 500);
-  }
-
-  /** The present joint positions in the base frame, for tests. */
-  joints() {
-    return frames(this.robot, posture(this.robot, this.motion.side, at(this.motion, this.motion.q, this.time)));
   }
 
   play(on) {

@@ -14,8 +14,7 @@ export function unpack(channel) {
 }
 
 /** The motion with every channel unpacked. */
-export function read(json) {
-  const raw = typeof json === "string" ? JSON.parse(json) : json;
+export function read(raw) {
   const motion = { ...raw, ghosts: {} };
   for (const name of ["q", "target", "target_quaternion", "board", "board_quaternion", "path", "error", "tau", "force"]) {
     motion[name] = unpack(raw[name]);
@@ -31,6 +30,5 @@ export function read(json) {
 export function at(motion, rows, time) {
   const x = Math.min(Math.max((time - motion.start) / motion.period, 0), motion.count - 1);
   const i = Math.min(Math.floor(x), motion.count - 2);
-  if (motion.count < 2) return rows[0];
   return rows[i].map((a, k) => a + (x - i) * (rows[i + 1][k] - a));
 }

@@ -16,21 +16,20 @@ export const VIEWS = {
   Front: { azimuth: 0.5, elevation: 0.22, distance: 3.1, target: [0.3, 0, -0.02] },
   Side: { azimuth: 1.5708, elevation: 0.12, distance: 3.4, target: [0.4, 0, -0.06] },
   Top: { azimuth: 0, elevation: 1.5, distance: 3.0, target: [0.5, 0, 0] },
-  Hand: { azimuth: 0.6, elevation: 0.3, distance: 1.1, follow: true },
 };
 
 export class Rig {
   // If `grab(event)` is set, it is called first to find what a pointer takes hold of.  It returns
   // {move(event), end(event)}, or nothing if the pointer is to turn the view.
   constructor(canvas, camera, changed) {
-    Object.assign(this, { camera, changed, hand: [0.7, 0, 0.2], mirror: 1, size: 1, motion: VIEWS.Motion });
+    Object.assign(this, { camera, changed, mirror: 1, size: 1, motion: VIEWS.Motion });
     this.use("Motion");
     this.listen(canvas);
   }
 
   /** Go to a named view, which is mirrored for the right arm. */
   use(name) {
-    Object.assign(this, { follow: false }, name === "Motion" ? this.motion : VIEWS[name]);
+    Object.assign(this, name === "Motion" ? this.motion : VIEWS[name]);
     if (name !== "Top") this.azimuth *= this.mirror;
     this.view = name;
     this.changed();
@@ -55,7 +54,7 @@ export class Rig {
   /** Put the camera in its place for this frame. */
   frame(aspect) {
     const c = Math.cos(this.elevation);
-    const target = this.follow ? this.hand : this.target;
+    const { target } = this;
     const reach = (this.view === "Motion" ? 1 : this.size) * this.distance * Math.max(1, 1.15 / aspect);
     this.camera.position.set(
       target[0] + reach * c * Math.cos(this.azimuth), target[1] + reach * c * Math.sin(this.azimuth),

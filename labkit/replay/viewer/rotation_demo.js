@@ -18,7 +18,7 @@ export class RotationDemo {
     this.dials = {};
     const group = (name) => h("fieldset", { class: "lk-dials" }, h("legend", {}, `The ${name} orientation`),
       (this.dials[name] = ANGLES.map((a, i) => dial({
-        label: a, unit: "rad", min: -3.14, max: 3.14, step: 0.01, digits: 2, value: STARTS[name][i], oninput: redraw,
+        label: a, unit: "rad", min: -3.14, max: 3.14, value: STARTS[name][i], oninput: redraw,
       }))).map((d) => d.element));
     this.table = h("table", { class: "lk-table" });
     this.words = h("p", { class: "lk-readout" });

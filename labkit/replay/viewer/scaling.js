@@ -33,8 +33,3 @@ export function trapezoid(distance, speed, acceleration, t) {
   if (t < T - rise) return [v * (t - rise / 2), v, 0];
   return [1 - (a * (T - t) ** 2) / 2, a * (T - t), -a];
 }
-
-/** The acceleration of the trapezoid with this length, top speed and duration. */
-export function trapezoidAcceleration(distance, speed, duration) {
-  return speed / (duration - distance / speed);
-}

@@ -19,7 +19,6 @@ export function sight(picture, { magnify, whole = true } = {}) {
   const sizes = ["× 1", "× 10", "× 50"];
   const magnifier = choice({ label: "Error", values: sizes, onchange: (shown) => magnify(+shown.slice(2)) }).element;
   magnifier.hidden = !magnify;
-  const element = h("div", { class: "lk-bar lk-views", role: "group", "aria-label": "View" },
-    h("span", { class: "lk-word", "aria-hidden": "true" }, "View"), views, all, magnifier);
+  const element = h("div", { class: "lk-bar lk-views", role: "group", "aria-label": "View" }, views, all, magnifier);
   return { element, magnifier };
 }

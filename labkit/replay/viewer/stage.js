@@ -38,7 +38,7 @@ export class Stage {
     this.works = context() !== null;
     this.canvas = h("canvas", {
       class: "lk-canvas", tabindex: 0, role: "application", "aria-roledescription": "3-D view",
-      "aria-label": `${label}. Arrow keys turn the view, plus and minus zoom, 1 to 5 choose a view.` });
+      "aria-label": `${label}. Arrow keys turn the view, plus and minus zoom, 1 to 4 choose a view.` });
     this.overlay = h("div", { class: "lk-overlay", "aria-hidden": "true" });
     this.host = host;
     if (!this.works) return;

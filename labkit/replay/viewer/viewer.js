@@ -3,7 +3,6 @@ import { LiveArm } from "./live.js";
 import { JacobianDemo } from "./jacobian_demo.js";
 import { Player } from "./player.js";
 import { RotationDemo } from "./rotation_demo.js";
-import { ScalingDemo } from "./scaling_demo.js";
 import { dress } from "./style.js";
 
 // For pages that have their own loop, such as the book's live arm.
@@ -20,7 +19,6 @@ const KINDS = {
   motion: (host, data, robot) => new Player(host, data, robot),
   live: (host, data, robot, link) => new LiveArm(host, data, robot, link),
   jacobian: (host, data, robot) => new JacobianDemo(host, data, robot),
-  scaling: (host) => new ScalingDemo(host),
   rotation: (host) => new RotationDemo(host),
 };
 
