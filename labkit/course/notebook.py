@@ -290,12 +290,18 @@ def _question_cells(question: Question, stub: Cell) -> Iterator[dict[str, Any]]:
 
 
 def _value_cells(asked: Prediction | Identification) -> Iterator[dict[str, Any]]:
-    """The three cells of a value; the text under `BLANK` is the answer cell in students' copies."""
+    """The three cells of a value; the text under `BLANK` is the answer cell in students' copies.
+
+    The check of a prediction is there for nbgrader, and out of sight: `predict` says the same.
+    """
     yield _cell("markdown", asked.brief(), "brief", {})
     cell = _cell("code", asked.solved(), "answer", _nbgrader(asked.name, solution=True))
     cell["metadata"][BLANK] = asked.cell()
     yield cell
-    yield _check(asked.name, asked.points)
+    checked = _check(asked.name, asked.points)
+    if not hasattr(asked, "hints"):
+        checked["metadata"]["jupyter"] = {"source_hidden": True, "outputs_hidden": True}
+    yield checked
 
 
 BLANK = "blank"

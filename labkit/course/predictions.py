@@ -9,9 +9,9 @@ import numpy as np
 
 from ..errors import LabkitError, listed
 from .judges import COMMITTED, UNSAID, Choose, Curve, Form, Number
-from .messages import wrapped
+from .messages import Message, wrapped
 from .question import Call, Question, Test, in_points
-from .student import desk
+from .student import desk, say
 
 
 @dataclass(frozen=True)
@@ -96,7 +96,8 @@ def predict(name: str, said: Any = UNSAID, *more: Any, truth: Any = None) -> Any
         print(wrapped(f"{name}: {found}."))
     else:
         place.committed[name] = said
-        print(wrapped(f"You are committed to: {form.words(said)}."))
+        verdict, *_ = place.verdict(name, said)  # stored with the output, so no check need be run
+        say(Message(f"You are committed to: {form.words(said)}."), verdict, None)
     return said
 
 

@@ -228,7 +228,7 @@ def check(name: str, function: Any = UNSAID) -> float:
     wrong = desk().wrong_dependencies(name, function)
     says = message(question, verdict, printed, wrong, cure=cure_is_due(verdict, function))
     says = replace(says, helps=[*filter(None, more), *says.helps])
-    _say(says, verdict, found if verdict.mistake else None)
+    say(says, verdict, found if verdict.mistake else None)
     return Points(verdict.earned)
 
 
@@ -349,7 +349,7 @@ def use(
     return given
 
 
-def _say(says: Message, verdict: Verdict, found: Mismatch | None) -> None:
+def say(says: Message, verdict: Verdict, found: Mismatch | None) -> None:
     """Print a message; in a notebook, show a card, whose output also stores the verdict."""
     if shell() is None:
         print(says)

@@ -111,7 +111,7 @@ def _about(path: Path) -> tuple[str, str]:
     """A notebook's title and how long it takes, from its first cell."""
     first = nbformat.read(path, as_version=4).cells[0].source
     title = re.search(r"^# (?:\d+ · )?(.*)$", first, re.MULTILINE)
-    time = re.search(r"\*\*Time\*\* \| (.*?) \|", first)
+    time = re.search(r"\*\*Time\*\* \| (.*?)(\. | \|)", first)
     return (title[1] if title else path.stem), (time[1] if time else "")
 
 
