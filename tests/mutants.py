@@ -23,7 +23,7 @@ MODULES = {
     "labkit/model.py": "test_model.py test_kinematics.py test_model_terms.py test_impedance.py",
     "labkit/joints.py": "test_joints.py test_plant_effects.py test_plant.py test_limits.py",
     "labkit/grader/grade.py": "grader/test_session.py grader/test_result_files.py",
-    "labkit/grader/students/roster.py": "grader/test_roster.py grader/test_collect.py",
+    "labkit/grader/roster.py": "grader/test_roster.py grader/test_collect.py",
 }
 """Each module, and its tests in the gate."""
 SWAPS = {
