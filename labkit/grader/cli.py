@@ -18,7 +18,7 @@ import click
 from ..course.authoring.layout import DEFENCE, Course
 from ..errors import LabkitError
 from .clean import few, how_many
-from .each import Failure, Failures
+from .each import Failures
 
 PATH = click.Path(path_type=Path)
 VERBS: list[click.Command] = []
@@ -157,7 +157,7 @@ def release(course: Course, names: tuple[str, ...], plain: Path | None) -> int:
                 print(release(course, name, seed_of(course)), flush=True)
                 made.append(name)
             except LabkitError as error:
-                failures.add(f"{name} is not released", [error])
+                failures.append(f"{name} is not released: {error}")
         if made:
             _tell(filter(None, [public_warning(course)]))
             print(f"for students: {course.release}\nfor graders, with hidden cases: {course.build}")
@@ -272,20 +272,21 @@ def grade(
     a question has other points since, its share of them is compared.
     A notebook of another assignment that was handed in is named at the end, with exit code 1.
     """
+    from ..course.authoring.bundle import Bundle
     from .batch import GradeOptions, changes, common_failures, grade_class
     from .gradebook import record
     from .results import Results
-    from .roster import idle_extensions
+    from .rules import read_rules
     from .submission import misnamed, none_of, students
 
     jobs, say = jobs or len(os.sched_getaffinity(0)), partial(print, file=sys.stderr, flush=True)
     options = GradeOptions(jobs, isolated, dask, again, lower, tell=say)
     with Failures() as failures:
-        failures.add("ATTENTION", idle_extensions(course))  # an error in the rules stops here
+        read_rules(course)  # an error in them stops here, not after an hour
         found = students(course, assignment)
         who = [*student] or found
         if not student:
-            failures.add("not graded", misnamed(course, assignment))
+            failures += [f"not graded: {one}" for one in misnamed(course, assignment)]
         for name in who or [""] * (not failures.code):
             if name not in found:
                 raise LabkitError(none_of(course, assignment, name))
@@ -301,28 +302,16 @@ def grade(
             print(f"[{number}/{len(who)}] {one.result}{says}", flush=True)
             if one.result.unanswered and not one.result.rejected:
                 says = f"{one.result.unanswered}; ask for the right one"
-                failures.add("ATTENTION", [Failure(one.result.student, says)])
+                failures.append(f"ATTENTION: {one.result.student}: {says}")
         written = record(course, assignment, results)
         _tell(failures.sift(written, "not in the gradebook"))
         everybody = results if student else list(Results(course, assignment))
         _tell(f"ATTENTION: {says}" for says in common_failures(everybody))
+        if by_hand := Bundle.of(course, assignment).by_hand:
+            print(f"not included: {how_many(by_hand, 'point')}, marked in formgrader")
         if results:
-            _tell(_by_hand(course, assignment))
             print(f"isolation: {results[-1].isolation}\nresults: {course.results / assignment}")
     return failures.code
-
-
-def _by_hand(course: Course, assignment: str) -> Iterable[str]:
-    """The points by hand, which the printed marks do not include, and who still waits for them."""
-    from ..course.authoring.bundle import Bundle
-    from .gradebook import open_gradebook
-
-    if by_hand := Bundle.of(course, assignment).by_hand:
-        with open_gradebook(course) as book:
-            found = book.assignment_submissions(assignment)
-            waiting = sum(x.needs_manual_grade for x in found)
-        left = f"{how_many(waiting, 'student')} still to be marked"
-        yield f"not included: {how_many(by_hand, 'point')} by hand; {left}"
 
 
 @verb("01_paths --names")
@@ -345,7 +334,7 @@ def class_report(course: Course, assignment: str, names: bool, to: Path | None) 
         if not any(mark.result for mark in marks):
             raise _nobody(assignment, next((m.missing for m in marks if m.missing), ""))
         out = [mark for mark in marks if mark.missing and not mark.lines]
-        failures.add("left out", [Failure(mark.student, mark.missing) for mark in out])
+        failures += [f"left out: {mark.student}: {mark.missing}" for mark in out]
         problems = {p.name: p for p in course.problems(assignment)}
         called, fewest = (str, 1) if names else (pseudonyms(course), FEWEST)
         asked = Bundle.of(course, assignment).questions
@@ -420,7 +409,7 @@ def export(
     gradebook, moodle-worksheet for the assignment's page in Moodle; gradescope is the zip with
     which Gradescope grades ASSIGNMENT itself.
     """
-    from .export import LAYOUTS, as_csv, of_term, remarks, unmatched
+    from .export import LAYOUTS, as_csv, of_term, remarks
     from .marks import marks_of
     from .roster import idle_extensions
     from .rules import read_rules
@@ -451,8 +440,6 @@ def export(
         table = of_term(all_marks, {name: rules.weight(name) for name in all_marks})
     else:
         table = LAYOUTS[layout](column or assignment, all_marks[assignment])
-        lost, count = unmatched(layout, all_marks[assignment])
-        doubts += [f"{layout} can find none of the {count} students"] * (0 < count == len(lost))
         if layout.startswith("moodle"):
             full = max(mark.points for mark in everybody)
             _tell([f"in Moodle the maximum of {assignment} must be {full:g}"], doubtful=True)
@@ -469,8 +456,7 @@ def _autograder(course: Course, assignment: str, to: Path | None) -> int:
         raise LabkitError("name the zip to write: --to FILE")
     with Failures() as failures:
         unknown = autograder(course, assignment, to)
-        why = "the roster has no e-mail address, by which Gradescope tells whose arm it is"
-        failures.add("not known to Gradescope", [Failure(x, why) for x in unknown])
+        failures += [f"{x} has no address in the roster; Gradescope needs it" for x in unknown]
         print(f"written: {to}; it holds the hidden cases, so give it to Gradescope alone")
     return failures.code
 

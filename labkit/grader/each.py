@@ -65,20 +65,13 @@ def for_student(
         return Failure(student, clean_line(says))
 
 
-class Failures:
-    """The failures of a command, which are printed on stderr when the command ends."""
-
-    def __init__(self) -> None:
-        self.sentences: list[str] = []
+class Failures(list[str]):
+    """Sentences on what failed in a command, which are printed on stderr when the command ends."""
 
     @property
     def code(self) -> int:
         """The exit code: 1 if something failed."""
-        return 1 if self.sentences else 0
-
-    def add(self, what: str, failed: Iterable[object]) -> None:
-        """Add failures; ``what`` says what they mean, such as "not graded"."""
-        self.sentences += [f"{what}: {one}" for one in failed]
+        return int(bool(self))
 
     def sift(self, outcomes: Iterable[T | Failure], what: str) -> Iterator[T]:
         """Yield the results, and collect the failures.
@@ -89,7 +82,7 @@ class Failures:
         """
         for one in outcomes:
             if isinstance(one, Failure):
-                self.add(what, [one])
+                self.append(f"{what}: {one}")
             else:
                 yield one
 
@@ -97,5 +90,5 @@ class Failures:
         return self
 
     def __exit__(self, *_: object) -> None:
-        for sentence in self.sentences:
+        for sentence in self:
             print(sentence, file=sys.stderr, flush=True)

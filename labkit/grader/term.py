@@ -15,7 +15,6 @@ from ..course.own_arm import FILE as ARMS
 from ..course.own_arm import HANDLES
 from ..errors import LabkitError
 from . import collect, roster
-from .clean import how_many
 from .files import write
 from .release import release
 from .rules import FILE as RULES
@@ -61,8 +60,9 @@ def new_term(course: Course, names: Sequence[str] = (), even_with_work: bool = F
     """
     for name in names:
         course.notebook_source(name)
-    if (there := running(course)) and not even_with_work:
-        raise LabkitError(f"the term under way has {there}; add --yes to archive all this")
+    there = [x for x in ("submitted", "results", roster.FILE) if (course.root / x).exists()]
+    if there and not even_with_work:
+        raise LabkitError(f"the term has {', '.join(there)}; add --yes to archive all this")
     old = archive(course)
     record = {"secret": secrets.token_hex(16), "begun": datetime.now(UTC).date().isoformat()}
     write(course.term, json.dumps(record) + "\n")  # first: a failed release keeps this secret
@@ -71,15 +71,6 @@ def new_term(course: Course, names: Sequence[str] = (), even_with_work: bool = F
     says += [f"released: {one.name}, maximum {one.points:g}" for one in made]
     says += [f"{RULES} is as it was; change its dates"] * (course.root / RULES).exists()
     return [*says, f"the term's secret is in {_TERM}; keep a copy of course_private/"]
-
-
-def running(course: Course) -> str:
-    """The students, submissions and marks of the current term, in words; "" if none."""
-    enrolled = len(roster.read_roster(course).students)
-    submitted = len({path.parent for path in course.submitted.glob("*/*/*")})
-    graded = len(list(course.results.glob("*/*.json")))
-    counts = ((enrolled, "student"), (submitted, "submission"), (graded, "graded mark"))
-    return ", ".join(how_many(n, what) for n, what in counts if n)
 
 
 def archive(course: Course) -> Path | None:

@@ -21,7 +21,6 @@ from labkit.course.authoring.bundle import Bundle
 from labkit.course.authoring.layout import Course
 from labkit.errors import LabkitError
 from labkit.grader import gradebook
-from labkit.grader.cli import _by_hand
 from labkit.grader.gradebook import open_gradebook, record
 from labkit.grader.marks import MarkLine
 from labkit.grader.plan import plan
@@ -131,15 +130,6 @@ def test_no_page_before_all_is_marked(written, capsys):
     assert "It is not marked yet." in page(written, "ada")
     code, _, err = verb(written, capsys, "export")
     assert code == 1 and f"no mark: ada: still to be marked: {WHY}, {REPORT}; mark by hand" in err
-
-
-def test_grading_says_for_how_many_a_person_still_has_to_mark(written):
-    """Until nobody waits; the points by hand are in none of the marks that it prints."""
-    says = "not included: 6 points by hand; "
-    assert list(_by_hand(written, NAME)) == [f"{says}2 students still to be marked"]
-    for student, name in [("ada", WHY), ("ada", REPORT), ("bob", REPORT)]:
-        give(written, student, name, 1.0)
-    assert list(_by_hand(written, NAME)) == [f"{says}0 students still to be marked"]
 
 
 def test_a_students_page_waits_for_their_own_marks_alone(written, capsys):

@@ -117,7 +117,7 @@ def test_a_term_with_students_does_not_end_by_mistake(course, capsys):
         file.parent.mkdir(parents=True)
         file.write_text("{}")
     assert main(words) == 2
-    assert "2 students, 1 submission, 1 graded mark" in capsys.readouterr().err
+    assert "submitted, results, course_private/roster.csv" in capsys.readouterr().err
     assert hand_in.exists() and course.term.read_text() == record
     assert main([*words, "--yes"]) == 0
     (old,) = (course.root / "course_private").glob("archive-*")
