@@ -59,14 +59,12 @@ JACOBIAN = Problem(
             "Your linear rows are the velocity of the point of the hand that is passing the "
             "world's origin: that is the spatial Jacobian.",
             mistakes.arm_from_the_base,
-            "There are three Jacobians; say which one you mean.",
             cure="Measure the moment arm from the joint to the tip.",
         ),
         Wrong(
             "the cross product reversed",
             "The linear rows have the wrong sign.",
             mistakes.product_reversed,
-            "A cross product changes its sign with the order.",
             cure="Take z × r, not r × z, with r from the joint to the tip.",
         ),
         Wrong(
@@ -74,13 +72,11 @@ JACOBIAN = Problem(
             "Your angular rows come first. In this course a twist is (v, w), with the linear "
             "part first; books differ.",
             mistakes.turns_first,
-            "Twist order is a convention: settle it once.",
         ),
         Wrong(
             "every axis through the origin",
             "Your moment arms all begin at the world's origin, as if every axis went through it.",
             mistakes.arm_of_the_tip,
-            "A moment arm begins at the axis.",
             cure="The moment arm r goes from the joint's axis to the tip: tip minus the joint's "
             "origin.",
         ),
@@ -89,7 +85,6 @@ JACOBIAN = Problem(
             "The farther the tip is from the axis, the faster it moves; your moment arms all "
             "have the length 1.",
             mistakes.unit_arms,
-            "Speed is angular speed times distance.",
             cure="Do not divide the moment arm by its length.",
         ),
     ),
@@ -137,14 +132,12 @@ MASS_MATRIX = Problem(
             "the inertia left in the link's axes",
             "w is in world axes and the inertia is in the link's axes.",
             mistakes.inertia_not_turned,
-            "A product needs both factors in the same axes.",
             cure="Turn the inertia first, with R I Rᵀ.",
         ),
         Wrong(
             "the inertia turned the wrong way",
             "Rᵀ I R turns an inertia from world axes into the link's axes.",
             mistakes.inertia_turned_back,
-            "R_wl takes vectors from the link to the world, so I_w = R I_l Rᵀ.",
             cure="Turn it in the other direction, with R I Rᵀ.",
         ),
         Wrong(
@@ -152,21 +145,18 @@ MASS_MATRIX = Problem(
             "The kinetic energy of the links' rotation is missing, so the last joint, which "
             "turns the hand about itself, has almost no inertia.",
             mistakes.points_only,
-            "The smallest eigenvalue of M shows it: it is close to zero.",
             cure="Add the part with the angular velocities.",
         ),
         Wrong(
             "half of the mass matrix",
             "The factor one half belongs to the energy, not to the matrix.",
             mistakes.half_of_it,
-            "T = ½ dqᵀ M dq.",
             cure="Leave it out.",
         ),
         Wrong(
             "the rows swapped",
             "You multiplied the angular velocity by the mass, and the velocity by the inertia.",
             mistakes.rows_swapped,
-            "A twist is (v, w), linear part first.",
             cure="Rows 0 to 2 of each Jacobian are the velocity and go with the mass; rows 3 to "
             "5 go with the inertia.",
         ),
@@ -174,28 +164,24 @@ MASS_MATRIX = Problem(
             "R I without the second R",
             "You multiplied the inertia only on the left.",
             mistakes.Kinetic(inertia=lambda I_l, R: R @ I_l),
-            "Vectors turn with one R, matrices with two.",
             cure="To change the axes of a matrix, multiply it on both sides: R I Rᵀ.",
         ),
         Wrong(
             "the inertia multiplied by the mass",
             "The inertia of a link, in kg m², already includes its mass.",
             mistakes.Kinetic(mass=True),
-            "Units: kg m² times kg is not an inertia.",
             cure="Do not multiply it by the mass.",
         ),
         Wrong(
             "rotation alone",
             "The links' centres of mass move as well, and their part of the energy is missing.",
             mistakes.Kinetic(linear=0.0),
-            "Kinetic energy has two parts.",
             cure="Add m Jᵥᵀ Jᵥ.",
         ),
         Wrong(
             "the last link only",
             "Your result contains only the last link.",
             mistakes.last_link_only,
-            "Every link moves.",
             cure="Start from zeros and add each link with +=.",
         ),
         Wrong(
@@ -203,7 +189,6 @@ MASS_MATRIX = Problem(
             "Each joint's motion affects the other joints, but beside your diagonal there are "
             "zeros.",
             mistakes.beside_left_out,
-            "A mass matrix couples the joints.",
             cure="The entries beside the diagonal belong to M.",
         ),
     ),
@@ -249,7 +234,6 @@ GRAVITY = Problem(
             "the sign reversed",
             "These are the torques of gravity itself; the arm falls twice as fast with them.",
             mistakes.Weights(lambda m, masses, J, g: m * J[:3].T @ g),
-            "g(q) = +∂V/∂q is equal to the motors' torque when the arm is at rest.",
             cure="Return the torques that hold the arm against gravity: the opposite sign.",
         ),
         Wrong(
@@ -257,56 +241,48 @@ GRAVITY = Problem(
             "Your answer is right only where z points up and a body falls with 9.81 m/s²: it "
             "does not depend on `g_w`.",
             mistakes.Weights(lambda m, masses, J, g: 9.81 * m * J[2]),
-            "An arm may hang on a wall.",
             cure="Use all three linear rows: -m J[:3]ᵀ g_w.",
         ),
         Wrong(
             "the z component alone",
             "You used only the z component of `g_w`, but on a wall gravity acts along x or y.",
             mistakes.Weights(lambda m, masses, J, g: -m * J[2] * g[2]),
-            "A force has three components.",
             cure="Use all three linear rows: -m J[:3]ᵀ g_w.",
         ),
         Wrong(
             "the size of g_w along z",
             "You used the length of `g_w` as if it always pointed down along z.",
             mistakes.Weights(lambda m, masses, J, g: m * J[2] * np.linalg.norm(g)),
-            "A force has a direction.",
             cure="Use all three linear rows: -m J[:3]ᵀ g_w.",
         ),
         Wrong(
             "all the weight at the hand",
             "You put all the weight at the hand, so the arm seems heavier than it is.",
             mistakes.all_at_the_hand,
-            "The weight of each link acts at its own centre of mass.",
             cure="Every link has its own centre of mass and its own Jacobian: use each.",
         ),
         Wrong(
             "masses in place of weights",
             "These numbers are in kg m, not in N m.",
             mistakes.Weights(lambda m, masses, J, g: -m * J[:3].T @ g / np.linalg.norm(g)),
-            "Write the unit of every factor.",
             cure="The weight of a mass is the mass times `g_w`, with its size.",
         ),
         Wrong(
             "the angular rows",
             "Rows 3 to 5 are angular, but weight does work where a centre of mass moves.",
             mistakes.Weights(lambda m, masses, J, g: -m * J[3:].T @ g),
-            "The rows of a Jacobian are (v, w), linear part first.",
             cure="Use the linear rows, J[:3].",
         ),
         Wrong(
             "the masses left out",
             "The masses are missing: each link counts as 1 kg.",
             mistakes.Weights(lambda m, masses, J, g: -J[:3].T @ g),
-            "Every link has its own weight.",
             cure="A weight is m g: multiply by the masses.",
         ),
         Wrong(
             "without the last link",
             "Your sum ends one link too early.",
             mistakes.Weights(lambda m, masses, J, g: -m * J[:3].T @ g, last=-1),
-            "Every link has its own weight.",
             cure="Include the last link.",
         ),
     ),
@@ -354,7 +330,6 @@ CORIOLIS = Problem(
             "C = Ṁ/2 passes the skew test, because Ṁ - 2C is then zero, and zero is skew. But C "
             "dq is then not the Coriolis torque.",
             mistakes.half_the_rate,
-            "A test that zero passes says little.",
             cure="Use Christoffel's symbols.",
         ),
         Wrong(
@@ -362,7 +337,6 @@ CORIOLIS = Problem(
             "C dq is right, but many matrices give this product, and for yours Ṁ - 2C is not "
             "skew. The proofs of notebook 04 need it to be skew.",
             mistakes.not_skew,
-            "C dq does not fix C; Christoffel's choice does.",
             cure="Use Christoffel's symbols.",
         ),
         Wrong(
@@ -370,7 +344,6 @@ CORIOLIS = Problem(
             "Either the factor in front of Christoffel's symbols is missing, or you divided a "
             "difference between q + h and q - h by h.",
             mistakes.without_the_half,
-            "The factor 1/2 comes from the kinetic energy, and the 2h from a central difference.",
             cure="The factor is 1/2, and the difference spans 2h.",
         ),
         Wrong(
@@ -378,7 +351,6 @@ CORIOLIS = Problem(
             "This is the transpose of C. Either you stored the entry in C[j, i], or the minus is "
             "on the wrong term.",
             mistakes.signs_mixed,
-            "The minus is the slope of the kinetic energy along q_i.",
             cure="The minus belongs to the slope along the row's own joint, ∂M_jk/∂q_i.",
         ),
         Wrong(
@@ -386,28 +358,24 @@ CORIOLIS = Problem(
             "You added all three slopes, but one of them comes from the kinetic energy, on the "
             "other side of Lagrange's equation.",
             mistakes.all_signs_plus,
-            "The signs are +, +, -.",
             cure="Subtract the third slope, ∂M_jk/∂q_i.",
         ),
         Wrong(
             "two of three slopes: the second is missing",
             "Christoffel's symbol has three slopes, and the second is missing.",
             mistakes.Slopes((1.0, 0.0, -1.0)),
-            "Three slopes, one minus.",
             cure="They are those of M_ij along k, of M_ik along j, minus that of M_jk along i.",
         ),
         Wrong(
             "two of three slopes: the third is missing",
             "Christoffel's symbol has three slopes, and the third is missing.",
             mistakes.Slopes((1.0, 1.0, 0.0)),
-            "Three slopes, one minus.",
             cure="They are those of M_ij along k, of M_ik along j, minus that of M_jk along i.",
         ),
         Wrong(
             "multiplied by the speed of j",
             "You multiplied the symbol of i, j, k by the speed of joint j.",
             mistakes.Slopes(along="j"),
-            "Sum over the index that does not occur in the result.",
             cure="Multiply it by the speed of joint k, and sum over k.",
         ),
     ),
@@ -454,7 +422,6 @@ POWER_BALANCE = Problem(
             "Lifting the arm stores energy too; without it the balance includes the power that "
             "gravity takes.",
             mistakes.kinetic_only,
-            "Energy is T + V.",
             cure="Add the potential energy.",
         ),
         Wrong(
@@ -462,21 +429,18 @@ POWER_BALANCE = Problem(
             "`log.command` is the torque that the controller commanded. Where a limit reduced "
             "it, the motors gave less.",
             mistakes.commanded_torque,
-            "The command and the torque that acts can differ.",
             cure="Use `log.tau`.",
         ),
         Wrong(
             "the sign reversed",
             "In your balance friction is a gain and a helping hand a loss.",
             mistakes.motors_minus_energy,
-            "Say in words what a positive number means.",
             cure="Compute the growth of the energy minus the power of the motors.",
         ),
         Wrong(
             "a slope that is not per second",
             "Your energy hardly seems to grow, so its slope is not per second.",
             mistakes.steps_not_seconds,
-            "A watt is a joule per second.",
             cure="Also pass the log's times, in seconds, to np.gradient.",
         ),
         Wrong(
@@ -484,42 +448,36 @@ POWER_BALANCE = Problem(
             "You added what the motors supply to the growth of the energy, but it explains part "
             "of that growth.",
             mistakes.Balance(power=-1.0),
-            "Energy balance: growth minus what is supplied.",
             cure="Subtract their power.",
         ),
         Wrong(
             "the motors' power left out",
             "This is the growth of the energy alone.",
             mistakes.Balance(power=0.0),
-            "Energy balance: growth minus what is supplied.",
             cure="Subtract the power of the motors.",
         ),
         Wrong(
             "potential energy only",
             "The moving links have kinetic energy as well.",
             mistakes.Balance(kinetic=0.0),
-            "Energy has two parts.",
             cure="Add it.",
         ),
         Wrong(
             "the Lagrangian",
             "Kinetic minus potential energy is the Lagrangian.",
             mistakes.Balance(potential=-1.0),
-            "T - U is for equations of motion, T + U is conserved.",
             cure="The energy is their sum.",
         ),
         Wrong(
             "torque times angle",
             "Torque times angle is no power: it is in joules.",
             mistakes.Balance(by=lambda log: log.q),
-            "Units: joules are not watts.",
             cure="Power is torque times speed: use log.dq.",
         ),
         Wrong(
             "the powers without their signs",
             "A motor that brakes removes energy from the arm: its power is below zero.",
             mistakes.sizes_of_power,
-            "A power has a sign.",
             cure="Keep the signs.",
         ),
     ),

@@ -67,7 +67,6 @@ BANG_BANG = Problem(
             "With this acceleration, s reaches only 1/4 by the middle, where it should be 1/2. "
             "Speeding up lasts T/2, not T.",
             mistakes.twice_too_slow,
-            "Check the middle of every symmetric motion: s(T/2) = 1/2.",
             cure="Choose a such that a (T/2)²/2 = 1/2.",
         ),
         Wrong(
@@ -75,42 +74,36 @@ BANG_BANG = Problem(
             "Before the start and from T on nothing moves: your s is right there and ds is 0, "
             "but dds is not.",
             mistakes.still_but_accelerated,
-            "The derivative of a constant is zero.",
             cure="The derivative of a constant is 0: dds must be 0 there as well.",
         ),
         Wrong(
             "no hold after the end",
             "After the end your formula continues, and s decreases from 1.",
             mistakes.Bang(after=False),
-            "A reference can be evaluated at any time; outside the motion it is at rest.",
             cure="From t = T on, the motion rests at s = 1.",
         ),
         Wrong(
             "no hold before the start",
             "Before t = 0 your parabola continues, so s is above 0.",
             mistakes.Bang(before=False),
-            "A reference can be evaluated at any time; outside the motion it is at rest.",
             cure="Before the start, the motion rests at s = 0.",
         ),
         Wrong(
             "back to 0 after the end",
             "After the end your s is 0, so the arm would jump back to the start.",
             mistakes.Bang(end=0.0),
-            "After the end, a motion rests at its end, not at its start.",
             cure="After the end, the motion rests where it arrived, at s = 1.",
         ),
         Wrong(
             "still speeding up in the second half",
             "Your dds stays positive while the speed decreases.",
             mistakes.Bang(dds=-1.0),
-            "The second derivative is the slope of the first.",
             cure="Braking is a negative acceleration: -a.",
         ),
         Wrong(
             "a negative speed while braking",
             "Braking makes the speed smaller, not negative, because s still grows.",
             mistakes.Bang(ds=-1.0),
-            "Slowing down is not going back.",
             cure="The speed is a times the time until the end.",
         ),
         Wrong(
@@ -118,14 +111,12 @@ BANG_BANG = Problem(
             "duration // 2 drops the fraction, so the middle of a motion of 1 s is at 0 s, and "
             "it brakes from the start.",
             mistakes.Bang(middle=lambda T: T // 2.0),
-            "// rounds down; / divides.",
             cure="Write duration / 2.",
         ),
         Wrong(
             "the distance of the first half forgotten",
             "In the second half your s starts again at 0, but the first half ended at 1/2.",
             mistakes.Bang(brake=mistakes.half_the_way_lost),
-            "Each phase starts with the position and speed at the end of the phase before.",
             cure="Add the 1/2, or count back from the end: 1 - a (T - t)²/2.",
         ),
     ),
@@ -169,7 +160,6 @@ DURATION_FOR = Problem(
             "Over a short distance the arm never reaches v_max; your ramps alone cover more than "
             "the distance.",
             mistakes.Lasting(lambda d, v, a: d / v + v / a),
-            "A trapezoid whose cruise would last less than zero seconds is a triangle.",
             cure="Use the smaller of v_max and √(distance·a_max) as the top speed.",
         ),
         Wrong(
@@ -177,14 +167,12 @@ DURATION_FOR = Problem(
             "This is the report's equation 1. Its 5 has the unit s/m, so the arm's limits do not "
             "matter in it, and a short move needs an acceleration without bound.",
             mistakes.Lasting(lambda d, v, a: 5.0 * d),
-            "Write the unit of every number.",
             cure="Find the width of the trapezoid from v_max, a_max and its area.",
         ),
         Wrong(
             "a duration of distance/v",
             "The ramps are slower than the cruise, so the motion lasts longer than distance/v.",
             mistakes.Lasting(lambda d, v, a: d / min(v, sqrt(d * a))),
-            "The area under the speed is the distance.",
             cure="Add v/a_max, which is half of each ramp, twice.",
         ),
         Wrong(
@@ -193,7 +181,6 @@ DURATION_FOR = Problem(
             mistakes.Lasting(
                 lambda d, v, a: d / min(v, sqrt(d * a)) + 2.0 * min(v, sqrt(d * a)) / a
             ),
-            "The area under the speed is the distance.",
             cure="The area under the trapezoid is v (T - v/a_max); solve that for T.",
         ),
         Wrong(
@@ -203,14 +190,12 @@ DURATION_FOR = Problem(
             mistakes.Lasting(
                 lambda d, v, a: d / min(v, sqrt(2.0 * d * a)) + min(v, sqrt(2.0 * d * a)) / a
             ),
-            "A triangle has two halves.",
             cure="Only half of the distance is there to speed up: √(distance·a_max).",
         ),
         Wrong(
             "one half of the triangle",
             "Over a short distance this is the time to speed up; braking takes as long again.",
             mistakes.Lasting(lambda d, v, a: sqrt(d / a) if d < v * v / a else d / v + v / a),
-            "A triangle has two halves.",
             cure="Double it where v_max is not reached.",
         ),
         Wrong(
@@ -220,7 +205,6 @@ DURATION_FOR = Problem(
             mistakes.Lasting(
                 lambda d, v, a: 2.0 * sqrt(d / a) if d < v * v / a / 2.0 else d / v + v / a
             ),
-            "Both ramps need distance.",
             cure="The motion is a triangle below v_max²/a_max.",
         ),
     ),
@@ -275,21 +259,18 @@ TRAPEZOID = Problem(
             "no triangular case",
             "On a short distance, the ramps of a long one overlap, so s passes 1 or jumps back.",
             mistakes.always_cruises,
-            "A trapezoid whose cruise would last less than zero seconds is a triangle.",
             cure="Use the smaller of v_max and √(distance·a_max) as the top speed.",
         ),
         Wrong(
             "limits taken for limits of s",
             "v_max is in m/s and a_max in m/s², but s has no unit.",
             mistakes.limits_on_s,
-            "Units: a limit in m/s bounds distance·ds, not ds.",
             cure="Divide both limits by the distance before you use them as limits of s.",
         ),
         Wrong(
             "metres in place of s",
             "You returned the distance covered, in metres, but s goes from 0 to 1.",
             mistakes.way_for_s,
-            "s has no unit.",
             cure="Divide distance covered, speed and acceleration by `distance`.",
         ),
         Wrong(
@@ -297,7 +278,6 @@ TRAPEZOID = Problem(
             "√(2·distance·a_max) is the speed after speeding up over the whole distance, but "
             "only half of it is available, because the other half is for braking.",
             mistakes.speeds_up_all_the_way,
-            "A triangle has two halves.",
             cure="The top speed of the triangle is √(distance·a_max).",
         ),
         Wrong(
@@ -305,14 +285,12 @@ TRAPEZOID = Problem(
             "Your v·t jumps where the cruise begins: at the end of the ramp, the distance "
             "covered is v·ramp/2.",
             mistakes.Ramps(offset=0.0),
-            "Each phase starts with the position and speed at the end of the phase before.",
             cure="The cruise is v (t - ramp/2).",
         ),
         Wrong(
             "still speeding up in the last phase",
             "Your dds stays positive while the speed decreases.",
             mistakes.Ramps(dds=-1.0),
-            "The second derivative is the slope of the first.",
             cure="Braking is a negative acceleration.",
         ),
     ),
@@ -389,14 +367,12 @@ CIRCLE = Problem(
             "than the radius, and the circle misses its own start. The report's equation 12 has "
             "this mistake.",
             mistakes.radius_in_space,
-            "A radius is measured in the circle's plane.",
             cure="Measure the radius in the circle's plane, from x and y alone.",
         ),
         Wrong(
             "the height of the centre",
             "Your circle jumps to the centre's height.",
             mistakes.height_of_the_centre,
-            "A reference must begin where the arm is.",
             cure="Keep the height of the start.",
         ),
         Wrong(
@@ -404,35 +380,30 @@ CIRCLE = Problem(
             "Your circle always begins in the direction of x, wherever the start is, so the arm "
             "would jump.",
             mistakes.starts_at_angle_zero,
-            "A reference must begin where the arm is.",
             cure="Turn the spoke that goes to the start.",
         ),
         Wrong(
             "derivatives with respect to the angle",
             "These are the derivatives with respect to the angle, not with respect to s.",
             mistakes.rates_without_two_pi,
-            "The chain rule again: dφ/ds = 2π.",
             cure="The first derivative has one more factor 2π, and the second has two.",
         ),
         Wrong(
             "one factor 2π in the acceleration",
             "Your velocity is right, but the inner derivative is missing once in the acceleration.",
             mistakes.one_two_pi_in_the_acceleration,
-            "The inner derivative comes out once for each derivative.",
             cure="The acceleration has (2π)².",
         ),
         Wrong(
             "a clockwise circle",
             "Seen from above your circle runs clockwise.",
             mistakes.clockwise,
-            "Angles about z grow from x to y.",
             cure="Angles grow counter-clockwise: θ = θ₀ + 2πs.",
         ),
         Wrong(
             "an acceleration that points outwards",
             "The second derivative should point towards the axis; yours points away from it.",
             mistakes.accelerates_outwards,
-            "A point on a circle accelerates towards the centre.",
             cure="Differentiating a cosine twice gives minus a cosine.",
         ),
         Wrong(
@@ -440,7 +411,6 @@ CIRCLE = Problem(
             "y/x is the same for opposite points, so a start at a smaller x than the centre's is "
             "moved to the opposite side.",
             mistakes.half_an_arctangent,
-            "atan2 knows the quadrant, atan does not.",
             cure="Use np.arctan2(y, x), or turn the spoke without any angle.",
         ),
         Wrong(
@@ -448,14 +418,12 @@ CIRCLE = Problem(
             "Your point has the right angle, but your velocity does not. The report's equations "
             "have this mistake.",
             mistakes.velocity_from_angle_zero,
-            "Differentiating does not change the angle inside the cosine.",
             cure="The velocity needs θ₀ + 2πs too.",
         ),
         Wrong(
             "x and y exchanged in the arctangent",
             "Your circle begins elsewhere: the arguments of np.arctan2 are exchanged.",
             mistakes.arctangent_of_x_over_y,
-            "Evaluate every path at s = 0: it must begin at the start.",
             cure="np.arctan2 takes y first: np.arctan2(y, x), with x and y measured from the "
             "centre.",
         ),
@@ -516,7 +484,6 @@ COMPOSE = Problem(
             "the term dx·dds left out",
             "Your acceleration along the path is missing; on a line nothing would remain.",
             mistakes.drops_the_ramp,
-            "Product rule: d/dt (dx ds) = ddx ds² + dx dds.",
             cure="The product rule has two terms: ddx·ds² + dx·dds.",
         ),
         Wrong(
@@ -524,14 +491,12 @@ COMPOSE = Problem(
             "The centripetal term grows with the square of the speed. A line cannot show this, "
             "because its ddx is zero; a circle does.",
             mistakes.forgets_the_square,
-            "The inner derivative appears twice.",
             cure="Write ds².",
         ),
         Wrong(
             "the path evaluated at t",
             "A path does not depend on time.",
             mistakes.time_for_s,
-            "s says where, t says when.",
             cure="Evaluate it at s, which the schedule returns.",
         ),
         Wrong(
@@ -539,7 +504,6 @@ COMPOSE = Problem(
             "You multiplied ddx by dds, but the second derivative of a composition is not the "
             "product of second derivatives.",
             mistakes.schedule_twice,
-            "The second derivative of x(s(t)) is ddx·ds² + dx·dds.",
             cure="Differentiate dx·ds once more: the product rule gives two terms.",
         ),
         Wrong(
@@ -547,21 +511,18 @@ COMPOSE = Problem(
             "The acceleration that bends the path is missing: on a circle, the one towards the "
             "centre.",
             mistakes.Chained(bend=0.0),
-            "Product rule: d/dt (dx ds) = ddx ds² + dx dds.",
             cure="The product rule has two terms: ddx·ds² + dx·dds.",
         ),
         Wrong(
             "the velocity not scaled",
             "Your velocity is still dx, the derivative with respect to s.",
             mistakes.Chained(velocity=0.0),
-            "Say with respect to which variable each derivative is taken.",
             cure="With respect to time it is dx·ds.",
         ),
         Wrong(
             "dx·dds with a minus",
             "Your two terms have opposite signs.",
             mistakes.Chained(along=-1.0),
-            "Product rule: d/dt (dx ds) = ddx ds² + dx dds.",
             cure="The product rule adds its two terms.",
         ),
         Wrong(
@@ -569,7 +530,6 @@ COMPOSE = Problem(
             "One of your two terms is there twice. The product dx·ds has two factors, so its "
             "derivative has two different terms.",
             mistakes.Chained(along=2.0),
-            "Product rule: d/dt (dx ds) = ddx ds² + dx dds.",
             cure="dx·dds occurs once.",
         ),
     ),
@@ -631,35 +591,30 @@ SEGMENT_AT = Problem(
             "At the instant where two segments meet, your earlier one is still active, but its "
             "time is over.",
             mistakes.Segments(joint=True),
-            "Each interval contains its start but not its end.",
             cure="A segment contains its start but not its end: begun <= t < begun + duration.",
         ),
         Wrong(
             "the local time stops at the end",
             "After the end, the last segment is still active, but your local time has stopped.",
             mistakes.Segments(local=lambda t, begun, d: min(t - begun, d)),
-            "Let the segment itself decide what it does after its end.",
             cure="It keeps growing: t minus the time at which the segment began.",
         ),
         Wrong(
             "the time since the start of the tour",
             "This is the time since the start of the tour.",
             mistakes.Segments(local=lambda t, begun, d: t),
-            "Say for each time from which instant it is measured.",
             cure="Measure the local time from the instant at which the segment began.",
         ),
         Wrong(
             "a fraction of the segment's duration",
             "The local time is in seconds; you divided it by the segment's duration.",
             mistakes.Segments(local=lambda t, begun, d: (t - begun) / d),
-            "A time has a unit; a fraction of a duration has none.",
         ),
         Wrong(
             "a local time of 0 before the start",
             "Before the start, the first segment is active and its local time is negative. Yours "
             "is 0.",
             mistakes.Segments(local=lambda t, begun, d: max(t - begun, 0.0)),
-            "Let the segment itself decide what it does before its start.",
             cure="It is t itself.",
         ),
         Wrong(
@@ -667,14 +622,12 @@ SEGMENT_AT = Problem(
             "np.argmax gives the index of the first True, and 0 where there is none: after the "
             "end your first segment is on.",
             mistakes.argmax_of_ends,
-            "np.argmax of nothing but False is 0.",
             cure="Treat times after the end apart, or use np.searchsorted.",
         ),
         Wrong(
             "counted from 1",
             "The first segment has the index 0.",
             mistakes.Segments(first=1),
-            "Python counts from 0.",
         ),
     ),
     variants=(variants.segment_by_searchsorted, variants.segment_by_walking),

@@ -86,7 +86,6 @@ JOINT_VELOCITY_PD = Problem(
             "accumulate two hundred times a second: without kd nothing damps the arm, and it "
             "swings.",
             mistakes.adds_to_the_measured,
-            "Adding to the measured speed puts one more integrator in the loop.",
             cure="Put the target's speed in place of `state.dq` in the first term.",
         ),
         Wrong(
@@ -94,21 +93,18 @@ JOINT_VELOCITY_PD = Problem(
             "The arm follows, but stays behind by the target's speed divided by kp: nothing in "
             "your command says how fast the target moves.",
             mistakes.no_feedforward,
-            "Feedback waits for an error; feed-forward does not.",
             cure="Add the target's own speed.",
         ),
         Wrong(
             "the error of the angles reversed",
             "kp pushes the arm away from its target. The sign of this term was right.",
             mistakes.pushes_away,
-            "Every error has the same sign convention: target minus actual.",
             cure="Use target minus actual.",
         ),
         Wrong(
             "kp on the feed-forward too",
             "The target's speed is multiplied by kp, which gives it another unit.",
             mistakes.kp_on_all,
-            "A gain with a unit changes the unit of what it multiplies.",
             cure="Multiply only the error by the gain.",
         ),
     ),
@@ -166,7 +162,6 @@ DECAY_RATE = Problem(
             "kd does not make the decay faster: here it slows the decay. The speed is on both "
             "sides of the equation.",
             mistakes.faster_with_d,
-            "In a velocity loop, D brakes the very speed that reduces the error.",
             cure="(1 + kd) de/dt = -kp e.",
         ),
         Wrong(
@@ -174,14 +169,12 @@ DECAY_RATE = Problem(
             "kp alone is right only for kd = 0. The measured speed is the commanded one, so the "
             "command depends on itself through kd.",
             mistakes.without_d,
-            "Write down the whole loop.",
             cure="Solve for the speed.",
         ),
         Wrong(
             "a rate with a minus",
             "exp(-r t) already contains the minus, and yours is a second one.",
             mistakes.minus_the_rate,
-            "A pole and a decay rate differ by their sign.",
             cure="The rate of an error that decays is positive.",
         ),
         Wrong(
@@ -189,28 +182,24 @@ DECAY_RATE = Problem(
             "At kd = 1 your rate divides by zero. The target is at rest, so the error of the "
             "speeds is minus the joint's speed.",
             mistakes.d_turned_round,
-            "Write down de/dt before you collect its terms.",
             cure="kd brakes: (1 + kd) de/dt = -kp e.",
         ),
         Wrong(
             "the gains added",
             "kp is in 1/s and kd has no unit, so they cannot be added.",
             mistakes.gains_added,
-            "Quantities of different units cannot be added.",
             cure="Write down the equation of the error, and collect the terms with de/dt.",
         ),
         Wrong(
             "the fraction upside down",
             "Your rate falls when kp grows.",
             mistakes.Rate(lambda kp, kd: (1.0 + kd) / kp),
-            "Check the formula at kd = 0: the rate must be kp.",
             cure="The rate grows with kp, so kp belongs in the numerator.",
         ),
         Wrong(
             "kd subtracted from kp",
             "kd is not subtracted from kp; it belongs to the factor of de/dt.",
             mistakes.Rate(lambda kp, kd: kp - kd),
-            "Collect the terms of de/dt and of e.",
             cure="(1 + kd) de/dt = -kp e.",
         ),
     ),
@@ -263,14 +252,12 @@ DAMPED_INVERSE = Problem(
             "speeds that no joint can reach. (As a cut-off for small singular values the damping "
             "changes nothing here.)",
             mistakes.undamped,
-            "Where no exact inverse exists, a formula for it does not help.",
             cure="Add the damping times the identity to J Jᵀ.",
         ),
         Wrong(
             "the damping squared",
             "`damping` is already the factor of |dq|², which many books write as λ².",
             mistakes.damping_squared,
-            "Is it λ or λ²? Look at what is minimised.",
             cure="Do not square it.",
         ),
         Wrong(
@@ -278,21 +265,18 @@ DAMPED_INVERSE = Problem(
             "numpy adds a number to every entry of a matrix, but the damping belongs only on the "
             "diagonal.",
             mistakes.damping_everywhere,
-            "λ is not λ I.",
             cure="Multiply it by an identity matrix.",
         ),
         Wrong(
             "the damping subtracted",
             "You subtract the damping, so J Jᵀ can become singular.",
             mistakes.damping_taken_off,
-            "Damping pushes eigenvalues away from zero.",
             cure="Add it.",
         ),
         Wrong(
             "the square root of the damping",
             "`damping` is the factor of |dq|² itself; you took its root.",
             mistakes.damping_rooted,
-            "Is it λ or λ²? Look at what is minimised.",
             cure="Use it as it is.",
         ),
         Wrong(
@@ -300,7 +284,6 @@ DAMPED_INVERSE = Problem(
             "Each singular value s becomes 1/(s + damping) in yours, which damps less where s is "
             "small.",
             mistakes.BySingularValues(lambda s, d: 1.0 / (s + d)),
-            "The damping has the unit of s².",
             cure="It must become s/(s² + damping).",
         ),
         Wrong(
@@ -308,14 +291,12 @@ DAMPED_INVERSE = Problem(
             "Damping should reduce only the directions that are nearly singular. Yours makes all "
             "directions slower.",
             mistakes.BySingularValues(lambda s, d: 1.0 / (s * (1.0 + d))),
-            "Damping acts where s is small.",
             cure="Add the damping to J Jᵀ before you invert it.",
         ),
         Wrong(
             "twice the damping",
             "Your damping counts twice.",
             mistakes.BySingularValues(lambda s, d: s / (s**2 + 2.0 * d)),
-            "In the gradient of a sum of squares, both factors 2 cancel.",
             cure="In the gradient of a sum of squares both factors 2 cancel: add the damping once.",
         ),
     ),
@@ -414,7 +395,6 @@ WORKSPACE_VELOCITY_PD = Problem(
             "difference of the angles drives roll and pitch in the wrong direction, and it jumps "
             "at 180 degrees. This is the mistake of equation 16.",
             mistakes.euler_error,
-            "Orientations are compared by a product.",
             cure="Use the logarithm, as in notebook 00.",
         ),
         Wrong(
@@ -422,7 +402,6 @@ WORKSPACE_VELOCITY_PD = Problem(
             "The tip Jacobian is in world axes, but your error is in the tool's axes. With the "
             "gripper down, two components then have the wrong sign.",
             mistakes.turn_in_tool_axes,
-            "The error and the Jacobian must be in the same axes.",
             cure="Use R_wd R_wtᵀ.",
         ),
         Wrong(
@@ -430,7 +409,6 @@ WORKSPACE_VELOCITY_PD = Problem(
             "The body Jacobian gives the twist in the tool's axes, and with the gripper down the "
             "tool's z axis points down. Your error is in world axes.",
             mistakes.body_jacobian,
-            "There are three Jacobians; use the one that is in the axes of your error.",
             cure="Use tip_jacobian.",
         ),
         Wrong(
@@ -438,8 +416,6 @@ WORKSPACE_VELOCITY_PD = Problem(
             "This is the plain pseudo-inverse: when the elbow is straight, it commands speeds "
             "that no joint can reach.",
             mistakes.damping_ignored,
-            "Damping accepts a small error of the tip in exchange for speeds that the joints can "
-            "reach.",
             cure="Use the damped inverse.",
         ),
         Wrong(
@@ -447,7 +423,6 @@ WORKSPACE_VELOCITY_PD = Problem(
             "Half the cross products of the axes, or half of R - Rᵀ, is the axis times the sine "
             "of the angle: nearly right for small turns, too weak at 90 degrees, zero at 180.",
             mistakes.WorkspaceLaw(turn=mistakes.sine_of_the_turn),
-            "sin x is x only for small x.",
             cure="Take the logarithm, which gives the angle.",
         ),
         Wrong(
@@ -455,7 +430,6 @@ WORKSPACE_VELOCITY_PD = Problem(
             "Your error has the turn first. In this course a twist is (v, w), and the error and "
             "the Jacobian must have the same order.",
             mistakes.TwistLaw(turn_first=True),
-            "The rows are (v, w), linear part first.",
             cure="The error of the position comes first, then the turn.",
         ),
         Wrong(
@@ -463,14 +437,12 @@ WORKSPACE_VELOCITY_PD = Problem(
             "Jᵀ does not undo J: the tip moves by J Jᵀ times the twist that you wanted, in other "
             "directions and at other speeds.",
             mistakes.transpose_for_inverse,
-            "Jᵀ maps forces, J⁺ maps speeds.",
             cure="Use the damped inverse.",
         ),
         Wrong(
             "kp on the feed-forward too",
             "The target's twist is multiplied by kp, which gives it another unit.",
             mistakes.TwistLaw(on_all=True),
-            "A gain with a unit changes the unit of what it multiplies.",
             cure="Multiply only the error by the gain.",
         ),
     ),
@@ -510,14 +482,12 @@ FIND_LAG = Problem(
             "the time to half of the speed",
             "This is the time to half of the step, which is 0.7 time constants.",
             mistakes.Lag(lambda log: mistakes.reaches(log, 0.5)),
-            "After one time constant 63 % is reached, not half.",
             cure="Wait for 63 %: 1 - 1/e.",
         ),
         Wrong(
             "the time to nearly all of the speed",
             "This is the time until the speed is reached, which is three time constants or more.",
             mistakes.Lag(lambda log: mistakes.reaches(log, 0.95)),
-            "A time constant is not a settling time.",
             cure="After one time constant 63 % of the step is reached.",
         ),
         Wrong(
@@ -525,21 +495,18 @@ FIND_LAG = Problem(
             "Your number is 7 ms too large on every arm: `log.measured` is what the controller "
             "saw, and that is old.",
             mistakes.Lag(lambda log: np.mean(mistakes.behind(log, log.measured.q))),
-            "A sensor has a delay of its own.",
             cure="Use log.q and log.dq, the true angles and speeds.",
         ),
         Wrong(
             "an angle for a time",
             "This is how far the joint is behind, in rad.",
             mistakes.Lag(lambda log: mistakes.STEP * np.mean(mistakes.behind(log, log.q))),
-            "Write the unit of every number.",
             cure="Divide it by the speed.",
         ),
         Wrong(
             "milliseconds",
             "This is in ms. The question asks for s.",
             mistakes.Lag(lambda log: 1e3 * np.mean(mistakes.behind(log, log.q))),
-            "Write the unit of every number.",
         ),
     ),
     variants=(variants.lag_by_63_percent, variants.lag_by_logarithm),
@@ -587,35 +554,30 @@ POSTURE_VELOCITY = Problem(
             "I - Jᵀ J is a projector only if the rows of J are orthonormal, as in the first "
             "test. The rows of the arm's Jacobian are not, so the tip moves.",
             mistakes.transpose_projector,
-            "Test a projector: applied twice it does the same.",
             cure="Use the pseudo-inverse of J.",
         ),
         Wrong(
             "a damped inverse in the projector",
             "A damped inverse does not undo J exactly, so the tip drifts.",
             mistakes.damped_projector,
-            "The two inverses serve two purposes.",
             cure="Use the plain pseudo-inverse here.",
         ),
         Wrong(
             "the part that moves the tip",
             "This is the part of the wish that moves the tip.",
             mistakes.the_rest,
-            "Wish = part that moves the tip + free part.",
             cure="Subtract it from the wish.",
         ),
         Wrong(
             "the tip may turn",
             "You kept only the tip's position still, with the three linear rows.",
             mistakes.place_alone,
-            "The motion of the tip has six numbers.",
             cure="The tip must not turn either: use all six rows.",
         ),
         Wrong(
             "a column of Vᵀ for its last row",
             "np.linalg.svd returns Vᵀ, so the last column of what it returns is no null vector.",
             mistakes.a_column_of_v,
-            "Test a null vector: J n = 0.",
             cure="The null vector is its last row.",
         ),
     ),

@@ -63,7 +63,6 @@ JOINT_ERROR = Problem(
             "actual minus target",
             "The sign is wrong: a gain times this error drives the arm away from its target.",
             mistakes.actual_minus_target,
-            "One convention for the whole course: target minus actual.",
             cure="Subtract the actual angles from the target's.",
         ),
         Wrong(
@@ -71,13 +70,11 @@ JOINT_ERROR = Problem(
             "A (7, 1) column minus a (7,) vector is a 7 by 7 table of all differences, because "
             "numpy stretches both without a warning. Keep vectors 1-D.",
             mistakes.a_column,
-            "Broadcasting makes shapes fit that do not belong together.",
         ),
         Wrong(
             "the error of the speeds",
             "You subtracted the speeds.",
             mistakes.of_the_speeds,
-            "A sample holds a value and its derivatives.",
             cure="The angles are `target.position` and `state.q`.",
         ),
         Wrong(
@@ -85,14 +82,12 @@ JOINT_ERROR = Problem(
             "A joint has stops: from -2.9 to 2.9 rad it can only turn back through zero, by 5.8 "
             "rad, because the shorter turn would run into a stop.",
             mistakes.wrapped,
-            "Wrap only an angle that can turn without end; a joint with stops cannot.",
             cure="Do not wrap the error.",
         ),
         Wrong(
             "without its sign",
             "The absolute value of the error does not say in which direction the joint must turn.",
             mistakes.without_its_sign,
-            "Feedback needs a sign.",
             cure="Keep the sign.",
         ),
     ),
@@ -140,56 +135,48 @@ TAG_IN_WORLD = Problem(
             "You multiplied from the tag to the world: m meets t, and c meets w. Where two poses "
             "meet, the letters must be equal.",
             mistakes.Chain(lambda wt, tc, cm: cm @ tc @ wt),
-            "Neighbouring subscripts must be equal, and cancel.",
             cure="The product is T_wt T_tc T_cm.",
         ),
         Wrong(
             "the camera taken for the tip",
             "T_tc is left out, so the tag is where it would be if the camera were at the tip.",
             mistakes.Chain(lambda wt, tc, cm: wt @ cm),
-            "A camera in the hand is not at the tip: hand-eye calibration.",
             cure="Put T_tc between the other two.",
         ),
         Wrong(
             "the tip in the camera's frame",
             "You used the inverse of T_tc: that is the tip seen from the camera.",
             mistakes.Chain(lambda wt, tc, cm: wt @ np.linalg.inv(tc) @ cm),
-            "T_tc and T_ct are inverses; the subscripts say which is needed.",
             cure="Use T_tc itself.",
         ),
         Wrong(
             "the camera seen from the tag",
             "You used the inverse of T_cm: that is the camera's pose in the tag's frame.",
             mistakes.Chain(lambda wt, tc, cm: wt @ tc @ np.linalg.inv(cm)),
-            "Say of every pose: of what, seen from where.",
             cure="Use T_cm itself.",
         ),
         Wrong(
             "the world seen from the tip",
             "You used the inverse of T_wt: that is the world's pose in the tip's frame.",
             mistakes.Chain(lambda wt, tc, cm: np.linalg.inv(wt) @ tc @ cm),
-            "Say of every pose: of what, seen from where.",
             cure="Use T_wt itself.",
         ),
         Wrong(
             "entries multiplied, not matrices",
             "`*` multiplies entry by entry.",
             mistakes.Chain(lambda wt, tc, cm: wt * tc * cm),
-            "In numpy, * is not the matrix product.",
             cure="The product of matrices is `@`.",
         ),
         Wrong(
             "positions added without turning them",
             "You added the three positions as they are, but each is given in other axes.",
             mistakes.positions_added,
-            "Add two vectors only if both are in the same axes.",
             cure="Let the product of the matrices turn them.",
         ),
         Wrong(
             "the pose of the tag in the tip's frame",
             "This is T_tm, the tag seen from the tip, not from the world.",
             mistakes.Chain(lambda wt, tc, cm: tc @ cm),
-            "Say of every pose: of what, seen from where.",
             cure="Begin with T_wt.",
         ),
     ),
@@ -263,7 +250,6 @@ ORIENTATION_ERROR = Problem(
             "as in the ready pose, feedback of roll and pitch tips the hand over, and at ±180 "
             "degrees the angles jump.",
             mistakes.euler_subtracted,
-            "Orientations are compared by a product, never by a difference of angles.",
             cure="Take the logarithm of one rotation, the one that takes R_wt to R_wd.",
         ),
         Wrong(
@@ -271,7 +257,6 @@ ORIENTATION_ERROR = Problem(
             "The turn is right, but its components are along the tool's axes, and the question "
             "asks for world axes.",
             mistakes.in_tool_axes,
-            "R_wtᵀ R_wd is in the tool's axes, R_wd R_wtᵀ in the world's.",
             cure="Write the subscripts of your product: which frame does the first letter name? "
             "R_wd R_wtᵀ begins and ends with w.",
         ),
@@ -279,7 +264,6 @@ ORIENTATION_ERROR = Problem(
             "the turn from the desired to the actual orientation",
             "The turn has the wrong direction.",
             mistakes.from_wanted_to_actual,
-            "One convention for the whole course: target minus actual.",
             cure="It should lead from the actual orientation to the desired one.",
         ),
         Wrong(
@@ -288,14 +272,12 @@ ORIENTATION_ERROR = Problem(
             "small angles the difference is too small to notice; at 90 degrees it is large, and "
             "beyond that the sine decreases again.",
             mistakes.sine_of_the_angle,
-            "sin x and x agree only for small x.",
             cure="Use the angle itself: the logarithm gives it.",
         ),
         Wrong(
             "two rotation vectors subtracted",
             "The difference of two logarithms is not a rotation vector.",
             mistakes.logarithms_subtracted,
-            "Orientations are compared by a product.",
             cure="Multiply the rotations first, then take one logarithm.",
         ),
         Wrong(
@@ -303,15 +285,12 @@ ORIENTATION_ERROR = Problem(
             "The angle divided by its sine is 0/0 as soon as the arm has arrived, and every "
             "command after that is not a number.",
             mistakes.zero_by_zero,
-            "Try a formula where the error is zero: a good controller spends most of its time "
-            "there.",
             cure="Return zero where there is no turn, as lk.se3.rotation_log does.",
         ),
         Wrong(
             "the arcsine of the turn",
             "An arcsine never exceeds 90 degrees: 133 degrees come out as 47.",
             mistakes.TurnOf(lambda angle: np.arcsin(np.sin(angle))),
-            "Two angles have the same sine.",
             cure="Use lk.se3.rotation_log, or compute the angle from its sine and cosine with "
             "np.arctan2.",
         ),
@@ -320,7 +299,6 @@ ORIENTATION_ERROR = Problem(
             "sin(θ/2) times the axis is the vector part of the quaternion, and twice that is "
             "nearly right for small turns only.",
             mistakes.TurnOf(lambda angle: np.sin(angle / 2.0)),
-            "A rotation vector is the angle times the axis.",
             cure="The rotation vector is the angle times the axis.",
         ),
     ),
