@@ -6,7 +6,6 @@ The theme would fetch each page that it found, but browsers forbid that to pages
 from __future__ import annotations
 
 import json
-import re
 import unicodedata
 from collections.abc import Iterator, Mapping
 from pathlib import Path
@@ -23,12 +22,8 @@ UNREAD = ", ".join([
     *HEADINGS,
 ])  # fmt: skip
 BLOCKS = {"p", "li", "dt", "dd", "tr", "td", "th", "div", "pre", "section", "figcaption", "caption"}
-SIGNS = {"lVert": "‖", "rVert": "‖", "times": "×", "cdot": "·", "le": "≤", "ge": "≥", "pm": "±",
-         "int": "∫", "sum": "Σ", "to": "→", "in": "∈", "approx": "≈", "partial": "∂", "sqrt": "√",
-         "star": "*", "dots": "…", "ldots": "…", "cdots": "…", "lambda": "λ", "Lambda": "Λ",
-         "bar": "\N{COMBINING MACRON}",
-         "dot": "\N{COMBINING DOT ABOVE}", "ddot": "\N{COMBINING DIAERESIS}",
-         "hat": "\N{COMBINING CIRCUMFLEX ACCENT}"}  # fmt: skip
+ACCENTS = {"\u02d9": "\u0307", "\u00a8": "\u0308", "\u00af": "\u0304", "^": "\u0302"}
+"""Accents that stand alone in MathML, and those that combine with the letter before them."""
 
 
 def update(folder: Path, written: Mapping[str, list[Part]]) -> None:
@@ -99,24 +94,7 @@ def _title(element: Tag) -> str:
 
 
 def spoken(formula: str) -> str:
-    """A formula in plain letters, as far as possible: `\\dot q_d` becomes q̇_d."""
-    text = re.sub(r"^\\\(|\\\)$|\\(left|right|mathrm|text|operatorname)\b", "", formula)
-    text = re.sub(r"\\[dt]?frac\s*(\{[^{}]*\}|\w)\s*(\{[^{}]*\}|\w)", r"\1/\2", text)
-    text = re.sub(r"\\(d?dot|hat|bar)(?![A-Za-z])\s*(\{\\?\w+\}|\\[A-Za-z]+|\w)", _accented, text)
-    text = re.sub(r"\\([A-Za-z]+)\s*", _sign, text)
-    text = re.sub(r"[{}]|\\[,;!]", "", text)  # a thin space ends a command, so it goes last
-    return unicodedata.normalize("NFC", text)
-
-
-def _accented(letter: re.Match[str]) -> str:
-    return letter[2].strip("{}") + SIGNS[letter[1]]
-
-
-def _sign(command: re.Match[str]) -> str:
-    """A TeX command as a letter or a sign; an unknown command becomes its name."""
-    name = command[1]
-    kind = "CAPITAL" if name[0].isupper() else "SMALL"
-    try:
-        return SIGNS.get(name) or unicodedata.lookup(f"GREEK {kind} LETTER {name}")
-    except KeyError:
-        return name
+    """The text of a formula, with each accent on its letter."""
+    for alone, combined in ACCENTS.items():
+        formula = formula.replace(alone, combined)
+    return unicodedata.normalize("NFC", formula)

@@ -135,7 +135,7 @@ def correct_page(page: BeautifulSoup, notebooks: Sequence[str] = ()) -> None:
         _scrollers,
         _hidden_inputs,
         _repeated_ids,
-        _search_tools,
+        _scripts,
         _preview,
     ):
         rule(page)
@@ -273,8 +273,10 @@ def _preview(page: BeautifulSoup) -> None:
         page.head.append(page.new_tag("meta", attrs={"property": name, "content": text}))
 
 
-def _search_tools(page: BeautifulSoup) -> None:
-    """Remove the search index from each page but the search page, which alone needs it."""
+def _scripts(page: BeautifulSoup) -> None:
+    """Remove the theme's icons, which `book.css` draws, and what the search page alone needs."""
+    for script in page.select('script[src*="fontawesome"]'):
+        script.decompose()
     if not page.select_one("#search-results"):
         for script in page.select('script[src*="search"], script[src*="language_data"]'):
             if "search.js" not in script["src"]:

@@ -33,6 +33,8 @@ SAMPLE = (
     "generated/notebooks/03_velocity_control",
 )  # fmt: skip
 """A page of each kind, for the gate; the first one is the root."""
+UNASKED = ("**/*.map", "_static/**/*fontawesome*", "_static/locales")
+"""Files of the themes that no page of this book asks for."""
 
 
 def main(arguments: list[str] | None = None) -> int:
@@ -196,8 +198,9 @@ def build(sample: Sequence[str] = ()) -> int:
     for path in (BOOK / "static").rglob("*"):  # Sphinx does not copy these if no page has changed
         if path.is_file():
             _copy(path, html / "_static" / path.relative_to(BOOK / "static"))
-    for path in html.rglob("*.map"):  # 3 MB that only developers of the themes need
-        path.unlink()
+    for unasked in UNASKED:
+        for path in html.glob(unasked):
+            shutil.rmtree(path) if path.is_dir() else path.unlink()
     stamp.write_text(json.dumps(state))
     return 0
 

@@ -27,6 +27,7 @@ from labkit.tags.drawing import Intrinsics
 
 from .claims import holds
 from .embed import motion_html
+from .formulas import in_text
 
 EYE, AT = (1.7, 1.15, 0.7), (0.45, 0.2, 0.2)
 """Where the camera of `picture` is and what it looks at, world axes, in [m]."""
@@ -222,25 +223,17 @@ def quiz(*questions: Question) -> HTML:
         name = "quiz-" + hashlib.sha256(question.text.encode()).hexdigest()[:8]
         choices = "".join(
             f'<label class="lab-choice">'
-            f'<input type="radio" name="{name}" value="{i}"{_spoken(answer)}> '
-            f"<span>{answer}</span></label>"
+            f'<input type="radio" name="{name}" value="{i}"> '
+            f"<span>{in_text(answer)}</span></label>"
             for i, (answer, _) in enumerate(question.answers)
         )
-        key = json.dumps([said for _, said in question.answers], ensure_ascii=False)
+        key = json.dumps([in_text(said) for _, said in question.answers], ensure_ascii=False)
         parts.append(
             f'<fieldset class="lab-question" data-right="{question.right}" '
-            f'data-said="{escape(key)}"><legend>{k + 1}. {question.text}</legend>{choices}'
+            f'data-said="{escape(key)}"><legend>{k + 1}. {in_text(question.text)}</legend>{choices}'
             '<p class="lab-said" role="status"></p></fieldset>'
         )
-    return HTML(f'<div class="lab-quiz tex2jax_process">{"".join(parts)}</div>')
-
-
-def _spoken(answer: str) -> str:
-    """A spoken name for an answer that is a formula."""
-    if "\\(" not in answer:
-        return ""
-    words = re.sub(r"\\[()]", "", answer).replace("\\dot", "derivative of").replace("\\", "")
-    return f' aria-label="{escape(words)}"'
+    return HTML(f'<div class="lab-quiz">{"".join(parts)}</div>')
 
 
 def table(head: Sequence[str], rows: Sequence[Sequence[Any]], caption: str) -> HTML:

@@ -6,9 +6,8 @@
     if (!question || choice.type !== "radio") return;
     var right = choice.value === question.dataset.right;
     var said = question.querySelector(".lab-said");
-    said.textContent = (right ? "✓ Right. " : "✗ Not yet. ") + JSON.parse(question.dataset.said)[+choice.value];
+    said.innerHTML = (right ? "✓ Right. " : "✗ Not yet. ") + JSON.parse(question.dataset.said)[+choice.value];
     said.dataset.right = right;
-    if (window.MathJax && window.MathJax.typesetPromise) window.MathJax.typesetPromise([said]);
   }
   document.addEventListener("change", answer);
 

@@ -19,7 +19,7 @@ pytestmark = pytest.mark.slow
 
 
 def wake(page):
-    """Bring every viewer into sight, wait until it stands and until the formulas are drawn."""
+    """Bring every viewer into sight, wait until it stands."""
     page.evaluate("""async () => {
         const soon = () => new Promise((r) => setTimeout(r, 30));
         for (const e of document.querySelectorAll('.lk-embed')) {
@@ -27,7 +27,6 @@ def wake(page):
             e.querySelector('.lk-load')?.click();
             while (!e.querySelector('[data-ready]')) await soon();
         }
-        await window.MathJax?.startup?.promise;
     }""")
 
 

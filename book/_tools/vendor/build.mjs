@@ -1,6 +1,7 @@
 // Bundles the viewer and copies what the book needs from npm; writes the manifest of hashes.
 // book/_tools/vendor.sh installs the packages and runs this:
 // node build.mjs <node_modules> <the licence of mujoco>
+import { execFileSync } from "node:child_process";
 import { createHash } from "node:crypto";
 import { createRequire } from "node:module";
 import { cpSync, mkdirSync, readFileSync, readdirSync, rmSync, writeFileSync } from "node:fs";
@@ -51,9 +52,14 @@ rmSync(vendor, { recursive: true, force: true });
 mkdirSync(vendor, { recursive: true });
 mkdirSync(tests, { recursive: true });
 const take = (from, to) => cpSync(from, join(vendor, to));
-take(join(modules, "mathjax/es5/tex-svg-full.js"), "tex-svg-full.js");
-take(join(here, "mathjax-config.js"), "mathjax-config.js");
-take(join(modules, "mathjax/LICENSE"), "LICENSE-mathjax");
+// The font of formulas, with the characters that formulas use; its letters alone would be five times as large.
+const stix = join(modules, "@fontsource/stix-two-math");
+execFileSync(process.env.PYTHON ?? "python", ["-m", "fontTools.subset", join(stix, "files/stix-two-math-latin-400-normal.woff"),
+  "--unicodes=U+20-7E,U+A0-FF,U+2C6-2DD,U+300-338,U+391-3F5,U+2016,U+2026,U+2032,U+203E,U+20D7,U+2102,U+2110-2131,U+2190-2199," +
+  "U+21D0-21D4,U+2200-2265,U+226A,U+226B,U+22A4,U+22A5,U+22C5,U+22C6,U+22EE-22F1,U+2308-230B,U+239B-23B4,U+23DC-23E1,U+27E8,U+27E9," +
+  "U+1D434-1D467,U+1D6A4-1D6E1,U+1D6FC-1D71B", "--layout-features=ssty,ccmp,math,mark,mkmk,dtls,flac", "--no-hinting", "--flavor=woff",
+  `--output-file=${join(vendor, "stix-two-math.woff")}`]);
+take(join(stix, "LICENSE"), "LICENSE-stix");
 cpSync(join(modules, "axe-core/axe.min.js"), join(tests, "axe.min.js"));
 cpSync(join(modules, "axe-core/LICENSE"), join(tests, "LICENSE-axe"));
 
