@@ -74,6 +74,9 @@ def entry_elsewhere(app: Sphinx, env: Any, node: Element, shown: Element) -> Ele
     return None
 
 
+UNUSED = "thebe|sphinx_highlight|design|clipboard|copybutton"
+
+
 def without_unused(
     app: Sphinx, page: str, template: str, context: dict[str, Any], tree: Any
 ) -> None:
@@ -85,11 +88,11 @@ def without_unused(
     context["script_files"] = [
         s
         for s in context["script_files"]
-        if not re.search("thebe|sphinx_highlight", f"{getattr(s, 'filename', '')}")
+        if not re.search(UNUSED, f"{getattr(s, 'filename', '')}")
         and "THEBE_JS_URL" not in str(getattr(s, "attributes", {}).get("body", ""))
     ]
     context["css_files"] = [
-        s for s in context["css_files"] if "thebe" not in f"{getattr(s, 'filename', '')}"
+        s for s in context["css_files"] if not re.search(UNUSED, f"{getattr(s, 'filename', '')}")
     ]
     if body := context.get("body"):
         context["body"] = re.sub(
@@ -274,7 +277,7 @@ def _preview(page: BeautifulSoup) -> None:
 
 
 def _scripts(page: BeautifulSoup) -> None:
-    """Remove the theme's icons, which `book.css` draws, and what the search page alone needs."""
+    """Remove the theme's script of icons, and what the search page alone needs."""
     for script in page.select('script[src*="fontawesome"]'):
         script.decompose()
     if not page.select_one("#search-results"):

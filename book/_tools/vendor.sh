@@ -9,4 +9,5 @@ cp "$here/vendor/package.json" "$work/"
 (cd "$work" && npm install --no-package-lock --no-audit --no-fund --ignore-scripts --silent)
 python=${PYTHON:-python}
 licence=$("$python" -c "import importlib.metadata as m; print(next(f.locate() for f in m.files('mujoco') if f.name.startswith('LICENSE')))")
-PYTHON=$python node "$here/vendor/build.mjs" "$work/node_modules" "$licence"
+theme=$("$python" -c "import pydata_sphinx_theme as t, pathlib; print(pathlib.Path(t.__file__).parent / 'theme/pydata_sphinx_theme/static/vendor/fontawesome/webfonts')")
+PYTHON=$python node "$here/vendor/build.mjs" "$work/node_modules" "$licence" "$theme"
