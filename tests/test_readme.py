@@ -18,7 +18,7 @@ PAGES = [
         "README.md",
         "CONTRIBUTING.md",
         "CHANGELOG.md",
-        "book/architecture.md",
+        "ARCHITECTURE.md",
         "solutions/README.md",
         "labkit/grader/README.md",
     )
