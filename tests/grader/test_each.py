@@ -5,17 +5,14 @@ from __future__ import annotations
 import errno
 import json
 import os
-import time
-from concurrent.futures import ThreadPoolExecutor
-from contextlib import nullcontext
 
 import pytest
 from handmade import QUICK, add, hand_in
-from made import NAME, changed, graded, handed_in, result_of
+from made import NAME, changed, graded, result_of
 
 from labkit.__main__ import main
 from labkit.errors import LabkitError
-from labkit.grader import batch, gradebook, results
+from labkit.grader import batch, gradebook
 from labkit.grader import feedback as feedback
 from labkit.grader.each import Failure, Failures, for_student
 from labkit.grader.gradebook import open_gradebook, record
@@ -119,28 +116,6 @@ def test_a_page_that_fails_is_named_and_the_others_are_written(marked, capsys, m
     assert {x.parents[1].name for x in pages} == {"ada", "carl"}
 
 
-def test_numbers_of_any_size_have_a_page(marked, capsys):
-    """An answer whose numbers span all of floating point is drawn like any other."""
-    one = result_of(marked, "bob")
-    numbers = {"call": "f()", "expected": [0.0, 1.0, 5e-324], "given": [-1e308, 1e308, -1.7e308]}
-    graded(marked, changed(one, numbers=numbers | {"of": 3}))
-    assert verb(marked, capsys, "feedback")[0] == 0
-    text = (marked.root / "feedback" / "bob" / NAME / f"{NAME}.html").read_text()
-    assert "1e+308" in text and "nan" not in text
-
-
-@pytest.mark.slow
-def test_grading_again_keeps_the_others(marked, capsys, monkeypatch):
-    """A result that cannot be kept is named, exit 1; the others count."""
-    blank = (marked.release / NAME / f"{NAME}.ipynb").read_bytes()
-    for student in CLASS:
-        hand_in(marked, NAME, student, blank)
-    spoil(monkeypatch, results, "write", PermissionError(errno.EACCES, "Permission denied"))
-    code, _, err = verb(marked, capsys, "grade", "--lower", "--jobs", "2")
-    assert (code, err) == (1, "not graded: bob: Permission denied\n")
-    assert scores(marked) == {"ada": 0.0, "bob": 24.0, "carl": 0.0}
-
-
 def test_what_concerns_everybody_is_raised():
     """A full disk ends the verb at once, and one file that cannot be read does not."""
 
@@ -172,14 +147,6 @@ def test_a_config_that_cannot_be_run_is_a_sentence(marked, capsys, text):
     code, _, err = verb(marked, capsys, "feedback")
     assert (code, err.count("\n")) == (2, 1)
     assert "nbgrader_config.py cannot be run: " in err
-
-
-def test_rules_that_cannot_be_read_are_named_themselves(marked, capsys):
-    """course.toml is at fault, not nbgrader's settings, which read it too."""
-    (marked.root / "course.toml").write_text("[late]\nat_most = \n")
-    code, _, err = verb(marked, capsys, "feedback")
-    assert code == 2 and "course.toml: " in err and "line 2" in err
-    assert "nbgrader_config" not in err
 
 
 @pytest.mark.parametrize("damage", [b"no database at all" * 90, None])
@@ -225,24 +192,6 @@ def test_no_name_of_a_folder_reaches_a_terminal(marked, capsys, monkeypatch):
         assert not [x for x in out + err if not (x.isprintable() or x == "\n")], words
 
 
-def test_no_verb_touches_what_was_handed_in(marked, capsys):
-    """Whatever is done with a class, each file of each student's is as it came, none is gone."""
-    attempt = marked.root / "attempts" / "ada" / NAME / "1-x" / f"{NAME}.ipynb"
-    attempt.parent.mkdir(parents=True)
-    attempt.write_bytes(b"an earlier one")
-    (marked.submitted / "bob" / NAME / "notes.txt").write_text("beside it")
-
-    def files():
-        tops = (marked.submitted, marked.root / "attempts")
-        return {path: path.read_bytes() for top in tops for path in top.rglob("*.*")}
-
-    before = files()
-    assert len(before) == len(CLASS) + 2
-    for words in (["grade"], ["feedback"], ["export"], ["class-report", "--names"], ["release"]):
-        verb(marked, capsys, *words)
-        assert files() == before, words
-
-
 def test_nobody_who_handed_in_is_passed_over(course, capsys):
     """A folder that is a link, even one that leads nowhere, is a submission and is named."""
     (course.submitted / "ada").mkdir(parents=True)
@@ -252,39 +201,8 @@ def test_nobody_who_handed_in_is_passed_over(course, capsys):
     assert "\nada," in out
 
 
-@pytest.mark.slow
-def test_nobody_who_cannot_be_graded_stops_a_class(course, capsys):
-    """A folder in the place of a result file makes room; the submission is graded."""
-    handed_in(course, "ada", "bob")
-    (Results(course, NAME).path("ada") / "sub").mkdir(parents=True)
-    assert verb(course, capsys, "export")[0] == 1
-    code, out, _ = verb(course, capsys, "grade")
-    assert code == 0, out
-    assert Results(course, NAME).get("ada") is not None
-
-
 def test_two_who_fail_a_test_say_nothing_of_it(course):
     """Two of six may have made one known mistake; of three the lecturer is told."""
     results = [result_of(course, f"s{k}", share=float(k > 2)) for k in range(6)]
     assert list(batch.common_failures(results))
     assert not list(batch.common_failures([*results[1:], result_of(course, "s6")]))
-
-
-@pytest.mark.parametrize("verb", ([], ["--diff"]))
-def test_a_long_wait_shows_signs_of_life(course, solved, capsys, monkeypatch, verb):
-    """How far it is is said on stderr now and then, also where nothing else is printed."""
-
-    def slowly(task):
-        time.sleep(0.3)
-        raise LabkitError("nothing is graded here")
-
-    for student in CLASS:
-        hand_in(course, NAME, student, solved)
-    monkeypatch.setattr(batch, "PROGRESS_INTERVAL", 0.1)
-    monkeypatch.setattr(batch, "grade_submission", slowly)
-    monkeypatch.setattr(batch, "executor", lambda *_: nullcontext(ThreadPoolExecutor(1)))
-    main(["grade", NAME, "--course", str(course.root), *verb])
-    out, said = capsys.readouterr()
-    assert "0 of 3 graded\n" in said
-    assert "2 of 3 graded, about 1 min left\n" in said
-    assert "of 3 graded" not in out

@@ -88,6 +88,12 @@ def run(course, *words):
     return code
 
 
+def handed_in_files(course):
+    """The bytes of everything that was handed in or collected."""
+    tops = (course.submitted, course.root / "attempts")
+    return {path: path.read_bytes() for top in tops for path in top.rglob("*.*") if path.is_file()}
+
+
 @pytest.mark.slow
 @pytest.mark.parametrize("seed", [1, *(pytest.param(k, marks=pytest.mark.soak) for k in (2, 3))])
 def test_nothing_in_a_students_hand_reaches_another(course, solved, tmp_path, monkeypatch, capsys,
@@ -102,6 +108,7 @@ def test_nothing_in_a_students_hand_reaches_another(course, solved, tmp_path, mo
         "late.percent_per_day = 50\n[assignments.01_curves]\ndue = 2025-01-01T00:00:00\n"
     )
     _hand_in(course, dice, solved, tmp_path)
+    before = handed_in_files(course)
     run(course, "grade", NAME, "--jobs", "2")
     run(course, "grade", NAME, "--diff", "--student", "eve0", "--student", "eve1")
     capsys.readouterr()
@@ -119,6 +126,7 @@ def test_nothing_in_a_students_hand_reaches_another(course, solved, tmp_path, mo
         run(course, "explain", NAME, student, "bang_bang")
         run(course, "defence", student)
         run(course, "defence", student, "--mark", "1,1,1")
+    assert handed_in_files(course) == before
     for name in {*HOSTILE, *NAMES} - {"ada"}:
         run(course, "term", "forget", "--yes", "--", name)
     assert (course.submitted / f"ada/{NAME}/{NAME}.ipynb").exists()

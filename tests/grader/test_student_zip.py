@@ -14,7 +14,7 @@ from handmade import ROOT
 
 from labkit.__main__ import main
 from labkit.course.authoring.layout import Course
-from labkit.grader.student_zip import NOT_FOR_STUDENTS, student_zip
+from labkit.grader.student_zip import NOT_FOR_STUDENTS, PICTURE, _start_here, student_zip
 
 pytestmark = pytest.mark.xdist_group("student zip")
 
@@ -147,3 +147,15 @@ def test_the_first_notebook_has_a_picture_the_order_and_the_book_and_runs(unpack
     for cell in notebook["cells"]:
         if cell["cell_type"] == "code":
             exec("".join(cell["source"]), names)
+
+
+def test_the_first_notebook_begins_with_a_practice_hand_in(tmp_path):
+    """It names the first notebook, and its first prediction, which is worth a point."""
+    name = "00_warmup"
+    shutil.copytree(ROOT / "assignments" / name, tmp_path / name)
+    _start_here(tmp_path, [name], ROOT / PICTURE, None)
+    cells = json.loads((tmp_path / "START_HERE.ipynb").read_text())["cells"]
+    text = "\n".join("".join(cell["source"]) for cell in cells)
+    assert re.findall(r"^1\. Open \[\w+\]\((.*?)\)", text, re.MULTILINE) == [f"{name}/{name}.ipynb"]
+    (asked,) = re.findall(r"one point for `(\w+)`", text)
+    assert f'predict(\\"{asked}\\"' in (tmp_path / name / f"{name}.ipynb").read_text()
