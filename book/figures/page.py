@@ -223,7 +223,7 @@ def quiz(*questions: Question) -> HTML:
         name = "quiz-" + hashlib.sha256(question.text.encode()).hexdigest()[:8]
         choices = "".join(
             f'<label class="lab-choice">'
-            f'<input type="radio" name="{name}" value="{i}"> '
+            f'<input type="radio" name="{name}" value="{i}"{_spoken(answer)}> '
             f"<span>{in_text(answer)}</span></label>"
             for i, (answer, _) in enumerate(question.answers)
         )
@@ -234,6 +234,13 @@ def quiz(*questions: Question) -> HTML:
             '<p class="lab-said" role="status"></p></fieldset>'
         )
     return HTML(f'<div class="lab-quiz">{"".join(parts)}</div>')
+
+
+def _spoken(answer: str) -> str:
+    """A name for an answer with a formula, which a screen reader's label may not contain."""
+    if "\\(" not in answer:
+        return ""
+    return f' aria-label="{escape(re.sub("<[^>]+>", "", in_text(answer)))}"'
 
 
 def table(head: Sequence[str], rows: Sequence[Sequence[Any]], caption: str) -> HTML:

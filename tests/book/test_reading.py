@@ -50,8 +50,10 @@ def test_formulas_are_drawn(visit):
     """They are MathML, in the book's font, and leave no source of TeX in the text."""
     page = visit("chapters/paths.html")
     assert page.locator("math").count() > 100
-    assert not page.evaluate(r"/\\dot|\\lambda|\\\(/.test(document.querySelector('main').innerText)")
-    assert page.evaluate("document.fonts.load('16px \"STIX Two Math\"', 'Σ').then((f) => f.length)") == 1
+    source = r"/\\dot|\\lambda|\\\(/"
+    assert not page.evaluate(f"{source}.test(document.querySelector('main').innerText)")
+    loaded = "document.fonts.load('16px \"STIX Two Math\"', 'Σ').then((f) => f.length)"
+    assert page.evaluate(loaded) == 1
 
 
 def test_the_quiz_answers(visit):

@@ -7,7 +7,8 @@ from bs4 import BeautifulSoup
 from figures.formulas import mathml
 
 TAGGED = """<article class="bd-article"><section id="top"><h1>Top<a class="headerlink">#</a></h1>
-<p>A speed <span class="math"><math><mover><mi>q</mi><mo>\u02d9</mo></mover></math></span> is <b>com</b>manded.</p>
+<p>A speed <span class="math"><math><mover><mi>q</mi><mo>\u02d9</mo></mover></math></span>
+is <b>com</b>manded.</p>
 <script>not this</script>
 <section id="exercise-content"><p>Do it.</p></section>
 <section id="low"><h2>Low</h2><dl><dt id="name"><span class="descname">run</span>()</dt>
