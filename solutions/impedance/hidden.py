@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 import labkit as lk
-from labkit.course import Call, Loop
+from labkit.course import Call, Loop, OwnArm
 from labkit.course.authoring.problem import call
 from labkit.course.question import Case
 
@@ -163,3 +163,50 @@ def everything_shaped(random: Random) -> Iterator[Call]:
     """Arms with any inertia, pushed, off their target and moving."""
     for _ in range(4):
         yield _shaped(random, times=0.0, wrench=10.0, moving=True)
+
+
+def springs(random: Random) -> Iterator[Call]:
+    """Beside a target at rest."""
+    for _ in range(2):
+        yield _law(random, shift=0.05, turn=0.3)
+
+
+def moving_springs(random: Random) -> Iterator[Call]:
+    """Arm and target move."""
+    for _ in range(3):
+        yield _law(random, shift=0.05, turn=0.3, speed=1.0, twist=0.3)
+
+
+def let_go(random: Random) -> Iterator[Case]:
+    """Runs from beside a target that rests, also with the other arm."""
+    side: Any = random.choice(["left", "right"])
+    yield held(side, 0.04 * random.choice([-1.0, 1.0], 7))
+
+
+def held(side: Any, off: Any) -> Loop:
+    """A run from beside a target that rests."""
+    plant = lk.Plant(armature=0.05, viscous=0.7)
+    model = lk.Model(side, plant)
+    gains = {
+        "stiffness": np.array([300.0] * 3 + [20.0] * 3),
+        "damping": np.array([35.0, 35.0, 70.0, 4.0, 4.0, 2.0]),
+    }
+    ready = model.robot.ready
+    target = lk.Hold(model.pose(ready), 2.0)
+    limits = {"max_mm": 8.0}
+    return Loop(
+        target, {"model": model, **gains}, side, plant, q0=ready + off, settle=1.5, expected=limits
+    )
+
+
+def joint_springs(random: Random) -> Iterator[Call]:
+    """Other poses and springs, of both arms."""
+    for _ in range(3):
+        model = _model(random)
+        J = model.tip_jacobian(_angles(random, model))
+        yield call(J, _gains(random)["stiffness"], float(random.uniform(1.0, 20.0)))
+
+
+def other_arms(random: Random) -> Iterator[Call]:
+    """Two arms that nobody has seen."""
+    yield from (call(OwnArm.drawn(random)) for _ in range(2))

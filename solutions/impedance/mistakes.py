@@ -239,3 +239,45 @@ class MassesOf:
     def __call__(self, M: Any, J: Any) -> Any:
         """The matrix."""
         return np.asarray(self.of(np.asarray(M), np.asarray(J)))
+
+
+def spring_terms(
+    state: lk.State, target: lk.PoseSample, model: lk.Model, *, stiffness: Any, damping: Any
+) -> tuple[dict[str, Any], dict[str, Any]]:
+    """The terms of the springs at the tip alone, and those that are taken for them."""
+    law, others = tip_terms(state, target, model, stiffness=stiffness, damping=damping)
+    kept = ("the spring of the position", "the spring of the turn", "the damper", "the weight")
+    more = {k: v for k, v in law.items() if k not in kept}
+    return {k: law[k] for k in kept}, {**more, **others}
+
+
+def as_printed(
+    state: lk.State, target: lk.PoseSample, model: lk.Model, *, stiffness: Any, damping: Any
+) -> lk.JointTorque:
+    """Equation 21 as it is printed."""
+    return right.tip_spring(state, target, model, stiffness=-stiffness, damping=damping)
+
+
+def at_rest(arm: Any) -> float:
+    """The torque of one pose at rest, friction and all."""
+    model, ready = arm.model, arm.robot.ready
+    m = np.diag(model.mass_matrix(ready))
+    log = lk.run(arm, lk.Hold(ready, 2.0), lk.control.springs(100.0 * m, 20.0 * m))
+    one = model.tip_jacobian(ready)[:3].T @ [0.0, 0.0, 9.81]
+    return float(one @ log.command[-50:].mean(axis=0) / (one @ one))
+
+
+@dataclass(frozen=True)
+class JointSprings:
+    """Another stiffness of the joints.
+
+    Attributes:
+        of: The matrix, given J, K, the elbow's spring and its direction n n^T.
+    """
+
+    of: Callable[[Any, Any, float, Any], Any]
+
+    def __call__(self, J: Any, stiffness: Any, elbow: float) -> Any:
+        """The matrix."""
+        J, n = np.asarray(J), np.linalg.svd(J)[2][-1]
+        return np.asarray(self.of(J, np.diag(stiffness), elbow, np.outer(n, n)))

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 import labkit as lk
-from labkit.course import AtTip, Call, Close, Loop, TipTorque
+from labkit.course import PUBLIC_ARMS, AtTip, Call, Close, Loop, TipTorque
 from labkit.course.authoring.problem import Problem, Trial, Wrong, call
 
 from . import answers, hidden, mistakes, variants
@@ -281,6 +281,175 @@ WORKSPACE_IMPEDANCE = Problem(
     ),
 )
 
+TIP_SPRING = Problem(
+    name="tip_spring",
+    points=2,
+    outcomes=("contact",),
+    asks="Mend `equation_21`. Change what is wrong, nothing else.",
+    answer=answers.tip_spring,
+    judge=Close(rtol=1e-6, atol=1e-6),
+    trials=(
+        Trial(
+            "at rest, beside its target",
+            (_law(ASIDE, NOWHERE), _law(NOWHERE, [0.1, -0.2, 0.1])),
+            hidden.springs,
+            "other poses",
+            0.0,
+        ),
+        Trial(
+            "while arm and target move",
+            (_law(ASIDE, [0.1, -0.2, 0.1], speed=1.0, moving=0.5),),
+            hidden.moving_springs,
+            "other motions",
+        ),
+        Trial(
+            "a run, let go beside the target",
+            (hidden.held("left", np.full(7, 0.04)),),
+            hidden.let_go,
+            "other starts, both arms",
+        ),
+    ),
+    hints=(
+        "Put the tip 1 cm to the left of its target. In which direction does each term push?",
+        "One convention: e = target - actual. Which of the terms contradicts it?",
+        "A spring pulls towards its end. The damper's sign is right.",
+    ),
+    terms=mistakes.spring_terms,
+    wrong=(
+        Wrong(
+            "as printed",
+            "The spring still drives the tip away from its target. (The team's program had the "
+            "other sign than its report.)",
+            mistakes.as_printed,
+            "One convention: e = target - actual, and a plus before every gain.",
+            "With e as target minus actual, the stiffness has a plus.",
+        ),
+    ),
+    variants=(variants.spring_by_parts,),
+)
+
+JOINT_IMPEDANCE = Problem(
+    name="joint_impedance",
+    points=4,
+    outcomes=("contact", "model"),
+    asks="Give the stiffness of the joints, `K_q` of shape (7, 7), with which the torques K_q (q_d - q) "
+    "feel at the tip like springs `stiffness`, shape (6,), near the pose of `J`. The one motion of the "
+    "joints that the tip does not feel has a spring of its own, `elbow` in N m/rad.",
+    answer=answers.joint_impedance,
+    judge=Close(rtol=1e-6, atol=1e-7),
+    trials=(
+        Trial(
+            "the ready pose",
+            (call(MODEL.tip_jacobian(READY), EVEN, 10.0),),
+            hidden.joint_springs,
+            "other poses",
+            0.0,
+        ),
+        Trial(
+            "six different springs in a bent pose",
+            (call(MODEL.tip_jacobian(BENT), K, 4.0),),
+            hidden.joint_springs,
+            "other poses and springs, both arms",
+        ),
+    ),
+    hints=(
+        "Turn the joints by a little: how far does the tip go, which force do its springs give, which "
+        "torques balance it?",
+        "e = J (q_d - q) for small angles, F = K e, and a force at the tip takes the torques of the "
+        "transposed Jacobian. What is left is the direction n with J n = 0.",
+        "np.linalg.svd(J)[2][-1] is that direction, with length 1. A spring along it alone is the outer "
+        "product of n with itself, times its stiffness.",
+    ),
+    wrong=(
+        Wrong(
+            "no spring for the elbow",
+            "Nothing holds the elbow: your matrix has a direction without stiffness.",
+            mistakes.JointSprings(lambda J, K, k, n: J.T @ K @ J),
+            "Seven joints, six springs: count rows.",
+            "Add a spring along the direction that the tip does not feel.",
+        ),
+        Wrong(
+            "a spring in every joint",
+            "Your elbow's spring acts in all joints, so the tip feels it, too.",
+            mistakes.JointSprings(lambda J, K, k, n: J.T @ K @ J + k * np.eye(7)),
+            "A spring in the null space must not be felt.",
+            "Let it act along n alone: the outer product of n with itself.",
+        ),
+        Wrong(
+            "a pseudo-inverse for the transpose",
+            "Pseudo-inverses map speeds; you map a force to torques with one.",
+            mistakes.JointSprings(
+                lambda J, K, k, n: np.linalg.pinv(J) @ K @ np.linalg.pinv(J).T + k * n
+            ),
+            "Jᵀ maps forces, J⁺ maps speeds.",
+            "From turn to torque: J, then K, then the transposed J.",
+        ),
+        Wrong(
+            "compliance",
+            "You used 1/K, the compliance: a stiffer tip makes your joints softer.",
+            mistakes.JointSprings(lambda J, K, k, n: J.T @ np.linalg.inv(K) @ J + k * n),
+            "Springs in a row add compliances, side by side stiffnesses.",
+        ),
+        Wrong(
+            "only the diagonal",
+            "You kept the diagonal. The joints' springs are coupled: one joint's turn needs torques in "
+            "the others.",
+            mistakes.JointSprings(lambda J, K, k, n: np.diag(np.diag(J.T @ K @ J + k * n))),
+            "Springs in single joints give a slanted ellipse at the tip.",
+        ),
+        Wrong(
+            "the elbow's spring of 1 N m/rad",
+            "The elbow is held, but not with `elbow`.",
+            mistakes.JointSprings(lambda J, K, k, n: J.T @ K @ J + n),
+            "An argument that is not used is a warning.",
+        ),
+    ),
+    variants=(variants.joint_springs_by_projector,),
+)
+
+WEIGH = Problem(
+    name="weigh",
+    points=3,
+    outcomes=("experiment",),
+    asks="Find out what is in the gripper of `arm`, in kg, by an experiment of at most 8 s in torque "
+    "mode. Your function gets an arm at rest in its ready pose; it moves it with `lk.run(arm, ...)` and reads "
+    "the logs. `arm.model` knows nothing of the load. It must be right to 70 g on arms that "
+    "you have not seen.",
+    answer=answers.weigh,
+    expected=lambda arm: arm.payload,
+    judge=Close(rtol=0.0, atol=0.07),
+    trials=(
+        Trial(
+            "a public arm, to 70 g", (call(PUBLIC_ARMS[0]),), hidden.other_arms, "other arms", 0.0
+        ),
+        Trial("another one", (call(PUBLIC_ARMS[1]),), hidden.other_arms, "two other arms"),
+    ),
+    hints=(
+        "At rest the torque that you must command is that of the load plus dry friction. Which of the "
+        "two changes its sign when you come from the other side?",
+        "Let s1 and e1 swing slowly with `lk.control.springs`, in opposite directions and by at most "
+        "0.12 rad, or the tip meets a wall. Average the command over whole swings.",
+        "Compare the averages of s1 and e1 with the torques that one kilogram takes, by least squares, "
+        "with the Jacobian at the mean of `log.q`.",
+    ),
+    wrong=(
+        Wrong(
+            "newtons",
+            "This is the load's weight, in N.",
+            lambda arm: 9.81 * answers.weigh(arm),
+            "Say the unit.",
+        ),
+        Wrong(
+            "one pose at rest",
+            "At rest dry friction carries a part of the load, and you cannot know how large a part.",
+            mistakes.at_rest,
+            "Friction always opposes: come from both sides.",
+            "Come to the pose from both sides, or swing, so that friction cancels.",
+        ),
+    ),
+    variants=(variants.weigh_from_both_sides,),
+)
+
 SHAPED_IMPEDANCE = Problem(
     name="shaped_impedance",
     points=4,
@@ -416,6 +585,9 @@ SHAPED_IMPEDANCE = Problem(
 
 PROBLEMS = (
     OPERATIONAL_INERTIA,
+    TIP_SPRING,
     WORKSPACE_IMPEDANCE,
+    JOINT_IMPEDANCE,
+    WEIGH,
     SHAPED_IMPEDANCE,
 )

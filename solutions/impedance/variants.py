@@ -120,3 +120,37 @@ def shaped_by_factor(
     F = damping * (target.twist - J @ state.dq) + stiffness * lk.se3.pose_error(target.pose, T)
     tip = L @ (target.dtwist - drift) + share @ F + (share - np.eye(6)) @ wrench
     return lk.JointTorque(J.T @ tip + c + g)
+
+
+def spring_by_parts(
+    state: lk.State, target: lk.PoseSample, model: lk.Model, *, stiffness: Any, damping: Any
+) -> Any:
+    """Diagonal matrices, the report's sign of the error."""
+    T, J, _, _, _, g = terms(state, model)
+    x = -lk.se3.pose_error(target.pose, T)
+    F = -np.diag(damping) @ (J @ state.dq - target.twist) - np.diag(stiffness) @ x
+    return lk.JointTorque(g + np.transpose(J) @ F)
+
+
+def joint_springs_by_projector(J: Any, stiffness: Any, elbow: float) -> Any:
+    """The projector onto what the tip does not feel, and lists."""
+    J = np.asarray(J)
+    n = np.eye(7) - np.linalg.pinv(J) @ J
+    return ((J.T * stiffness) @ J + elbow * n).tolist()
+
+
+def weigh_from_both_sides(arm: Any) -> float:
+    """Holds after coming from above and from below, and takes the middle."""
+    model, ready = arm.model, np.array(arm.robot.ready)
+    m = np.diag(model.mass_matrix(ready))
+    law = lk.control.springs(200.0 * m, 28.0 * m)
+    way = 0.04 * np.array([0.0, 1.0, 0.0, -1.0, 0.0, 0.0, 0.0])
+    torques, places = [], []
+    for sign in (1.0, -1.0):
+        path = lk.Line(ready + sign * way, ready - sign * way)
+        log = lk.run(arm, lk.Trajectory(path, lk.Quintic(3.0)), law)
+        middle = (log.t > 1.0) & (log.t < 2.0)
+        torques.append(log.command[middle].mean(axis=0))
+        places.append(log.q[middle].mean(axis=0))
+    one = model.tip_jacobian(np.mean(places, axis=0))[:3].T @ [0.0, 0.0, 9.81]
+    return float((one @ np.mean(torques, axis=0)) / (one @ one))
