@@ -71,7 +71,7 @@ def test_the_stub_gets_nothing(problem):
 def test_zeros_of_the_right_shape_earn_nothing(problem):
     """A gate stands before the points: the answer's shape, filled with zeros, does not pass it."""
     question = question_of(problem, 1)
-    assert mark(question, lambda *a, **k: zeros_like(problem.answer(*a, **k))).earned == 0.0
+    assert mark(question, lambda *a, **k: zeros_like(called(problem.answer)(*a, **k))).earned == 0.0
 
 
 @each
