@@ -9,12 +9,12 @@
 # |---|---|
 # | **You need** | matrices; a damped spring, ë + kd ė + kp e = 0; what an eigenvalue is |
 # | **Given** | the arm's model: M, C and g (notebook 02 builds them, here you only use them) |
-# | **You write** | two torque laws, a sampled joint, gains for a real arm; what is wrong in three runs |
+# | **You write** | two torque laws, a sampled joint, gains for a real arm, a function that finds a fault |
 # | **Time** | about 3.5 hours; 21 points |
 #
 # Every cell below runs from the start, solved or not. If your part is missing, a stand-in replaces it and
-# says so. After each stub a check tells you in words what it found. The functions, your predictions, the
-# numbers to find out and the text at the end are marked; play with everything else as you like.
+# says so. After each stub a check tells you in words what it found. The functions, your predictions and the
+# text at the end are marked; play with everything else as you like.
 
 # %% setup=true
 from dataclasses import replace
@@ -418,11 +418,24 @@ axes[0].set_ylabel("error [rad]")
 axes[2].legend(frameon=False, ncols=2, fontsize="small")
 lk.plotting.show(f"The errors of the seven joints in three misbehaving runs for the name {HANDLE}.")
 
-# %% find_out="bug_1"
+# %% [markdown]
+# Name what you see. A function does it for any run: `lk.course.commanded(log, "b")` gives, for the states that the run saw, the
+# torques of the law with mistake b, shape (N, 7), and `log.command` what was really commanded.
 
-# %% find_out="bug_2"
+# %% question="diagnose"
+def diagnose(log):
+    """The letter of the mistake in the law of a run, which enters at some time before 0.8 s."""
+    ### BEGIN SOLUTION
+    from solutions.torque_control.answers import diagnose as answer
 
-# %% find_out="bug_3"
+    return answer(log)
+    ### END SOLUTION
+
+
+# %%
+my_diagnose = use("diagnose", diagnose, lambda log: "?")
+for number in (1, 2, 3):
+    print(f"run {number}: {my_diagnose(lk.my_bug(number, HANDLE))}")
 
 # %% [markdown]
 # ## Gravity on the real robot, and why nobody could tell

@@ -35,6 +35,16 @@ def computed_torque(
     return lk.JointTorque(tau)
 
 
+def diagnose(log: lk.Log) -> str:
+    """The letter of the mistake with which the law would have commanded what was commanded."""
+
+    def off(letter: str) -> float:
+        differs = np.abs(log.command - lk.course.commanded(log, letter)).max(axis=1)
+        return float(np.median(differs[len(log) // 2 :]))  # by then the mistake is in the law
+
+    return min("abcdefgh", key=off)
+
+
 def sampled_joint(inertia: float, kp: float, kd: float, dt: float) -> Array:
     """One period of a joint whose torque stands still meanwhile, exactly."""
     free = np.array([[1.0, dt], [0.0, 1.0]])

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 import labkit as lk
-from labkit.course import Call, Loop, Tuned
+from labkit.course import Bug, Call, Loop, Tuned
 from labkit.course.authoring.problem import call
 from labkit.course.question import Case
 
@@ -109,6 +109,12 @@ def computed_runs(random: Random) -> Iterator[Case]:
     given = {"model": model, "kp": 100.0, "kd": 20.0, "arm_compensates": False}
     q0 = _off(random, model.robot.ready, 0.06)
     yield Loop(tour, given, side, model.plant, q0=q0, settle=1.0, expected={"rms_mm": 0.3})
+
+
+def faulty_runs(random: Random) -> Iterator[Call]:
+    """Runs with any mistake, move, moment and noise."""
+    for _ in range(4):
+        yield call(Bug.drawn(random))
 
 
 def joints(random: Random) -> Iterator[Call]:

@@ -206,6 +206,12 @@ def _with_weight(
     return law, others
 
 
+def compares_the_whole_run(log: lk.Log) -> str:
+    """The largest difference anywhere, also before the mistake enters."""
+    off = {x: np.abs(log.command - lk.course.commanded(log, x)).max() for x in "abcdefgh"}
+    return min(off, key=lambda x: off[x])
+
+
 def not_a_step(inertia: float, kp: float, kd: float, dt: float) -> Any:
     """The matrix of the differential equation."""
     return np.array([[0.0, 1.0], [-kp / inertia, -kd / inertia]])

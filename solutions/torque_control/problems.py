@@ -7,7 +7,7 @@ from dataclasses import replace
 import numpy as np
 
 import labkit as lk
-from labkit.course import Call, Close, Gains, Loop, Tuned
+from labkit.course import Bug, Call, Close, Gains, Loop, Tuned
 from labkit.course.authoring.problem import Problem, Trial, Wrong, call
 
 from . import answers, hidden, mistakes, variants
@@ -518,9 +518,47 @@ CHOOSE_GAINS = Problem(
     variants=(variants.ByFrequency(11.0, 0.8), variants.ByFrequency(13.0, 0.7), variants.by_hand),
 )
 
+DIAGNOSE = Problem(
+    name="diagnose",
+    points=3,
+    outcomes=("experiment", "control"),
+    asks="Given the log of a misbehaving run, return the letter of the mistake in its law.",
+    answer=answers.diagnose,
+    expected=lambda bug: bug.cause,
+    trials=(
+        Trial("a run with gravity twice", (call(Bug("c", 2, 0.74, 577)),), weight=0.0),
+        Trial(
+            "two more runs",
+            (call(Bug("h", 0, 0.53, 291)), call(Bug("f", 1, 0.78, 875))),
+            hidden.faulty_runs,
+            "other mistakes, moves and moments",
+        ),
+    ),
+    hints=(
+        "Plot the error of each joint. At first it is smooth and small; at some time between 0.3 "
+        "and 1.0 s it no longer is. Does it follow gravity or the speed, grow by itself, or appear "
+        "only while the target accelerates?",
+        "The log holds what the law commanded, and `lk.course.commanded(log, letter)` what each "
+        "suspect would have commanded in the same states. How far are the two apart?",
+        "Until the mistake enters, the right law commands. Compare in the second half of the run "
+        "alone, and return the letter with the smallest difference.",
+    ),
+    wrong=(
+        Wrong(
+            "the whole run compared",
+            "At first the law is right, so no suspect fits the whole run.",
+            mistakes.compares_the_whole_run,
+            "Look where the fault is, and nowhere else.",
+            cure="Compare where the mistake is in the law: late in the run.",
+        ),
+    ),
+    variants=(variants.diagnosed_by_squares,),
+)
+
 PROBLEMS = (
     AUGMENTED_PD,
     COMPUTED_TORQUE,
     SAMPLED_JOINT,
     CHOOSE_GAINS,
+    DIAGNOSE,
 )

@@ -93,3 +93,10 @@ def by_hand(model: lk.Model) -> Any:
         np.array([330.0, 300.0, 150.0, 120.0, 21.0, 18.0, 7.0]),
         np.array([55.0, 50.0, 25.0, 20.0, 3.5, 3.0, 1.2]),
     )
+
+
+def diagnosed_by_squares(log: lk.Log) -> str:
+    """By least squares over the last third."""
+    late = slice(-(len(log) // 3), None)
+    off = [log.command - lk.course.commanded(log, x) for x in "abcdefgh"]
+    return "abcdefgh"[int(np.argmin([np.sum(x[late] ** 2) for x in off]))]
