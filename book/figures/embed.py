@@ -56,7 +56,7 @@ def motion_html(
             f"the motion {motion.title!r} is {size / 1000:.0f} kB, more than"
             f" {LIMIT / 1000:.0f} kB: give fewer ghosts, a shorter run or a lower rate"
         )
-    return figure_html(data, motion.description, caption or motion.title, poster, root)
+    return figure_html(data, motion.alt, caption or motion.title, poster, root)
 
 
 DEMOS = {

@@ -71,7 +71,7 @@ def _run(question: Question, ran: PublicRun) -> Run:
         "since": loop.settle,
         "measures": {key: _rounded(x) for key, x in measures.items()},
         "limits": {key: _rounded(x) for key, x in ran.case.expected.items()},
-        "words": "" if shown is None else shown.description,
+        "words": "" if shown is None else shown.alt,
         "motion": "" if shown is None else encode_to_fit(shown),
     }
 

@@ -21,9 +21,6 @@ from ..trajectory import PoseSample
 STEPS = {"error": 1e-5, "tau": 1e-2, "force": 1e-2}
 """Resolution of channels, in [m], [N m] and [N]; the others have 1e-4, in [m] or [rad]."""
 
-STILL = 0.005
-"""A joint that travels less than this, in [rad], is described as being at rest."""
-
 
 @dataclass(frozen=True, eq=False)
 class Motion:
@@ -116,37 +113,17 @@ class Motion:
         words = f"{whose} moves for {self.t[-1] - self.t[0]:.1f} s"
         if self.error is not None:
             rms = float(np.sqrt(np.mean(self.error**2)))
-            words += f"; tip error {_mm(rms)} RMS, {_mm(np.abs(self.error).max())} at most"
+            most = float(np.abs(self.error).max())
+            words += f"; tip error {1e3 * rms:.1f} mm RMS, {1e3 * most:.1f} mm at most"
         if self.ghosts:
             words += f"; compared with {listed(self.ghosts)}, drawn as see-through arms"
         if self.things:
             words += f"; beside it {listed(self.things)}"
         if self.force is not None:
             words += f"; up to {np.linalg.norm(self.force, axis=1).max():.0f} N act on the tip"
-        return words + "."
-
-    @cached_property
-    def description(self) -> str:
-        """A paragraph about joint travel, target, errors and torques, all from the arrays."""
-        names = [name.removeprefix(f"{self.robot.name}_") for name in self.robot.joint_names]
-        travel = np.ptp(self.q, axis=0)
-        most = int(travel.argmax())
-        words = [self.alt, f"Joint {names[most]} travels farthest, by {travel[most]:.2f} rad."]
-        if travel[most] < STILL:
-            words[1] = f"No joint moves by more than {STILL:g} rad."
-        if self.target_position is not None:
-            spans = [f"{x.min():.2f} to {x.max():.2f} m" for x in self.target_position.T]
-            words.append("The target is within x {}, y {}, z {}.".format(*spans))
-        if self.error is not None:
-            peak = int(np.abs(self.error).argmax())
-            words.append(f"Tip error is largest at t = {self.t[peak]:.2f} s.")
         if self.tau is not None:
-            at, joint = np.unravel_index(np.abs(self.tau).argmax(), self.tau.shape)
-            words.append(
-                f"The largest torque is {self.tau[at, joint]:.1f} N m at joint "
-                f"{names[joint]}, t = {self.t[at]:.2f} s."
-            )
-        return " ".join(words)
+            words += f"; torques of up to {np.abs(self.tau).max():.1f} N m"
+        return words + "."
 
 
 def motion_of(
@@ -283,10 +260,6 @@ def _turns(R: Array) -> Array:
     from scipy.spatial.transform import Rotation  # slow to import
 
     return np.asarray(Rotation.from_matrix(R).as_quat(), dtype=np.float64)
-
-
-def _mm(metres: float) -> str:
-    return f"{1000 * metres:.1f} mm"
 
 
 def compact(data: Any) -> str:

@@ -12,7 +12,6 @@ from collections.abc import Mapping
 from functools import cache
 from html import escape
 from io import BytesIO
-from itertools import cycle
 from pathlib import Path
 from string import Template
 from typing import TYPE_CHECKING, Any
@@ -31,9 +30,7 @@ VIEWER = Path(__file__).parents[1] / "data" / "viewer"
 LIFT = 0.6  # exponent of the picture's brightness, below 1 to lighten dark parts
 NEWTON = 0.01  # length of a force's line, in [m/N]
 BACK = 0.005  # by which see-through parts are set back, in [m], so that they hide no coinciding arm
-BOARD = 0.12  # side of the square that represents a tag's board, as in `marks.js`, in [m]
-GHOSTS = (0.12, 0.47, 0.82), (0.78, 0.47, 0.0), (0.16, 0.62, 0.4), (0.6, 0.36, 0.77)
-SEEN_THROUGH = 0.38  # opacity of see-through arms; their colours are those of `player.js`
+GHOST, SEEN_THROUGH = (0.12, 0.47, 0.82), 0.38  # colour and opacity of see-through arms
 
 
 def figure_html(
@@ -113,7 +110,7 @@ def show(motion: Motion) -> Replay:
     from .widgets import Replay
 
     made = Replay(data=compact(motion.data()))
-    made.words = f"{motion.title}. {motion.description}"
+    made.words = f"{motion.title}. {motion.alt}"
     made.picture = lambda: still(motion)
     return made
 
@@ -141,8 +138,7 @@ def still(motion: Motion) -> bytes:
     tips, tip = tips_of(motion.q), model.pose(motion.q[k])[:3, 3]
     path = tips if motion.path is None else motion.path
     elbow = model.point_on(motion.q[k], robot.n // 2, np.zeros(3))[0]
-    board = None if motion.board_position is None else motion.board_position[k]
-    points = np.vstack([tip, elbow, tips, path, *([] if board is None else [board])])
+    points = np.vstack([tip, elbow, tips, path])
     at = 0.5 * (points.min(0) + points.max(0))
     radius = 0.5 * float(np.linalg.norm(np.ptp(points, axis=0))) + 0.12
     along = np.array([0.318, -0.818 if robot.name == "right" else 0.818, 0.479])  # as in `rig.js`
@@ -158,12 +154,9 @@ def still(motion: Motion) -> bytes:
     whole, depth = layer(solid._replace(colours=solid.colours**LIFT), FAR, 1.0)
     things = [x for x in motion.things.values() if x["kind"] == "face"]
     sheets = [(_sheet(x["position"], x["quaternion"], x["size"]), x["colour"]) for x in things]
-    if board is not None and motion.board_rotation is not None:
-        corners = (motion.board_rotation[k] @ (0.5 * BOARD * _SQUARE).T).T + board
-        sheets.append((corners[_HALVES], (0.9, 0.9, 0.9, 1.0)))
     through = [(in_colour(x, colour), min(0.55, colour[3])) for x, colour in sheets]
-    for q, colour in zip(motion.ghosts.values(), cycle(GHOSTS), strict=False):
-        through.append((in_colour(body(q[k]).corners, colour), SEEN_THROUGH))
+    arms = [body(q[k]).corners for q in motion.ghosts.values()]
+    through += [(in_colour(arm, GHOST), SEEN_THROUGH) for arm in arms]
     for surface, opacity in through:
         whole.alpha_composite(layer(surface, depth, opacity)[0])
 
@@ -182,7 +175,6 @@ def still(motion: Motion) -> bytes:
 
 
 _SQUARE = np.array([[1, 1, 0], [-1, 1, 0], [-1, -1, 0], [1, -1, 0]])
-_HALVES = [[0, 1, 2], [2, 3, 0]]
 
 
 def _sheet(position: Any, quaternion: Any, size: Any) -> Array:
@@ -190,4 +182,4 @@ def _sheet(position: Any, quaternion: Any, size: Any) -> Array:
     from scipy.spatial.transform import Rotation
 
     corners = Rotation.from_quat(quaternion).apply(0.5 * _SQUARE * [*size, 0.0])
-    return np.asarray(corners + position)[_HALVES]
+    return np.asarray(corners + position)[[[0, 1, 2], [2, 3, 0]]]

@@ -32,6 +32,7 @@ from ..errors import LabkitError
 from ..plant import Plant
 from ..run import Driven, run_driven
 from ..scene import Spring
+from ..se3 import pose
 from ..shapes import Array, as_array
 from ..trajectory import PoseSample, Sample
 from ..world import World
@@ -91,19 +92,18 @@ class Hand:
             point: Point of the body, in the body's frame, shape (3,) in [m].
             force: Force, world axes, shape (3,) in [N].
         """
-        self._point, self._to = (body, as_array(point, (3,), "point")), None
+        self._point = body, as_array(point, (3,), "point")
         self.force = _bounded(as_array(force, (3,), "force"))
 
     def follow(self, message: Mapping[str, Any]) -> None:
         """Carry out a message: pull the point ``local`` of ``link`` ``to`` a place, or push it."""
+        self.let_go()
         self.heard = time.monotonic()
-        if "force" in message:
-            self.push(message["link"], message["local"], message["force"])
-        elif "to" in message:
-            self._point = message["link"], as_array(message["local"], (3,), "point")
+        if "to" in message:
             self._to = as_array(message["to"], (3,), "to")
-        else:
-            self.let_go()
+            self._point = message["link"], as_array(message["local"], (3,), "local")
+        elif "force" in message:
+            self.push(message["link"], message["local"], message["force"])
 
     def seen(self) -> dict[str, Any]:
         """The hand's action as plain numbers, for the page to draw."""
@@ -137,29 +137,20 @@ class Surroundings:
     def __init__(self, arm: Arm, target: Any) -> None:
         """Take the target and the things in the world of ``arm``."""
         self._arm, self._target, self.since = arm, target, 0.0
-        self._shift: Array = np.zeros(3)
         self._goals: dict[int, Array] = {}
         duration = getattr(target, "duration", None)
         self._round = duration if duration and _closed(target, duration) else None
         self._latest: Any = target(0.0)
 
     def target(self, t: float) -> Any:
-        """The target, shifted by the user's dragging; a closed path repeats for ever."""
+        """The target; a closed path repeats for ever."""
         t += self.since
         self._latest = self._target(t % self._round if self._round else t)
-        return self._shifted()
-
-    def _shifted(self) -> Any:
-        sample = self._latest
-        if isinstance(sample, PoseSample) and self._shift.any():
-            pose = np.array(sample.pose)
-            pose[:3, 3] += self._shift
-            sample = sample._replace(pose=pose)
-        return sample
+        return self._latest
 
     def wanted(self, sample: Any = None) -> Array | None:
         """The desired pose of the tip, shape (4, 4); None if the target is only a point."""
-        sample = self._shifted() if sample is None else sample
+        sample = self._latest if sample is None else sample
         if isinstance(sample, PoseSample):
             return np.asarray(sample.pose)
         if isinstance(sample, Sample) and sample.position.size == self._arm.robot.n:
@@ -167,7 +158,7 @@ class Surroundings:
         return None
 
     def path(self) -> list[list[float]]:
-        """Path of a moving target without dragging, in [m]; empty if it is not known in advance."""
+        """Path of a moving target, in [m]; empty if it is not known in advance."""
         times = np.linspace(0.0, getattr(self._target, "duration", 0.0), POINTS)
         poses = [self.wanted(self._target(t)) for t in times] if times[-1] else []
         places = [T[:3, 3] for T in poses if T is not None]
@@ -191,8 +182,7 @@ class Surroundings:
         found: dict[str, Any] = {}
         T_wd = self.wanted()
         if T_wd is not None:
-            about = {"fixed": isinstance(self._latest, Sample), "shift": self._shift.tolist()}
-            found["target"] = placed("target", T_wd) | about
+            found["target"] = placed("target", T_wd) | {"fixed": True}
         for i, thing in enumerate(self._arm.world.things):
             if data := drawn_thing(thing):
                 found[f"thing {i}"] = data
@@ -215,11 +205,7 @@ class Surroundings:
             self._goals[int(number)] = position
         elif kind == "tag":
             board: Any = self._arm.world.shown[int(number)]
-            T = np.array(board.T_wm)
-            T[:3, 3] = position
-            board.place(T)
-        elif (T_wd := self.wanted()) is not None:
-            self._shift = self._shift + position - T_wd[:3, 3]
+            board.place(pose(board.T_wm[:3, :3], position))
 
     def approach(self, seconds: float) -> None:
         """Move dragged things towards their goals for ``seconds``, at `FASTEST` at most."""

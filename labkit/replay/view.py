@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -29,25 +28,6 @@ _SOFT = np.array([300.0] * 3 + [2.0] * 3)  # [N/m] and [N m/rad]
 _DAMPED = 15.0  # [1/s]
 
 
-@dataclass(frozen=True)
-class Dial:
-    """A number that the user can change.
-
-    Attributes:
-        name: Name of a number of `Plant`, or of an argument of a controller.
-        min: Least value.
-        max: Largest value.
-        value: Starting value.
-        unit: Unit of the values.
-    """
-
-    name: str
-    min: float
-    max: float
-    value: float
-    unit: str = ""
-
-
 def live(
     arm: Arm,
     target: Target | None = None,
@@ -71,8 +51,8 @@ def live(
 
     Args:
         arm: A simulated arm, preferably one made for this cell; it starts where it is.
-        target: As for `run`.  A closed path repeats for ever; a target of poses can be dragged,
-            and so can walls, bands and tags.  None is the place where the arm is.
+        target: As for `run`.  A closed path repeats for ever.  None is the place where the arm is.
+            Walls, bands and tags can be dragged.
         controller: As for `run`; or several by name, to switch between.  One that has an argument
             with the name of a dial is given the dial's value there: ``law(state, target, Kp)``.
             None is a spring of 300 N/m from the tip to the target's pose.
@@ -102,7 +82,7 @@ def live(
     laws = {str(name): law for name, law in named.items()}
     found = [read_dial(name, span, arm.plant, laws) for name, span in dials.items()]
     widget, robot = Live(), arm.robot
-    values = {dial.name: dial.value for dial in found}
+    values = {dial["name"]: dial["value"] for dial in found}
     widget.session = LiveSession(arm, laws, target, values, rate, widget.send)
     widget.on_msg(lambda _, message, __: widget.session.tell(message))
     first = widget.session.numbers()
@@ -114,7 +94,7 @@ def live(
             "side": robot.name,
             **({} if robot.name in SIDES else {"robot": drawn(robot)}),
             "laws": list(laws),
-            "dials": [vars(dial) for dial in found],
+            "dials": found,
             "joints": [n.removeprefix(f"{robot.name}_") for n in robot.joint_names],
             "first": first,
             "path": widget.session.around.path(),
@@ -138,7 +118,9 @@ def _soft(model: Model) -> Callable[..., JointTorque]:
     return soft
 
 
-def read_dial(name: str, span: Any, plant: Plant, laws: Mapping[str, Callable[..., Any]]) -> Dial:
+def read_dial(
+    name: str, span: Any, plant: Plant, laws: Mapping[str, Callable[..., Any]]
+) -> dict[str, Any]:
     """A dial, from its range (low, high) or (low, high, start), and perhaps a unit.
 
     Raises:
@@ -164,4 +146,4 @@ def read_dial(name: str, span: Any, plant: Plant, laws: Mapping[str, Callable[..
         value = min(max(max(own) if isinstance(own, tuple) else own, low), high)
     if not low <= value <= high or low >= high:
         raise OutOfRange(f"the dial {name} starts at {value:g}, outside {low:g} to {high:g}")
-    return Dial(name, low, high, value, unit)
+    return {"name": name, "min": low, "max": high, "value": value, "unit": unit}

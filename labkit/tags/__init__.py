@@ -10,13 +10,6 @@ from .stream import TagStream, TagTarget
 from .tag import Tag
 
 __all__ = [
-    "Board",
-    "Camera",
-    "Intrinsics",
-    "Tag",
-    "TagStream",
-    "TagTarget",
-    "detect_tags",
-    "find_tag",
+    "Board", "Camera", "Intrinsics", "Tag", "TagStream", "TagTarget", "detect_tags", "find_tag",
     "looking_at",
-]
+]  # fmt: skip

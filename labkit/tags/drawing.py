@@ -16,7 +16,7 @@ from __future__ import annotations
 import json
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
-from functools import cache, cached_property, lru_cache
+from functools import cache, lru_cache
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -26,11 +26,11 @@ from scipy.spatial import ConvexHull
 from scipy.spatial.transform import Rotation
 
 from .. import se3
-from ..errors import OutOfRange, ShapeError
+from ..errors import OutOfRange
 from ..robot import SIDES, Robot
 from ..robot import robot as baxter
 from ..scene import FACE, Table, Wall
-from ..shapes import Array, as_number, as_numbers, locked
+from ..shapes import Array, as_array, as_number, locked
 from ..world import World
 
 DATA = Path(__file__).parents[1] / "data"
@@ -70,15 +70,12 @@ class Intrinsics:
     cy: Any = None
 
     def __post_init__(self) -> None:
-        for name, middle in (("width", "cx"), ("height", "cy")):
-            n = getattr(self, name)
-            if not isinstance(n, int | np.integer) or not 8 <= n <= 8192:
-                raise OutOfRange(f"{name} is {n!r}; give a whole number of pixels from 8 to 8192")
+        for name in ("width", "height", "fx", "fy"):
+            as_number(getattr(self, name), name, above=0.0)
+        for n, middle in ((self.width, "cx"), (self.height, "cy")):
             given = getattr(self, middle)
             at = 0.5 * (n - 1) if given is None else as_number(given, middle)
             object.__setattr__(self, middle, at)
-        as_number(self.fx, "fx", above=0.0)
-        as_number(self.fy, "fy", above=0.0)
 
     @property
     def matrix(self) -> Array:
@@ -98,9 +95,7 @@ class Intrinsics:
             ShapeError: The points do not have three coordinates.
             OutOfRange: A point is not in front of the camera.
         """
-        p = as_numbers(points, "points")
-        if p.ndim != 2 or p.shape[1] != 3:
-            raise ShapeError("points", (len(np.atleast_2d(p)), 3), p.shape)
+        p = as_array(points, (len(points), 3), "points")
         if (behind := p[:, 2] <= 0.0).any():
             i = int(behind.argmax())
             raise OutOfRange(
@@ -270,24 +265,26 @@ def _folded(corners: Array, lens: Intrinsics, window: Window, samples: int) -> A
     return np.stack([right, -down, -z], axis=-1)
 
 
-@dataclass(frozen=True, eq=False)
-class Piece:
+class Piece(NamedTuple):
     """A part of a robot.
 
     Attributes:
         parent: The joint that carries it.
         surface: Its triangles, in that joint's moving frame.
+        centre: Middle of a ball that encloses it, shape (3,) in [m], in the same frame.
+        radius: Radius of the ball, in [m].
     """
 
     parent: str
     surface: Surface
+    centre: Array
+    radius: float
 
-    @cached_property
-    def ball(self) -> tuple[Array, float]:
-        """A ball that encloses the piece: its centre, shape (3,) in [m], and its radius in [m]."""
-        points = self.surface.corners.reshape(-1, 3)
-        centre = 0.5 * (points.min(axis=0) + points.max(axis=0))
-        return centre, float(np.linalg.norm(points - centre, axis=1).max())
+
+def _piece(parent: str, surface: Surface) -> Piece:
+    points = surface.corners.reshape(-1, 3)
+    centre = 0.5 * (points.min(axis=0) + points.max(axis=0))
+    return Piece(parent, surface, centre, float(np.linalg.norm(points - centre, axis=1).max()))
 
 
 class RobotVisuals:
@@ -316,8 +313,8 @@ class RobotVisuals:
     @property
     def balls(self) -> tuple[Array, Array]:
         """A ball around each piece: world centres (pieces, 3) and radii (pieces,) in [m]."""
-        centres = np.array([[*piece.ball[0], 1.0] for piece in self.pieces])
-        radii = np.array([piece.ball[1] for piece in self.pieces])
+        centres = np.array([[*piece.centre, 1.0] for piece in self.pieces])
+        radii = np.array([piece.radius for piece in self.pieces])
         return np.einsum("nij,nj->ni", self.frames, centres)[:, :3], radii
 
     def surface(self, wanted: Any) -> Surface:
@@ -365,7 +362,7 @@ def _meshes() -> tuple[Piece, ...]:
     for piece in _table("pieces"):
         points, sides, *_ = cv2.loadMesh(str(DATA / piece["mesh"]))
         corners = np.asarray(points, dtype=float)[0][np.array(sides)[:, 0]]
-        found.append(Piece(piece["parent"], in_colour(corners, piece["rgba"]).moved(piece["T"])))
+        found.append(_piece(piece["parent"], in_colour(corners, piece["rgba"]).moved(piece["T"])))
     return tuple(found)
 
 
@@ -378,7 +375,7 @@ def _capsules(robot: Robot) -> tuple[Piece, ...]:
     ring = np.array([np.cos(around) * np.sin(along), np.sin(around) * np.sin(along), np.cos(along)])
     ball = radius * ring.reshape(3, -1).T
     rods = (wrapped(np.concatenate([ball, ball + end]), _COLOUR) for end in ends)
-    return tuple(map(Piece, ("base", *robot.joint_names), rods))
+    return tuple(map(_piece, ("base", *robot.joint_names), rods))
 
 
 @cache

@@ -1,7 +1,6 @@
 """A motion keeps its numbers, stays small, and speaks of itself truly."""
 
 import json
-import re
 
 import numpy as np
 import pytest
@@ -32,18 +31,12 @@ def test_ten_seconds_fit_forty_kilobytes(ghosts):
 
 
 def test_alternative_text_says_the_true_numbers():
-    """Errors, duration, largest torque and the joint that travels most are the motion's."""
+    """Errors, duration, largest torque and the other arms are the motion's."""
     motion = swing()
     rms, most = (1000 * f(motion.error) for f in (lambda e: np.sqrt(np.mean(e**2)), np.max))
-    assert f"{rms:.1f} mm RMS, {most:.1f} mm at most" in motion.alt
-    assert "10.0 s" in motion.alt
-    assert all(name in motion.alt for name in motion.ghosts)
-    torque = float(re.search(r"largest torque is (-?[\d.]+) N m", motion.description)[1])
-    assert abs(torque) == pytest.approx(np.abs(motion.tau).max(), abs=0.05)
-    joint = np.ptp(motion.q, axis=0).argmax()
-    assert (
-        f"Joint {('s0', 's1', 'e0', 'e1', 'w0', 'w1', 'w2')[joint]} travels" in motion.description
-    )
+    torque = np.abs(motion.tau).max()
+    for said in (f"{rms:.1f} mm RMS, {most:.1f} mm", "10.0 s", f"{torque:.1f} N m", *motion.ghosts):
+        assert said in motion.alt
 
 
 def test_quaternions_are_the_rotations_without_jumps():

@@ -90,7 +90,7 @@ def test_a_saved_notebook_keeps_picture_and_words():
     page = Reader(kept["text/html"])
     (image,) = [attributes for tag, attributes in page.elements if tag == "img"]
     assert motion.title in image["alt"]
-    assert motion.description in kept["text/plain"]
+    assert motion.alt in kept["text/plain"]
     picture = Image.open(BytesIO(base64.b64decode(image["src"].split(",")[1])))
     pixels = np.array(picture)
     assert picture.size == (640, 400)

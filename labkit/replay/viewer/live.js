@@ -218,7 +218,6 @@ export class LiveArm {
     const { picture } = this;
     picture.pose(this.data.side, q);
     picture.furnish(things);
-    this.path?.position.fromArray(things.target?.shift ?? [0, 0, 0]);
     const size = force ? Math.hypot(...force) : 0;
     const starts = this.held?.force && force && link < this.links.length - 1 ? picture.outside(at, force) : at ?? picture.tip.p;
     picture.arrow("force", starts, (force ?? [0, 0, 0]).map((x) => NEWTON * x), `${size.toFixed(1)} N`);
