@@ -183,7 +183,7 @@ def read_list(file: Path, teams: str = "") -> tuple[list[tuple[int, Student]], l
     for line, row in table:
         cells = {k: row[at] if at < len(row) else "" for k, at in columns.items()}
         role, name = cells.pop("role", ""), cells.pop("name", "")
-        if name and not (cells.get("first_name") or cells.get("last_name")):
+        if name and not cells.get("last_name"):
             last, comma, first = name.rpartition(",")  # "Lovelace, Ada", or "Ada Lovelace"
             first, last = (first, last) if comma else (*name.rpartition(" ")[::2],)
             cells |= {"first_name": first.strip(), "last_name": last.strip()}

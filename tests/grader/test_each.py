@@ -199,10 +199,3 @@ def test_nobody_who_handed_in_is_passed_over(course, capsys):
     code, out, err = verb(course, capsys, "export")
     assert (code, err.count("no mark: ada: handed in but not graded")) == (1, 1)
     assert "\nada," in out
-
-
-def test_two_who_fail_a_test_say_nothing_of_it(course):
-    """Two of six may have made one known mistake; of three the lecturer is told."""
-    results = [result_of(course, f"s{k}", share=float(k > 2)) for k in range(6)]
-    assert list(batch.common_failures(results))
-    assert not list(batch.common_failures([*results[1:], result_of(course, "s6")]))
