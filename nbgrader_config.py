@@ -27,10 +27,6 @@ c.HTMLExporter.filters = {
     "clean_html": "labkit.grader.feedback.clean",
 }
 
-# When work is due and what late work loses stands in course.toml; name a class of your own instead,
-# in a file that lies here, if its rules are not enough.
-c.AssignLatePenalties.plugin_class = "labkit.grader.rules.CourseRules"
-
 # formgrader's button and nbgrader's command write the pages that `labkit feedback` writes.
 c.GenerateFeedback.exporter_class = "labkit.grader.feedback.StudentPage"
 

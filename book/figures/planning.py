@@ -10,7 +10,6 @@ from IPython.display import HTML
 
 from labkit.course.authoring.layout import OUTCOMES, Course
 from labkit.course.identification import Identification
-from labkit.grader.whys import DRAWN
 
 from .claims import holds
 from .front import NOTEBOOKS, hours
@@ -57,7 +56,7 @@ REPORT_MINUTES = REPORT_WORDS / WORDS_A_MINUTE + 0.5 + 6 * 0.4 + 1.5
 LONG_REPORT = 20.0
 """Minutes for a report if a person takes more time."""
 MINUTES = {
-    "two short 'why' answers of each student, of at most 80 words": 2 * WHY,
+    "four short 'why' answers of each student, of at most 80 words": 4 * WHY,
     "a report of four pages, at most 720 words, with its rubric": REPORT_MINUTES / TEAM,
     TALK: 10.0 / TEAM,
     "contested marks, with labkit explain": 0.3,
@@ -99,8 +98,8 @@ def planning() -> HTML:
          "Points that a person may give", "Prerequisites"),
         rows,
         "Hours are the authors' estimate for a student who has basic numpy and has read the "
-        "chapter. A person marks two short texts of each student, which answer a “why” question; "
-        "the other short “why” answers earn their points if they are not blank.",
+        "chapter. A person marks a short text in each of four notebooks, which answers a “why” "
+        "question.",
     )  # fmt: skip
 
 
@@ -141,10 +140,10 @@ def plan() -> HTML:
         holds(taken == {*TRACKS[track], *extra}, f"the plan of {track} has its notebooks")
     rows: list[tuple[str, ...]] = []
     asked = [name for name in NOTEBOOKS if _points(name)[1]]
-    drawn = CLASS * DRAWN / len(asked)
+    holds(len(asked) == 4, "four notebooks have a why")
     for name, (core, whole) in HOURS.items():
         read = READING.get(name[:2], 0.0)
-        by_hand = f"{drawn:.0f} whys, {drawn * WHY / 60.0:.1f} h" if name in asked else ""
+        by_hand = f"{CLASS} whys, {CLASS * WHY / 60.0:.1f} h" if name in asked else ""
         if name == REPORT:
             by_hand = f"{CLASS / TEAM:.0f} reports, {CLASS * REPORT_MINUTES / TEAM / 60.0:.0f} h"
         what = name.replace("_", " ")

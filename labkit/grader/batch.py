@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 import time
-from collections import Counter
-from collections.abc import Callable, Iterator, Sequence
+from collections import Counter, defaultdict
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from concurrent.futures import FIRST_COMPLETED, wait
 from dataclasses import dataclass, field
 
@@ -17,16 +17,14 @@ from .grade import hashes
 from .grading.executor import executor
 from .grading.worker import Task, grade_submission
 from .results import Result, Results
-from .sandbox.limits import Limits
+from .sandbox.limits import Limits, slowness
 from .sandbox.mounts import NoIsolation
 from .submission import Submission
 
 FAILURE_RATE_ALERT = 0.3
-"""If a larger share of the class fails a test, the run asks whether the test is to blame."""
-MIN_ATTEMPTS = 5
-"""With fewer attempts at a question than this, none of its tests is called into doubt."""
-MIN_FAILURES = 3
-"""With fewer failures of a test, such as two of one known mistake, the test is not doubted."""
+"""If a larger share of those who tried fails a test, the run asks whether the test is to blame."""
+MIN_FAILURES = 5
+"""Fewer failures of a test are no pattern."""
 PROGRESS_INTERVAL = 15.0
 """Seconds between two progress reports."""
 
@@ -135,21 +133,25 @@ def _graded(
     course: Course, bundle: Bundle, submissions: Sequence[Submission], options: GradeOptions
 ) -> Iterator[Result | Failure]:
     """Each result as soon as it is finished, or why grading failed."""
-    key = bundle.data["hash"]
     with executor(options.jobs, options.dask) as pool:
+        key = bundle.data["hash"]
         tasks = [Task(course, x, key, options.isolated, options.limits) for x in submissions]
         whose = {pool.submit(grade_submission, x): x.submission.student for x in tasks}
-        began = said = time.monotonic()
+        began = said = last = time.monotonic()
         left = set(whose)
         while left:
             done, left = wait(left, PROGRESS_INTERVAL, FIRST_COMPLETED)
             for future in done:
                 yield for_student(whose[future], future.result, of_all=(NoIsolation,))
             now, count = time.monotonic(), len(tasks) - len(left)
+            last = now if done else last
             if left and now >= said + PROGRESS_INTERVAL:
-                said, minutes = now, (now - began) * len(left) / max(1, count) / 60
-                rest = f", about {max(1, round(minutes))} min left" if count else ""
-                options.tell(f"{count} of {len(tasks)} graded{rest}")
+                said, waited = now, now - last
+                seconds = (now - began) / max(1, count) * len(left) * bool(count)
+                if waited >= PROGRESS_INTERVAL:  # those that run may take all that they may
+                    seconds += options.limits.scaled(slowness()).worker - waited
+                minutes = max(1, round(seconds / 60))
+                options.tell(f"{count} of {len(tasks)} graded, about {minutes} min left")
 
 
 def _is_up_to_date(
@@ -163,50 +165,34 @@ def _is_up_to_date(
 
 def changes(found: Sequence[GradedSubmission]) -> Iterator[str]:
     """A sentence for each mark that a new release moves, and one that counts them."""
-    moved = [x for x in found if x.before and (x.kept or x.now.score != x.before.score)]
-    for one in moved:
-        each = one.before.earned if one.before else {}
+    old = [(x, x.before) for x in found if x.before]
+    moved = [(x, was) for x, was in old if x.kept or x.now.score != was.score]
+    for x, was in moved:
+        points = x.now.earned
         parts = [
-            f"{v.name} {each.get(v.name, 0.0):g} -> {v.earned:g}"
-            for v in (q.verdict for q in one.now.questions)
-            if v.earned != each.get(v.name, 0.0)
+            f"{name} {was.earned.get(name, 0.0):g} -> {points[name]:g}"
+            for name in points
+            if points[name] != was.earned.get(name, 0.0)
         ]
-        only = "; only with --lower" if one.kept else ""
-        was, now = one.before or one.now, one.now
-        yield f"{now.student}: {was.score:g} -> {now.score:g} ({', '.join(parts)}){only}"
-    had = sum(x.before is not None for x in found)
-    yield f"{len(moved)} of {had} marks would change; {len(found) - had} new"
+        only = "; only with --lower" if x.kept else ""
+        yield f"{x.now.student}: {was.score:g} -> {x.now.score:g} ({', '.join(parts)}){only}"
+    yield f"{len(moved)} of {len(old)} marks would change; {len(found) - len(old)} new"
 
 
-def common_failures(results: Sequence[Result], fewest: int = 1) -> Iterator[str]:
-    """Name the questions with a test that many students fail, as the test may be to blame.
-
-    Args:
-        results: The results of the class.
-        fewest: Counts of fewer students are not given.
-
-    Yields:
-        A sentence for each such question, about the test that most students fail.
-    """
-    graded = [r for r in results if not r.unanswered]
-    failed: Counter[tuple[str, str]] = Counter()
+def common_failures(results: Iterable[Result]) -> Iterator[str]:
+    """A sentence for each question with a test that many fail, as the test may be to blame."""
+    failed: dict[str, Counter[str]] = defaultdict(Counter)
     tried: Counter[str] = Counter()
-    for result in graded:
-        for question in result.questions:
-            if question.verdict.outcome in (Outcome.NOT_ATTEMPTED, Outcome.NOT_COUNTED):
-                continue
-            tried[question.verdict.name] += 1
-            for one in question.verdict.tests:
-                failed[question.verdict.name, one.name] += one.outcome is not Outcome.RIGHT
-    doubtful: dict[str, list[tuple[int, str]]] = {}
-    for (name, test), count in failed.most_common():
-        share = FAILURE_RATE_ALERT * tried[name]
-        if count > share and count >= MIN_FAILURES and tried[name] >= MIN_ATTEMPTS:
-            doubtful.setdefault(name, []).append((count, test))
-    for name, ((count, test), *others) in doubtful.items():
-        more = f", and many fail {len(others)} more of its tests" if others else ""
-        students = f"<{fewest}" if count < fewest else count
-        yield (
-            f"{students} of {tried[name]} who tried {name} fail the test {test!r}{more}: "
-            "is the cause the test, the text or the lecture?"
-        )
+    for verdict in (question.verdict for result in results for question in result.questions):
+        if verdict.outcome not in (Outcome.NOT_ATTEMPTED, Outcome.NOT_COUNTED):
+            tried[verdict.name] += 1
+            failed[verdict.name].update(
+                test.name for test in verdict.tests if test.outcome is not Outcome.RIGHT
+            )
+    for name, tests in failed.items():
+        for test, count in tests.most_common(1):
+            if count >= MIN_FAILURES and count > FAILURE_RATE_ALERT * tried[name]:
+                yield (
+                    f"{count} of {tried[name]} who tried {name} fail the test {test!r}: "
+                    "is the cause the test, the text or the lecture?"
+                )

@@ -7,7 +7,7 @@ import re
 from collections import Counter, defaultdict
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from statistics import mean, median
-from typing import Any, NamedTuple
+from typing import Any
 
 from ..course.authoring.layout import OUTCOMES
 from ..course.authoring.problem import Problem
@@ -22,13 +22,9 @@ from .marks import Mark
 from .pages import render
 from .results import Result
 
-SLOW = 30.0
 FEWEST = 5
 """A report without names does not give counts of fewer students than this."""
-COUNTED = (
-    *(Outcome.RIGHT, Outcome.WRONG, Outcome.ERROR),
-    *(Outcome.NOT_COUNTED, Outcome.NOT_ATTEMPTED),
-)
+COUNTED = (Outcome.RIGHT, Outcome.WRONG, Outcome.ERROR, Outcome.NOT_COUNTED, Outcome.NOT_ATTEMPTED)
 """Outcomes that have a column of the table."""
 _Row = dict[str, Any]
 """A row for the template, whose keys are the names that the template uses."""
@@ -58,66 +54,57 @@ def report(
     counted = [mark for mark in marks if mark.result and (mark.lines or not mark.missing)]
     results = [mark.result for mark in counted if mark.result]
     who = {r.student: _escape(called(r.student)) for r in results}
-    graded = [r for r in results if not r.unanswered]
-    rejected = [r for r in results if r.unanswered]
-    times = sorted(((r.seconds.get("all", 0.0), who[r.student]) for r in graded), reverse=True)
+    graded = [r for r in results if not r.rejected]
+    full = [m for m in counted if m.raw is not None and m.result in graded]
+    verdicts: dict[str, list[Verdict]] = defaultdict(list)
+    for verdict in (answer.verdict for result in graded for answer in result.questions):
+        verdicts[verdict.name].append(verdict)
+    tests = [test for found in verdicts.values() for verdict in found for test in verdict.tests]
+    shares = {
+        name: mean(v.earned / v.points for v in found)
+        for name, found in verdicts.items()
+        if all(v.points for v in found)
+    }
     text = render(
         "class_report.md.j2",
         assignment=assignment,
         handed_in=len(marks),
         left_out=len(marks) - len(counted),
         open=sum(bool(mark.open) for mark in counted),
-        late=sum(mark.penalty > 0.0 for mark in counted),
-        rejected=[f"{who[r.student]}: {_escape(r.unanswered)}" for r in rejected],
+        rejected=[f"{who[r.student]}: {_escape(r.rejected)}" for r in results if r.rejected],
         graded=len(graded),
-        scores=sorted(
-            float(m.score) for m in counted if m.raw is not None and m.result not in rejected
-        ),
+        scores=sorted(float(m.score) for m in full),
         points=max((mark.points for mark in counted), default=0.0),
         mean=mean,
         median=median,
-        changed=any(x.automatic not in (None, x.score) for mark in counted for x in mark.lines),
-        questions=(questions := list(_question_rows(graded))),
-        outcomes=list(_outcome_rows(questions, asked)),
+        counts={k: Counter(v.outcome for v in found) for k, found in verdicts.items()},
+        columns=COUNTED,
+        shares=shares,
+        tests=len(tests),
+        hidden=sum(test.hidden for test in tests),
+        outcomes=list(_outcome_rows(shares, asked)),
         texts={q.name: _short_question(q) for q in asked},
         predictions=list(_prediction_rows(graded, asked, fewest, truths or {})),
-        mistakes=list(_mistake_rows(graded, problems)),
+        mistakes=list(_mistake_rows(verdicts, problems)),
         count=lambda n: f"<{fewest}" if 0 < n < fewest else n,
-        tools=list(_tool_lines(graded, who)),
-        doubtful=list(common_failures(graded, fewest)),
-        slow_limit=f"{SLOW:g}",
-        slow=[f"{name}: {seconds:.0f} s" for seconds, name in times if seconds > SLOW],
+        tools=[
+            f"{who[r.student]}: {v.name} {why_not_counted(v.withheld)}"
+            for r in graded
+            for v in (answer.verdict for answer in r.questions)
+            if v.withheld
+        ],
+        doubtful=list(common_failures(graded)),
     )
     return text.rstrip() + "\n"
 
 
-class _QuestionRow(NamedTuple):
-    name: str
-    counts: list[int]
-    share: float | None
-    """The mean share of the points that was earned; None if the question has no points."""
-
-
-def _question_rows(graded: Sequence[Result]) -> Iterator[_QuestionRow]:
-    verdicts: dict[str, list[Verdict]] = defaultdict(list)
-    for result in graded:
-        for question in result.questions:
-            verdicts[question.verdict.name].append(question.verdict)
-    for name, mine in verdicts.items():
-        count = Counter(verdict.outcome for verdict in mine)
-        shares = [verdict.earned / verdict.points for verdict in mine if verdict.points]
-        yield _QuestionRow(name, [count[x] for x in COUNTED], mean(shares) if shares else None)
-
-
-def _outcome_rows(rows: Sequence[_QuestionRow], asked: Sequence[Question]) -> Iterator[_Row]:
+def _outcome_rows(shares: Mapping[str, float], asked: Sequence[Question]) -> Iterator[_Row]:
     """For each learning outcome, the questions that assess it and their mean share of points."""
-    shares = {row.name: row.share for row in rows if row.share is not None}
     for outcome, says in OUTCOMES.items():
         names = [q.name for q in asked if outcome in q.outcomes and q.name in shares]
         if names:
             text = ", ".join(f"`{name}`" for name in names)
-            share = mean(shares[name] for name in names)
-            yield {"says": says, "questions": text, "share": share}
+            yield {"says": says, "questions": text, "share": mean(shares[x] for x in names)}
 
 
 def _prediction_rows(
@@ -130,18 +117,11 @@ def _prediction_rows(
         if isinstance(form, Form):
             told = [for_student(who, _said, form, x.get(question.name, "")) for who, x in sources]
             counts = Counter(x for x in told if isinstance(x, str))
-            truth = form.words(truths[question.name]) if question.name in truths else ""
-            common = [
-                f"{n} x {_escape(words)}{', which is true' * (words == truth)}"
-                for words, n in counts.most_common()
-                if n >= fewest
-            ]
-            rest = len(sources) - sum(n for n in counts.values() if n >= fewest)
-            alike = f", fewer than {fewest} of them alike," if fewest > 1 else ""
-            others = f"{rest} {'other' if rest == 1 else 'others'}{alike} or no answer"
-            said = [*common, *[others] * bool(rest)]
+            truth = _escape(form.words(truths[question.name])) if question.name in truths else ""
+            said = [(n, _escape(words)) for words, n in counts.most_common() if n >= fewest]
+            rest = len(sources) - sum(n for n, _ in said)
             asks = " ".join(question.asks.split())
-            yield {"name": question.name, "asks": asks, "truth": truth, "said": said}
+            yield {"name": question.name, "asks": asks, "truth": truth, "said": said, "rest": rest}
 
 
 def _said(form: Form, source: str) -> str | None:
@@ -162,23 +142,15 @@ def _committed(source: str) -> Any:
     return None
 
 
-def _mistake_rows(graded: Sequence[Result], problems: Mapping[str, Problem]) -> Iterator[_Row]:
+def _mistake_rows(
+    verdicts: Mapping[str, Sequence[Verdict]], problems: Mapping[str, Problem]
+) -> Iterator[_Row]:
     """How many made each known mistake, and what to say about it, most common first."""
-    verdicts = (question.verdict for result in graded for question in result.questions)
-    made = Counter((v.name, v.mistake.name) for v in verdicts if v.mistake)
+    made = Counter((v.name, v.mistake.name) for x in verdicts.values() for v in x if v.mistake)
     for (name, mistake), count in made.most_common():
         known = problems[name].wrong if name in problems else ()
         say = next((w.lecture or w.says for w in known if w.name == mistake), "")
         yield {"students": count, "question": name, "name": mistake, "say": say}
-
-
-def _tool_lines(graded: Sequence[Result], who: Mapping[str, str]) -> Iterator[str]:
-    """For each student, the withheld tools that they used."""
-    for result in graded:
-        verdicts = [question.verdict for question in result.questions]
-        used = [f"{v.name} {why_not_counted(v.withheld)}" for v in verdicts if v.withheld]
-        if used:
-            yield f"{who[result.student]}, not counted: {'; '.join(used)}"
 
 
 def _short_question(question: Question) -> str:

@@ -22,7 +22,7 @@ from .each import Failures
 
 PATH = click.Path(path_type=Path)
 VERBS: list[click.Command] = []
-LAYOUTS = ("questions", "nbgrader", "canvas", "moodle", "moodle-worksheet", "gradescope")
+LAYOUTS = ("questions", "canvas", "moodle", "moodle-worksheet", "gradescope")
 NAMED = ("canvas", "moodle")
 """Layouts with a column whose name a platform must know."""
 _DEFENCE = f"{DEFENCE} is marked by: labkit defence STUDENT --mark A,B,C"
@@ -270,7 +270,7 @@ def grade(
     Each submission is graded in a sandbox of its own. After you have changed a test and released
     the assignment, all submissions are graded again. No mark is lowered unless you add --lower; if
     a question has other points since, its share of them is compared.
-    A notebook of another assignment that was handed in is named at the end, with exit code 1.
+    If a file is rejected, such as the notebook of another assignment, the exit code is 1.
     """
     from ..course.authoring.bundle import Bundle
     from .batch import GradeOptions, changes, common_failures, grade_class
@@ -300,9 +300,6 @@ def grade(
             results.append(one.result)
             says = f" ({one.says})" if one.says else ""
             print(f"[{number}/{len(who)}] {one.result}{says}", flush=True)
-            if one.result.unanswered and not one.result.rejected:
-                says = f"{one.result.unanswered}; ask for the right one"
-                failures.append(f"ATTENTION: {one.result.student}: {says}")
         written = record(course, assignment, results)
         _tell(failures.sift(written, "not in the gradebook"))
         everybody = results if student else list(Results(course, assignment))
@@ -311,7 +308,7 @@ def grade(
             print(f"not included: {how_many(by_hand, 'point')}, marked in formgrader")
         if results:
             print(f"isolation: {results[-1].isolation}\nresults: {course.results / assignment}")
-    return failures.code
+    return failures.code or int(any(result.rejected for result in results))
 
 
 @verb("01_paths --names")

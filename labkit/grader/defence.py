@@ -3,6 +3,9 @@
 The questions are drawn under the term's key, so each student has their own, which stay the same
 when the page is printed again.  A mistake is used only if the question's checks reject the function
 with it; if the question runs an arm, the arm must miss a limit.
+
+Functions are shown as Python writes them out, without docstrings and comments; so neither the
+spacing nor a comment tells which line was changed.
 """
 
 from __future__ import annotations
@@ -11,10 +14,10 @@ import ast
 import shlex
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import closing
-from copy import copy, deepcopy
+from copy import deepcopy
 from dataclasses import dataclass, replace
 from functools import partial
-from itertools import islice
+from itertools import islice, permutations
 from pathlib import Path
 from typing import Any
 
@@ -28,7 +31,7 @@ from ..errors import LabkitError
 from . import evidence
 from .clean import few
 from .each import Failure
-from .feedback import error_over_time, measures, number_by_number
+from .feedback import error_over_time, farthest, measures
 from .files import write
 from .grade import parse
 from .gradebook import open_gradebook
@@ -47,10 +50,44 @@ from .submission import Submission, is_name
 
 ASKED = 3
 """The number of questions in one defence."""
-FULL = 3
-"""The full marks for each question."""
 TRIES = 3
 """The number of mistakes that are tried in a function."""
+RUBRIC = (
+    "says which line was changed, and what it was before",
+    "says what the arm will do, or what is returned, before the answer is shown",
+    "explains the picture by the line: which term, which sign, which frame",
+)
+"""The criteria for each question, at one point each."""
+FULL = len(RUBRIC)
+"""The full marks for each question."""
+LINES = tuple(f"question_{k + 1}" for k in range(ASKED))
+"""The names of the questions in the gradebook."""
+MOST = 300
+"""The most mistakes that are tried in one cell; real functions have fewer."""
+
+
+@dataclass(frozen=True)
+class Edit:
+    """A cell with a mistake in one line of its functions.
+
+    Attributes:
+        cell: The cell with the mistake.
+        lines: The lines of its functions, with the mistake.
+        at: The number of the line with the mistake, from 1.
+        was: The same line without the mistake.
+        says: The mistake in a few words.
+    """
+
+    cell: str
+    lines: tuple[str, ...]
+    at: int
+    was: str
+    says: str
+
+    @property
+    def now(self) -> str:
+        """The line with the mistake."""
+        return self.lines[self.at - 1]
 
 
 @dataclass(frozen=True)
@@ -88,14 +125,12 @@ class Asked:
         of: The answer that the question is about.
         edit: The mistake, and the functions with it.
         run: The run of the arm with the mistake, if the question has one.
-        own: The run of the arm with the answer as it was handed in.
         numbers: Otherwise, the numbers returned with the mistake and those expected.
     """
 
     of: Accepted
     edit: Edit
     run: Run | None
-    own: Run | None
     numbers: Numbers | None
 
     @property
@@ -114,29 +149,23 @@ def draw(course: Course, student: str) -> tuple[Asked, ...]:
         NoIsolation: No sandbox can be made here.
     """
     secret = partial(rank, key_of(course, "defence"), student)
-    answers = sorted(
-        accepted(course, student),
-        key=lambda x: (not x.drives, secret(f"{x.assignment}/{x.question.name}")),
-    )
+    answers = list(_accepted(course, student))
+    answers.sort(key=lambda x: (not x.drives, secret(x.assignment, x.question.name)))
     if not answers:
         return ()
     limits = Limits().scaled(slowness())
 
     def drawn(sandbox: Sandbox) -> tuple[Asked, ...]:
-        found = (_ask(course, student, one, sandbox, limits) for one in answers)
+        found = (_ask(course, student, one, sandbox, limits, secret) for one in answers)
         return tuple(islice(filter(None, found), ASKED))
 
     modules = {name: None for one in answers for name in imports(one.bundle.data["cells"])}
     return in_sandbox(drawn, course, tuple(modules))
 
 
-def accepted(course: Course, student: str) -> Iterator[Accepted]:
-    """A student's answers that earned full marks, and that a mistake can be put into.
-
-    Raises:
-        LabkitError: There is no such student, nothing was handed in, or work is not graded.
-    """
-    known(course, student)
+def _accepted(course: Course, student: str) -> Iterator[Accepted]:
+    """A student's answers that earned full marks, and that a mistake can be put into."""
+    _check_known(course, student)
     worked = False
     for name in sorted(path.stem for path in course.bundle.glob("*.json")):
         for result in current_results(course, name, student):
@@ -152,91 +181,51 @@ def accepted(course: Course, student: str) -> Iterator[Accepted]:
         raise LabkitError(f"{student} has handed in nothing, so there is nothing to ask about")
 
 
-def known(course: Course, student: str) -> None:
+def _check_known(course: Course, student: str) -> None:
     """Raise a LabkitError if nobody has this folder."""
+    listed = [student.id for student in read_roster(course).students]
     folders = [path.name for path in course.submitted.glob("*") if is_name(path.name)]
-    if student not in folders and read_roster(course).get(student) is None:
+    if student not in {*folders, *listed}:
         says = f"there is no student {student!r}; give the name of a folder: {few(folders)}"
         raise LabkitError(says)
 
 
 def _ask(
-    course: Course, student: str, one: Accepted, sandbox: Sandbox, limits: Limits
+    course: Course,
+    student: str,
+    one: Accepted,
+    sandbox: Sandbox,
+    limits: Limits,
+    secret: Callable[..., bytes],
 ) -> Asked | None:
     """A question about an answer; None if no mistake that is tried changes what the checks say."""
-    data, _, why = Submission.of(course, one.assignment, student).read()
-    cells = why or parse(data, sandbox, limits)
-    if isinstance(cells, str):
-        raise LabkitError(f"{one.assignment}: {cells}")
-    todo, question = plan(cells, one.bundle.data["cells"]), one.question
+    data, _, _ = Submission.of(course, one.assignment, student).read()
+    todo, question = plan(parse(data, sandbox, limits), one.bundle.data["cells"]), one.question
     place = todo.places[question.name]
-    secret = partial(rank, key_of(course, "defence"), student)
     mistakes = edits(todo.source(question.name))
-    mistakes.sort(key=lambda edit: secret(f"{question.name}/{edit.at}/{edit.now}"))
+    mistakes.sort(key=lambda edit: secret(question.name, str(edit.at), edit.now))
     for edit in mistakes[:TRIES]:
         steps = [replace(x, source=edit.cell) if x.number == place else x for x in todo.steps]
         with closing(Session(sandbox, steps, limits)) as session:
             session.right = [name for name in one.right if name != question.name]
-            function = RemoteFunction(question, session)
-            tried = try_public(question, function)
-            function.session.close_question()
+            tried = try_public(question, RemoteFunction(question, session))
+            session.close_question()
         failed = {x.name for x in tried.results if x.outcome in (Outcome.WRONG, Outcome.ERROR)}
-        runs = [x for x in evidence.runs(question, tried) if x["test"] in failed]
+        run = next((x for x in evidence.runs(question, tried) if x["test"] in failed), None)
         numbers = None if one.drives else evidence.numbers(question, tried)
-        if tried.outcome is Outcome.WRONG and (runs or numbers):
-            run = next(iter(runs), None)
-            own = [x for x in one.answer.runs if run and x["test"] == run["test"]]
-            return Asked(one, edit, run, next(iter(own), None), None if run else numbers)
+        if tried.outcome is Outcome.WRONG and (run or numbers):
+            return Asked(one, edit, run, None if run else numbers)
     return None
 
 
-EXCHANGED = {
-    "acceleration": "velocity",
-    "body_jacobian": "tip_jacobian",
-    "cos": "sin",
-    "max": "min",
-    "maximum": "minimum",
-    "min": "max",
-    "minimum": "maximum",
-    "sin": "cos",
-    "tip_jacobian": "body_jacobian",
-}
+_PAIRS = ("cos sin", "max min", "maximum minimum", "body_jacobian tip_jacobian")
+EXCHANGED = {"acceleration": "velocity"}
 """Names that students confuse, such as the two Jacobians, or sine and cosine."""
-MOST = 300
-"""The most mistakes that are tried in one cell; real functions have fewer."""
+EXCHANGED |= {a: b for pair in _PAIRS for a, b in permutations(pair.split())}
+_OPPOSITE = ((ast.Add, ast.Sub), (ast.Lt, ast.Gt), (ast.LtE, ast.GtE))
 _TURNED: dict[type[ast.AST], type[ast.AST]] = {
-    ast.Add: ast.Sub,
-    ast.Sub: ast.Add,
-    ast.Lt: ast.Gt,
-    ast.Gt: ast.Lt,
-    ast.LtE: ast.GtE,
-    ast.GtE: ast.LtE,
+    a: b for pair in _OPPOSITE for a, b in permutations(pair)
 }
-_UNREADABLE = SyntaxError, ValueError, RecursionError, MemoryError
-
-
-@dataclass(frozen=True)
-class Edit:
-    """A cell with a mistake in one line of its functions.
-
-    Attributes:
-        cell: The cell with the mistake.
-        lines: The lines of its functions, with the mistake.
-        at: The number of the line with the mistake, from 1.
-        was: The same line without the mistake.
-        says: The mistake in a few words.
-    """
-
-    cell: str
-    lines: tuple[str, ...]
-    at: int
-    was: str
-    says: str
-
-    @property
-    def now(self) -> str:
-        """The line with the mistake."""
-        return self.lines[self.at - 1]
 
 
 def edits(source: str) -> list[Edit]:
@@ -259,7 +248,7 @@ def edits(source: str) -> list[Edit]:
                 edit = Edit(ast.unparse(cell), tuple(lines), k + 1, before[k], says)
                 found.setdefault((k, lines[k]), edit)
             put(node)
-    except _UNREADABLE:
+    except (SyntaxError, ValueError, RecursionError, MemoryError):
         return []
     return [found[place] for place in sorted(found)]
 
@@ -300,10 +289,9 @@ def _mistakes(node: ast.AST) -> Iterator[tuple[ast.AST, str]]:
             yield _with(node, ops=[_TURNED[type(op)]()]), "a comparison is reversed"
         case ast.Attribute(attr="T"):
             yield node.value, "a transpose is left out"
-        case ast.Attribute(attr=name) if name in EXCHANGED:
-            yield _with(node, attr=EXCHANGED[name]), f"{EXCHANGED[name]} stands for {name}"
-        case ast.Name(id=name) if name in EXCHANGED:
-            yield _with(node, id=EXCHANGED[name]), f"{EXCHANGED[name]} stands for {name}"
+        case ast.Attribute(attr=name) | ast.Name(id=name) if name in EXCHANGED:
+            field = "id" if isinstance(node, ast.Name) else "attr"
+            yield _with(node, **{field: EXCHANGED[name]}), f"{EXCHANGED[name]} stands for {name}"
         case ast.Subscript(slice=ast.Constant(value=int())):
             yield _with(node, slice=ast.Constant(-1)), "the last one is taken (index -1)"
         case ast.Slice(lower=None, upper=ast.Constant(), step=None):
@@ -312,24 +300,11 @@ def _mistakes(node: ast.AST) -> Iterator[tuple[ast.AST, str]]:
 
 def _with(node: ast.AST, **fields: Any) -> Any:
     """A node with some fields changed."""
-    new = copy(node)
-    for name, value in fields.items():
-        setattr(new, name, value)
-    return new
-
-
-RUBRIC = (
-    "says which line was changed, and what it was before",
-    "says what the arm will do, or what is returned, before the answer is shown",
-    "explains the picture by the line: which term, which sign, which frame",
-)
-"""The criteria for each question, at one point each."""
-LINES = tuple(f"question_{k + 1}" for k in range(ASKED))
-"""The names of the questions in the gradebook."""
+    return type(node)(**(dict(ast.iter_fields(node)) | fields))
 
 
 def write_page(course: Course, student: str, asked: Sequence[Asked]) -> Path:
-    """Write the page of a student, and return its file."""
+    """Write the page of a student, a side for them and one for the examiner; return its file."""
     page = render_page(
         "defence.html.j2",
         file("defence.css"),
@@ -342,23 +317,12 @@ def write_page(course: Course, student: str, asked: Sequence[Asked]) -> Path:
         count=ASKED,
         command=f"labkit defence {shlex.quote(student)} --mark {','.join(['?'] * ASKED)}",
         error_over_time=error_over_time,
-        rows=rows,
-        number_by_number=number_by_number,
+        measures=measures,
+        farthest=farthest,
     )
     path = course.build / "defence" / f"{student}.html"
     write(path, page)
     return path
-
-
-def rows(one: Asked) -> Iterator[tuple[str, str, str, str]]:
-    """Each measure with a limit: its words, the value now, the value as handed in, the limit."""
-    now, own = (
-        {} if run is None else {x.words: x for x in measures(run)} for run in (one.run, one.own)
-    )
-    for words, row in (own | now).items():
-        if row.limit:
-            found, was = (t[words].value if words in t else "none" for t in (now, own))
-            yield words, found, was, row.limit
 
 
 def give_mark(course: Course, student: str, points: Sequence[int]) -> None:
@@ -369,7 +333,7 @@ def give_mark(course: Course, student: str, points: Sequence[int]) -> None:
     """
     if len(points) != ASKED or not all(0 <= x <= FULL for x in points):
         raise LabkitError(f"give {ASKED} whole numbers from 0 to {FULL}, such as --mark 2,3,1")
-    known(course, student)
+    _check_known(course, student)
     with open_gradebook(course) as book:
         book.update_or_create_assignment(DEFENCE)
         book.update_or_create_notebook(DEFENCE, DEFENCE)

@@ -32,7 +32,6 @@ from ..errors import LabkitError
 from ..metrics import SETTLED
 from ..replay.motion import unpack
 from .collect import participants
-from .drawing import curve, side_by_side
 from .each import Failure, for_student
 from .files import write
 from .marks import Mark, mark_of, marks_of
@@ -52,13 +51,6 @@ MEASURES = {
     "duration": ("duration", "s", 1.0),
 }
 """The name of each field of `metrics.Summary`, its unit, and the factor to that unit."""
-
-
-class Picture(NamedTuple):
-    """A figure, and its description in words."""
-
-    svg: Markup
-    words: str
 
 
 class Measure(NamedTuple):
@@ -97,7 +89,7 @@ def page(result: Result, mark: Mark | None = None, course: str = "") -> str:
         say=messages,
         error_over_time=error_over_time,
         measures=measures,
-        number_by_number=number_by_number,
+        farthest=farthest,
         markdown=lambda text: Markup(markdown({}, text)),
     )
 
@@ -126,32 +118,37 @@ def write_feedback(course: Course, assignment: str, marks: Iterable[Mark]) -> li
     return [for_student(mark.student, make, mark) for mark in marks]
 
 
-def error_over_time(run: Mapping[str, Any], motion: Mapping[str, Any]) -> Picture:
-    """Draw the position error of the tip in a run, and the largest error allowed."""
+def error_over_time(run: Mapping[str, Any], motion: Mapping[str, Any]) -> tuple[Markup, str]:
+    """The position error of the tip in a run, with the largest allowed: a figure, its words."""
     error = 1e3 * np.abs(unpack(motion["error"])[:, 0])
     t = motion["start"] + motion["period"] * np.arange(len(error))
     peak, limit = int(error.argmax()), run["limits"].get("max_mm")
-    alt = (
+    words = (
         f"Position error of the tip over {t[-1]:.3g} s: {_plain(error[0])} mm at the start, "
         f"largest at {t[peak]:.3g} s with {_plain(error[peak])} mm, {_plain(error[-1])} mm at the "
         "end."
     )
-    from_then = f" from {run['since']:g} s on" if run["since"] else ""
-    line = f" The dashed line is the largest that is allowed{from_then}, "
-    line = "" if limit is None else f"{line}{limit:g} mm."
-    return Picture(curve(t, error, ("time [s]", "position error [mm]"), alt, limit), alt + line)
+    top = max(error[peak], limit or 0.0) or 1.0
+    x, y = 400 * (t - t[0]) / (t[-1] - t[0]), 150 - 130 * error / top
+    shapes = [
+        f'<path class="axes" d="M0 20V150H400"/><text y="12">{_plain(top)} mm</text>',
+        f'<text x="400" y="166" text-anchor="end">{t[-1]:.3g} s</text>',
+        f'<polyline points="{" ".join(f"{a:.1f},{b:.1f}" for a, b in zip(x, y, strict=True))}"/>',
+    ]
+    if limit is not None:
+        shapes.append(f'<path class="limit" d="M0 {150 - 130 * limit / top:.1f}H400"/>')
+        since = f" from {run['since']:g} s on" if run["since"] else ""
+        words += f" The dashed line is the largest that is allowed{since}, {limit:g} mm."
+    figure = f'<svg viewBox="0 0 400 170" role="img" aria-label="{escape(words)}">'
+    return Markup(f"{figure}{''.join(shapes)}</svg>"), words
 
 
-def number_by_number(found: Mapping[str, Any]) -> Picture:
-    """Draw the numbers of an answer and those expected."""
+def farthest(found: Mapping[str, Any]) -> str:
+    """Which number of an answer is farthest from the expected one, in words."""
     expected, given = found["expected"], found["given"]
-    apart = [abs(a - b) for a, b in zip(expected, given, strict=True)]
-    worst = max(range(len(apart)), key=apart.__getitem__)
+    worst = max(range(len(given)), key=lambda k: abs(expected[k] - given[k]))
     first = f"Of {found['of']} numbers, number {worst + 1} is farthest off: expected"
-    alt = f"{first if found['of'] > 1 else 'Expected'} {expected[worst]:.4g}, "
-    alt += f"yours {given[worst]:.4g}."
-    some = "" if found["of"] == len(given) else f" The first {len(given)} are shown."
-    return Picture(side_by_side(expected, given, alt), alt + some)
+    return f"{first} {expected[worst]:.4g}, returned {given[worst]:.4g}."
 
 
 def measures(run: Mapping[str, Any]) -> Iterator[Measure]:

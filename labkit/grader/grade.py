@@ -7,10 +7,10 @@ as plain data, which is read with limits.
 from __future__ import annotations
 
 import time
-from collections.abc import Collection, Iterable, Mapping
+from collections.abc import Callable, Sequence
 from contextlib import closing, suppress
 from dataclasses import replace
-from typing import Any, cast
+from typing import Any, TypeVar
 
 from ..course.authoring.bundle import Bundle
 from ..course.handin import receipt
@@ -20,23 +20,18 @@ from ..course.question import Question
 from ..course.serialize import read_record, record_data
 from ..course.source import withheld_tools
 from ..course.verdict import Kind, Outcome, Verdict
+from ..errors import LabkitError, listed
 from . import evidence
-from .clean import clean_data, clean_line, how_many
-from .plan import Plan, plan
-from .results import OTHER_NOTEBOOK, Answer, FailedCell, Hashes, OwnCell, Result, engine
+from .clean import clean_data, clean_line
+from .plan import Cell, plan
+from .results import Answer, Result, engine
 from .sandbox.launch import Sandbox
 from .sandbox.limits import MAX_TEXT, Limits, TextBudget
 from .sandbox.protocol import Disconnected, ProtocolError
 from .sandbox.session import RemoteFunction, Session
 from .submission import digest
 
-_STUDENT_TEXTS = {
-    "cells": ("error", "output"),
-    "own": ("source",),
-    "written": ("written",),
-    "questions": ("source", "found"),
-}
-"""The texts of a result that the student wrote; if there is too much, the last are cut."""
+T = TypeVar("T")
 
 
 def grade(
@@ -62,71 +57,59 @@ def grade(
     """
     began = time.perf_counter()
     bundle = bundle.of_student(student)
-    cells = parse(data, sandbox, limits)
-    if isinstance(cells, str):
-        return rejection(cells, student, bundle, sandbox.level, data)
-    todo = plan(cells, bundle.data["cells"])
-    other = _other_notebook(cells, bundle)
+    try:
+        cells = parse(data, sandbox, limits)
+        todo = plan(cells, bundle.data["cells"])
+        if not todo.places:
+            _refuse_other(cells, bundle)
+    except LabkitError as error:
+        return rejection(str(error), student, bundle, sandbox.level, data)
     tools = {q.name: withheld_tools(todo.looks, q.name, q.withheld) for q in bundle.questions}
-    absent = todo.emptied()
-    questions = [q for q in bundle.questions if q.name not in absent and not tools[q.name]]
+    unasked = todo.emptied() | {name for name, used in tools.items() if used}
     with closing(Session(sandbox, todo.steps, limits)) as session:
         with suppress(Disconnected):
             session.start()
-        functions = [RemoteFunction(question, session) for question in questions]
+        functions = [RemoteFunction(q, session) for q in bundle.questions if q.name not in unasked]
         tried = {function.question.name: _try_public(function) for function in functions}
         failed = session.failed()  # what is shown of cells is fixed before the first hidden case
-        verdicts = {
-            name: _mark_safely(function, before)
-            for function, (name, before) in zip(functions, tried.items(), strict=True)
-        }
-        spent, passed = session.spent, {*session.right}
-    wrong = {k for k, v in verdicts.items() if v.outcome in (Outcome.WRONG, Outcome.ERROR)}
+        verdicts = {f.question.name: _mark(f, tried[f.question.name]) for f in functions}
+        spent = session.spent
+    wrong = {q.name for q in bundle.questions} - {k for k, v in verdicts.items() if v.right}
+    budget = TextBudget()
+
+    def answer(question: Question) -> Answer:
+        name = question.name
+        verdict = verdicts.get(name) or _unasked(question, tools[name])
+        notes = [todo.notes.get(name, "")]
+        if tools[name]:
+            notes.append(f"it {why_not_counted(tools[name])}")
+        if verdict.outcome in (Outcome.WRONG, Outcome.ERROR):
+            notes.append(_cause(todo.uses(name) & wrong - {name}))
+        told = tuple(map(clean_line, filter(None, notes)))
+        found = Answer(verdict, told, budget.take(todo.source(name)))
+        return _with_evidence(found, question, tried[name]) if name in tried else found
+
     result = replace(
         _ungraded(student, bundle, sandbox.level, data),
-        score=round(sum(v.earned for v in verdicts.values()), 2),
-        questions=tuple(
-            _answer(
-                question,
-                verdicts.get(question.name) or _unasked_verdict(question, tools),
-                tried.get(question.name),
-                todo,
-                todo.causes(question.name, wrong, passed),
-            )
-            for question in bundle.questions
+        score=round(sum(verdict.earned for verdict in verdicts.values()), 2),
+        questions=tuple(map(answer, bundle.questions)),
+        written={name: budget.take(text) for name, text in todo.written.items()},
+        own=tuple({**own, "source": budget.take(own["source"])} for own in todo.own),
+        cells=tuple(
+            {k: budget.take(v) if isinstance(v, str) else v for k, v in cell.items()}
+            for cell in failed
         ),
-        notes=(*filter(None, (note, other)), *todo.notes.get("", ())),
-        cells=cast(tuple[FailedCell, ...], failed),
-        own=cast(tuple[OwnCell, ...], todo.own),
-        written=todo.written,
         seconds={"all": round(time.perf_counter() - began, 4), "student": round(spent, 4)},
         receipt=receipt(cell["source"] for cell in cells),
     )
-    return _cut_to_budget(result)
+    cut = f"only {MAX_TEXT // 10**6} MB of text is kept; cut short: {budget.cut}"
+    result = replace(result, notes=tuple(filter(None, (note, cut if budget.cut else ""))))
+    return read_record(Result, clean_data(record_data(result)))
 
 
 def rejection(why: str, student: str, bundle: Bundle, level: str, data: bytes = b"") -> Result:
     """The result of a submission that cannot be graded."""
     return replace(_ungraded(student, bundle, level, data), rejected=clean_line(why))
-
-
-def _cut_to_budget(result: Result) -> Result:
-    """The result with every text cleaned, and the student's texts cut to what a result may hold."""
-    budget, data = TextBudget(), record_data(result)
-
-    def cut(x: Any, names: Collection[str], theirs: bool) -> Any:
-        if isinstance(x, str):
-            return budget.take(x) if theirs else x
-        if isinstance(x, dict):
-            order = sorted(x, key=lambda name: name != "source")  # source first
-            return {name: cut(x[name], names, theirs or name in names) for name in order}
-        return [cut(y, names, theirs) for y in x] if isinstance(x, list | tuple) else x
-
-    for part, names in _STUDENT_TEXTS.items():
-        data |= cut({part: data[part]}, names, theirs=False)
-    note = f"only {MAX_TEXT // 10**6} MB of text is kept; cut short: {how_many(budget.cut, 'text')}"
-    data["notes"] = [*data["notes"], *[note] * bool(budget.cut)]
-    return read_record(Result, clean_data(data))
 
 
 def _ungraded(student: str, bundle: Bundle, level: str, data: bytes) -> Result:
@@ -141,13 +124,17 @@ def _ungraded(student: str, bundle: Bundle, level: str, data: bytes) -> Result:
     )
 
 
-def hashes(data: bytes, bundle: Bundle) -> Hashes:
+def hashes(data: bytes, bundle: Bundle) -> dict[str, str]:
     """The hashes that identify what a result was made from."""
     return {"submission": digest(data), "bundle": bundle.data["hash"], "engine": engine()}
 
 
-def parse(data: bytes, sandbox: Sandbox, limits: Limits) -> list[dict[str, Any]] | str:
-    """The cells of a notebook, which a process of its own reads, or why it cannot be read."""
+def parse(data: bytes, sandbox: Sandbox, limits: Limits) -> list[dict[str, Any]]:
+    """The cells of a notebook, which a process of its own reads.
+
+    Raises:
+        LabkitError: It cannot be read.
+    """
     try:
         with sandbox.spawn("parse", limits, size=len(data)) as process:
             process.connection.socket.settimeout(limits.parse)
@@ -155,51 +142,47 @@ def parse(data: bytes, sandbox: Sandbox, limits: Limits) -> list[dict[str, Any]]
                 process.connection.socket.sendall(data)
             found = process.connection.read(limits.parse)
     except (OSError, ProtocolError):
-        return "the file cannot be read within the limits of time and memory"
+        raise LabkitError("the file takes too much time or memory to read") from None
     if "cells" not in found:
-        return str(found.get("rejected", "the file cannot be read"))
+        raise LabkitError(str(found.get("rejected", "the file cannot be read")))
     return list(found["cells"])
 
 
-def _other_notebook(cells: list[dict[str, Any]], bundle: Bundle) -> str:
-    """A sentence if most cells that nbgrader named are from another assignment, else ""."""
+def _refuse_other(cells: Sequence[Cell], bundle: Bundle) -> None:
+    """Refuse a notebook without an answer, if most cells that nbgrader named are of another."""
     named = {cell["grade_id"] for cell in cells} - {""}
     ours = named & {cell.get("grade_id") for cell in bundle.data["cells"]}
-    if 2 * len(ours) >= len(named):
-        return ""
-    name = bundle.data["assignment"]
-    return f"{OTHER_NOTEBOOK}: only {len(ours)} of the {len(named)} named cells are of {name}"
+    if 2 * len(ours) < len(named):
+        raise LabkitError(
+            f"this looks like another assignment's notebook: only {len(ours)} of its {len(named)} "
+            f"named cells are of {bundle.data['assignment']}"
+        )
 
 
 def _try_public(function: RemoteFunction) -> PublicResult:
     """Try the public cases, which come before all questions' hidden ones, so as to reveal none."""
-    try:
-        tried = try_public(function.question, function)
-        if tried.outcome is Outcome.RIGHT:
-            function.session.right.append(function.question.name)
-        return tried
-    except Exception:
-        return PublicResult(_incomparable(function.question).tests, {})
-    finally:
-        function.session.close_question()
-
-
-def _mark_safely(function: RemoteFunction, tried: PublicResult) -> Verdict:
-    """Mark an answer, even one that is so odd that comparing it raises an exception."""
     question = function.question
+    odd = PublicResult(_incomparable(question).tests, {})
+    tried = _safely(function, lambda: try_public(question, function), odd)
+    if tried.outcome is Outcome.RIGHT:
+        function.session.right.append(question.name)
+    return tried
+
+
+def _mark(function: RemoteFunction, tried: PublicResult) -> Verdict:
+    """Mark an answer, whose public cases were tried."""
+    question = function.question
+    return _safely(function, lambda: mark(question, function, tried), _incomparable(question))
+
+
+def _safely(function: RemoteFunction, step: Callable[[], T], otherwise: T) -> T:
+    """What a step returns; ``otherwise`` if the answer is so odd that comparing it raises."""
     try:
-        return mark(question, function, tried)
+        return step()
     except Exception:
-        return _incomparable(question)
+        return otherwise
     finally:
         function.session.close_question()
-
-
-def _unasked_verdict(question: Question, tools: Mapping[str, tuple[str, ...]]) -> Verdict:
-    """The verdict on a question that was not tried: it uses a withheld tool, or has no answer."""
-    if tools[question.name]:
-        return not_counted(question, tools[question.name])
-    return all_alike(question, Outcome.NOT_ATTEMPTED)
 
 
 def _incomparable(question: Question) -> Verdict:
@@ -207,23 +190,22 @@ def _incomparable(question: Question) -> Verdict:
     return all_alike(question, Outcome.ERROR, Kind.OTHER)
 
 
-def _answer(
-    question: Question,
-    verdict: Verdict,
-    tried: PublicResult | None,
-    todo: Plan,
-    more: Iterable[str] = (),
-) -> Answer:
-    why = (f"it {why_not_counted(verdict.withheld)}",) if verdict.withheld else ()
-    notes = tuple(map(clean_line, (*why, *todo.notes.get(verdict.name, ()), *more)))
-    answer = Answer(verdict, notes, todo.source(verdict.name))
-    if tried is None:
-        return answer
-    try:
-        return replace(
-            answer,
-            runs=evidence.runs(question, tried),
-            numbers=evidence.numbers(question, tried),
-        )
-    except Exception:  # the answer is too odd to be drawn
-        return answer
+def _unasked(question: Question, tools: tuple[str, ...]) -> Verdict:
+    """The verdict on a question that was not tried: it uses a withheld tool, or has no answer."""
+    return not_counted(question, tools) if tools else all_alike(question, Outcome.NOT_ATTEMPTED)
+
+
+def _cause(used: set[str]) -> str:
+    """A note on an answer that uses others that are not right; empty if it uses none."""
+    if not used:
+        return ""
+    is_, it = ("are", "them") if len(used) > 1 else ("is", "it")
+    return f"it uses your {listed(sorted(used))}, which {is_} not right; correct {it} first"
+
+
+def _with_evidence(answer: Answer, question: Question, tried: PublicResult) -> Answer:
+    """The answer with what can be drawn of its public cases."""
+    with suppress(Exception):  # it may be too odd to be drawn
+        runs, numbers = evidence.runs(question, tried), evidence.numbers(question, tried)
+        return replace(answer, runs=runs, numbers=numbers)
+    return answer

@@ -11,21 +11,16 @@ import logging
 import os
 import re
 import sys
-import tomllib
 import warnings
 from collections.abc import Iterable, Iterator, Mapping, Set
-from contextlib import contextmanager, suppress
-from datetime import datetime
+from contextlib import contextmanager
 from itertools import groupby
 from pathlib import Path
 from typing import Any
 
 import nbformat
-from nbgrader.plugins import LateSubmissionPlugin
 from nbgrader.preprocessors import NbGraderPreprocessor
-from sqlalchemy import text as sql
 from sqlalchemy.exc import DatabaseError, OperationalError, SAWarning
-from traitlets.utils.importstring import import_item
 
 from ..course.authoring.layout import Course
 from ..course.messages import summary
@@ -43,11 +38,10 @@ from ..errors import LabkitError
 from .clean import clean_line
 from .each import Failure, for_student
 from .files import write
-from .results import Answer, Result, Results
+from .results import Answer, Result
 from .rules import FILE as RULES
 from .rules import read_rules
-from .submission import Submission, digest, read_stamp, read_time
-from .whys import credit_whys
+from .submission import read_stamp, read_time
 
 
 def record(course: Course, assignment: str, results: Iterable[Result]) -> list[str | Failure]:
@@ -69,8 +63,7 @@ def record(course: Course, assignment: str, results: Iterable[Result]) -> list[s
     with open_gradebook(course) as book:
         if assignment not in {known.name for known in book.assignments}:
             raise LabkitError(
-                f"the gradebook does not know {assignment}, as if it were a new one; type: "
-                f"labkit release {assignment}"
+                f"{assignment} is missing from the gradebook; type: labkit release {assignment}"
             )
         for result in results:
             about = (course, book, source, result)
@@ -83,25 +76,14 @@ def record(course: Course, assignment: str, results: Iterable[Result]) -> list[s
 
 
 def apply_rules(course: Course, book: Any, assignment: str) -> None:
-    """Update the gradebook to the present rules: whys that nobody marks, and late work.
-
-    Raises:
-        LabkitError: The rules, or the term's record, cannot be used.
-    """
-    credit_whys(course, book, assignment)
-    _update_times(course, book, assignment)
-    _apply_lateness(course, book, assignment)
-
-
-def _apply_lateness(course: Course, book: Any, assignment: str) -> None:
     """Update due date, extensions and penalties in the gradebook to the present rules.
 
     If the file has no due date, the one that was set in formgrader counts.
 
     Raises:
-        LabkitError: The rules, or the course's own plugin for late work, cannot be used.
+        LabkitError: The rules cannot be used.
     """
-    rules, late = read_rules(course), _late_plugin(course)
+    rules = read_rules(course)
     due = rules.due(assignment)
     for submission in book.assignment_submissions(assignment):
         if due is not None:
@@ -110,78 +92,35 @@ def _apply_lateness(course: Course, book: Any, assignment: str) -> None:
             submission.extension = None  # nbgrader would add it to no date, which raises TypeError
         elif (course.root / RULES).exists():
             submission.extension = rules.longer(submission.student.id, assignment)
-        seconds = submission.total_seconds_late
+        late = submission.total_seconds_late
         for notebook in submission.notebooks:
-            who, score = submission.student.id, notebook.score
-            taken = late.late_submission_penalty(who, score, seconds) if seconds > 0 else None
-            if (notebook.late_submission_penalty or 0.0) != (taken or 0.0):
-                notebook.late_submission_penalty = taken
+            taken = rules.late.penalty(notebook.score, late)
+            notebook.late_submission_penalty = taken or None
     book.db.commit()
 
 
-def _late_plugin(course: Course) -> Any:
-    """The plugin that nbgrader's settings name, which may be a file beside them."""
-    config = nbgrader_api(course).config
-    chosen = config.get("AssignLatePenalties", {}).get("plugin_class", LateSubmissionPlugin)
-    if str(course.root) not in sys.path:
-        sys.path.insert(0, str(course.root))
-    try:
-        plugin = (import_item(chosen) if isinstance(chosen, str) else chosen)(config=config)
-    except ImportError as error:
-        raise LabkitError(
-            f"nbgrader_config.py names {chosen!r} for late work: {error}; put that module beside it"
-        ) from None
-    plugin.log.setLevel(logging.CRITICAL)
-    return plugin
-
-
-def _update_times(course: Course, book: Any, assignment: str) -> None:
-    """Set when each graded file was handed in, which may have become known since it was graded.
-
-    A file that was put in its place since then has another time, and changes nothing.
-    """
-    results = Results(course, assignment)
-
-    def update(submission: Any, files: Submission) -> None:
-        text = read_stamp(files.folder)
-        when = read_time(text)
-        stated = when and when.replace(tzinfo=None)
-        if (text and when is None) or stated == submission.timestamp:
-            return
-        result, (data, _, _) = results.get(files.student), files.read()
-        if result is not None and result.hashes["submission"] == digest(data):
-            submission.timestamp = stated
-
-    for one in book.assignment_submissions(assignment):
-        student = one.student.id  # whose failure is named where the work is graded
-        for_student(student, update, one, Submission.of(course, assignment, student))
-
-
-def _record(course: Course, book: Any, source: Any, result: Result) -> list[str]:
+def _record(course: Course, book: Any, source: Notebook, result: Result) -> list[str]:
     """Write one student's scores, whole or not at all; nbgrader commits who the student is first.
 
     Returns:
         What a person should look at.
     """
-    notebook = with_verdicts(in_release_form(source, result), result)
-    written = as_text(notebook)
-    when, note = timestamp(course, result)
-    book.update_or_create_student(result.student)
-    submission = book.update_or_create_submission(result.assignment, result.student, timestamp=when)
-    notes = [f"{result.student}: {note}"] if note else []
-    folder = course.root / "autograded" / result.student / result.assignment
-    path = folder / f"{result.assignment}.ipynb"
-    notes += _write_scores(
-        submission, result, automatic_scores(notebook, result), _changed(path, notebook)
-    )
-    book.db.flush()
-    before = path.read_bytes() if path.exists() else None
-    write(path, written)
-    try:
-        book.db.commit()
-    except BaseException:  # the next try must see again which answers have changed
-        path.unlink() if before is None else write(path, before)
-        raise
+    assignment, student = result.assignment, result.student
+    notebook = _written_down(source, result)
+    text = nbformat.writes(notebook) + "\n"
+    stated = read_stamp(course.submitted / student / assignment)
+    when = read_time(stated)
+    notes = []
+    if stated and when is None:
+        says = f"timestamp.txt says {stated[:40]!r}, which is not a time; counted as in time"
+        notes.append(f"{student}: {says}")
+    book.update_or_create_student(student)
+    submission = book.update_or_create_submission(assignment, student, timestamp=when)
+    path = course.root / "autograded" / student / assignment / f"{assignment}.ipynb"
+    scores = _automatic_scores(notebook, result)
+    notes += _write_scores(submission, result, scores, _changed(path, notebook))
+    book.db.commit()  # before the file: the next try must see again which answers have changed
+    write(path, text)
     return notes
 
 
@@ -212,29 +151,17 @@ def open_gradebook(course: Course) -> Iterator[Any]:
             nbgrader_api(course).gradebook as book,
         ):
             fcntl.flock(writer, fcntl.LOCK_EX)
-            if book.db.execute(sql("PRAGMA quick_check(1)")).scalar() != "ok":
-                raise _damaged("parts of it are lost")
-            with suppress(OSError):
-                (course.root / "gradebook.db").chmod(0o600)
+            (course.root / "gradebook.db").chmod(0o600)
             try:
                 yield book
             except BaseException:
                 book.db.rollback()
                 raise
-    except OperationalError as error:
-        raise LabkitError(
-            f"gradebook.db: {error.orig}; correct that and type the same again"
-        ) from None
     except DatabaseError as error:
-        raise _damaged(error.orig) from None
-
-
-def _damaged(why: object) -> LabkitError:
-    return LabkitError(
-        f"gradebook.db is damaged: {why}; restore a copy of it, which has the marks and comments "
-        "given by hand. Without one, move the file away and type labkit release, then labkit grade "
-        "for each assignment: automatic marks come back from results/"
-    )
+        raise LabkitError(
+            f"gradebook.db: {error.orig}; correct that, or restore a copy of the file, which has "
+            "the marks given by hand"
+        ) from None
 
 
 @contextmanager
@@ -245,15 +172,7 @@ def quiet_database() -> Iterator[None]:
         yield
 
 
-def timestamp(course: Course, result: Result) -> tuple[datetime | None, str]:
-    """When a submission was handed in, by the file beside it, and a note if that is unreadable."""
-    text = read_stamp(course.submitted / result.student / result.assignment)
-    when = read_time(text)
-    bad = f"timestamp.txt says {text[:40]!r}, which is not a time; counted as in time"
-    return when, bad if text and when is None else ""
-
-
-def automatic_scores(notebook: Any, result: Result) -> dict[str, float | None]:
+def _automatic_scores(notebook: Any, result: Result) -> dict[str, float | None]:
     """The automatic score of each cell of the gradebook; None for what a person must mark.
 
     An answer that is unchanged or in which a reader sees no word earns 0.
@@ -302,74 +221,59 @@ def _write_scores(
             grade.auto_score = score
 
 
-class Refused(NbGraderPreprocessor):  # type: ignore[misc]
-    """Refuses nbgrader's own autograde, which would run students' code in its own process."""
+def _written_down(source: Notebook, result: Result) -> Notebook:
+    """A submission in the release's form, for people to read and for nbgrader's marks.
 
-    def preprocess(self, nb: Any, resources: dict[str, Any]) -> tuple[Any, dict[str, Any]]:
-        """Raise a LabkitError."""
-        raise LabkitError(f"type: labkit grade {resources['nbgrader']['assignment']}")
-
-
-def in_release_form(source: Notebook, result: Result) -> Notebook:
-    """The release's cells with the student's answers in them, and the student's own cells.
+    It has the release's cells with the student's answers in them, the student's own cells, and the
+    verdicts as outputs of the checks.
 
     Args:
         source: The release, from nbgrader's source folder.
         result: The result of the submission.
     """
     notebook = copy.deepcopy(source)
-    answers = {q.verdict.name: q.source for q in result.questions}
+    answers = {answer.verdict.name: answer for answer in result.questions}
     extra: dict[str, list[Any]] = {}
     for number, own in enumerate(result.own):
         code = own["type"] == "code"
         make: Any = nbformat.v4.new_code_cell if code else nbformat.v4.new_markdown_cell
-        text = own["source"] if code else as_typed(own["source"])
+        text = own["source"] if code else _as_typed(own["source"])
         extra.setdefault(own["after"], []).append(make(text, id=f"own-{number:04d}"))
     for cell in notebook.cells:
         name = grade_id(cell)
+        answer = answers.get(question_of(name))
+        if cell.cell_type == "code":
+            cell.outputs, cell.execution_count = [], None
         if by_hand(cell):
             text = result.written.get(name, cell.source)
             if not nbgrader_info(cell)["task"] and text.split() != cell.source.split():
                 cell.source = text  # a space more or less is not yet an answer
         elif kind(cell) == "answer":
-            cell.source = answers.get(name, "")
+            cell.source = answer.source if answer else ""
+        elif nbgrader_info(cell).get("grade"):
+            cell.execution_count, cell.outputs = 1, list(_outputs(answer, result.rejected))
     notebook.cells = extra.get("", []) + [
         one for cell in notebook.cells for one in (cell, *extra.get(cell["id"], []))
     ]
     return notebook
 
 
-def with_verdicts(notebook: Notebook, result: Result) -> Notebook:
-    """The verdicts as the outputs of the checks, in the form that nbgrader reads marks from."""
-    answers = {question.verdict.name: question for question in result.questions}
-    for cell in notebook.cells:
-        if cell.cell_type == "code":
-            cell.outputs, cell.execution_count = [], None
-        if not nbgrader_info(cell).get("grade") or by_hand(cell):
-            continue
-        answer = answers.get(question_of(grade_id(cell)))
-        text = "\n".join(_told(answer)) if answer else result.rejected
-        earned = answer.verdict.earned if answer else 0.0
-        cell.execution_count = 1
-        cell.outputs = [
-            nbformat.v4.new_output("stream", name="stdout", text=text + "\n"),
-            nbformat.v4.new_output(
-                "execute_result", {"text/plain": repr(float(earned))}, execution_count=1
-            ),
-        ]
-    return notebook
+def _outputs(answer: Answer | None, rejected: str) -> Iterator[Any]:
+    """What a check says, and the points in the form that nbgrader reads."""
+    lines, earned = [rejected], 0.0
+    if answer:
+        lines = [*summary(answer.verdict), *(f"  Note: {note}." for note in answer.notes)]
+        earned = float(answer.verdict.earned)
+    yield nbformat.v4.new_output("stream", name="stdout", text="\n".join(lines) + "\n")
+    points = {"text/plain": repr(earned)}
+    yield nbformat.v4.new_output("execute_result", points, execution_count=1)
 
 
-def as_typed(source: str, language: str = "markdown") -> str:
+def _as_typed(source: str) -> str:
     """What a student typed as a block of text, in which no page finds markup to obey."""
     runs = [len([*run]) for tick, run in groupby(source) if tick == "`"]
     fence = "`" * (max(runs, default=0) + 3)
-    return f"{fence}{language}\n{source}\n{fence}"
-
-
-def _told(answer: Answer) -> list[str]:
-    """A question's verdict, the verdict first, then why."""
-    return [*summary(answer.verdict), *(f"  Note: {note}." for note in answer.notes)]
+    return f"{fence}markdown\n{source}\n{fence}"
 
 
 def release_source(course: Course, assignment: str) -> Notebook:
@@ -378,38 +282,20 @@ def release_source(course: Course, assignment: str) -> Notebook:
     Raises:
         LabkitError: A file of the release is damaged.
     """
-    source, given = (
-        _read(folder / assignment / f"{assignment}.ipynb", assignment)
-        for folder in (course.source, course.release)
-    )
+    try:
+        source, given = (
+            nbformat.read(folder / assignment / f"{assignment}.ipynb", as_version=4)
+            for folder in (course.source, course.release)
+        )
+    except (OSError, ValueError, nbformat.ValidationError) as error:
+        why = clean_line(str(error), 80)
+        says = f"the release of {assignment} is damaged: {why}; type: labkit release {assignment}"
+        raise LabkitError(says) from None
     blank = {grade_id(cell): cell for cell in given.cells}
     for cell in source.cells:
         if nbgrader_info(cell).get("solution"):
             cell.source, cell.metadata = (blank[grade_id(cell)][x] for x in ("source", "metadata"))
     return source
-
-
-def _read(path: Path, assignment: str) -> Notebook:
-    try:
-        return nbformat.read(path, as_version=4)
-    except (OSError, ValueError, nbformat.ValidationError) as error:
-        why = clean_line(str(error), 80)
-        remedy = f"type: labkit release {assignment}"
-        raise LabkitError(f"{path} is damaged: {why}; {remedy}") from None
-
-
-def as_text(notebook: Notebook) -> str:
-    """A notebook as the text of its file.
-
-    Raises:
-        UnicodeEncodeError: It holds what no file can hold.
-    """
-    text: str = nbformat.writes(notebook) + "\n"
-    text.encode()
-    return text
-
-
-_CONFIG = "nbgrader_config.py"
 
 
 def nbgrader_api(course: Course) -> Any:
@@ -431,15 +317,17 @@ def nbgrader_api(course: Course) -> Any:
     homes = [x for x in (course.root, *course.root.parents[:2]) if (x / _CONFIG).exists()]
     try:
         config = PyFileConfigLoader(_CONFIG, path=str([*homes, course.root][0])).load_config()
-    except tomllib.TOMLDecodeError as error:  # the rules, which it reads
-        raise LabkitError(f"{course.root / 'course.toml'}: {error}; correct that line") from None
     except (Exception, SystemExit) as error:  # it is a program that the instructor wrote
         why = clean_line(f"{type(error).__name__}: {error}")
-        raise LabkitError(f"nbgrader_config.py cannot be run: {why}; correct it") from None
+        says = f"{_CONFIG}, which reads {RULES}, cannot be run: {why}; correct it"
+        raise LabkitError(says) from None
     settings = Config(config)
     settings.CourseDirectory.root = str(course.root)
     settings.Application.log_level = logging.CRITICAL
     return NbGraderAPI(CourseDirectory(config=settings), config=settings)
+
+
+_CONFIG = "nbgrader_config.py"
 
 
 def reason(result: dict[str, Any]) -> str:
@@ -447,3 +335,11 @@ def reason(result: dict[str, Any]) -> str:
     lines = [x for x in f"{result.get('log', '')}\n{result.get('error', '')}".splitlines() if x]
     errors = [x.strip() for x in lines if re.match(r"\s*[\w.]+(Error|Exception)\b", x)]
     return clean_line((errors or lines or ["nbgrader gave no reason"])[-1])
+
+
+class Refused(NbGraderPreprocessor):  # type: ignore[misc]
+    """Refuses nbgrader's own autograde, which would run students' code in its own process."""
+
+    def preprocess(self, nb: Any, resources: dict[str, Any]) -> tuple[Any, dict[str, Any]]:
+        """Raise a LabkitError."""
+        raise LabkitError(f"type: labkit grade {resources['nbgrader']['assignment']}")

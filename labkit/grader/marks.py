@@ -8,7 +8,7 @@ is given instead of a mark: nobody gets a 0 that they did not earn.
 from __future__ import annotations
 
 import shlex
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from typing import Any
 
@@ -16,13 +16,13 @@ from ..course.authoring.bundle import Bundle
 from ..course.authoring.layout import DEFENCE, Course
 from ..course.notebook import question_of
 from ..errors import LabkitError
-from .clean import clean_line, clean_text, span
+from .clean import clean_text, span
 from .collect import Participant, participants
 from .each import Failure, for_student
 from .gradebook import apply_rules, open_gradebook
 from .results import Result, Results
 from .roster import Student, read_roster
-from .submission import Submission, digest, is_name, misnamed, plain_name, students
+from .submission import Submission, digest, misnamed, students
 
 
 @dataclass(frozen=True)
@@ -73,8 +73,7 @@ class Mark:
     """One student's mark for an assignment.
 
     Attributes:
-        person: The student, as described by the roster or, failing that, by the gradebook.
-        listed: Whether the student is in the roster.
+        person: The student, as described by the roster.
         when: When the work was handed in, as text.
         due: When the work was due, as text.
         lines: One for each question; none if no mark counts.
@@ -90,7 +89,6 @@ class Mark:
     """
 
     person: Student
-    listed: bool = False
     when: str = ""
     due: str = ""
     lines: tuple[MarkLine, ...] = ()
@@ -120,30 +118,9 @@ class Mark:
         return tuple(line.name for line in self.lines if line.open)
 
     @property
-    def questions(self) -> Mapping[str, tuple[float, float]]:
-        """The points of each question, with their maximum; none if no mark counts."""
-        return {x.name: (x.score or 0.0, x.points) for x in self.lines if self.raw is not None}
-
-    @property
     def score(self) -> float | str:
         """The points that count; an empty cell if no mark does."""
         return "" if self.raw is None else round(max(0.0, self.raw - self.penalty), 4)
-
-    @property
-    def full(self) -> float | str:
-        """Full marks; an empty cell if they are not known."""
-        return self.points or ""
-
-    @property
-    def cells(self) -> tuple[float | str, float | str, float | str]:
-        """Points before deductions, the deduction, and the score; or three empty cells."""
-        return ("", "", "") if self.raw is None else (self.raw, self.penalty, self.score)
-
-    @property
-    def login(self) -> str:
-        """The login; else the folder's name, unless the roster gave the folder."""
-        made = self.listed or not is_name(self.student)
-        return self.person.login or ("" if made else self.student)
 
 
 def marks_of(course: Course, assignment: str, only: str | None = None) -> list[Mark]:
@@ -161,13 +138,49 @@ def marks_of(course: Course, assignment: str, only: str | None = None) -> list[M
     Raises:
         LabkitError: The gradebook, the roster or the rules cannot be used.
     """
+    bundle = _released(course, assignment)
     with open_gradebook(course) as book:
         apply_rules(course, book, assignment)
-        submissions = {plain_name(s.student.id): s for s in book.assignment_submissions(assignment)}
-        rows = list(_own_marks(course, assignment, submissions, only))
-    released = not only and (course.bundle / f"{assignment}.json").exists()
-    shared = released and Bundle.of(course, assignment).is_report
-    return list(_of_teams(rows)) if shared else rows
+        rows = list(_own_marks(course, assignment, book, bundle, only))
+    return list(_of_teams(rows)) if bundle and bundle.is_report and not only else rows
+
+
+def _released(course: Course, assignment: str) -> Bundle | None:
+    """The bundle of the last release; None before the first, and for the defence."""
+    there = (course.bundle / f"{assignment}.json").exists()
+    return Bundle.of(course, assignment) if there else None
+
+
+def _own_marks(
+    course: Course, assignment: str, book: Any, bundle: Bundle | None, only: str | None
+) -> Iterator[Mark]:
+    """The mark of each student for what they handed in themselves."""
+    submissions = {s.student.id: s for s in book.assignment_submissions(assignment)}
+    called, handed_in = participants(course).get(assignment, {}), {*students(course, assignment)}
+    results = {one.student: one for one in current_results(course, assignment, only)}
+    listed = {student.id: student for student in read_roster(course).students}
+    full = max((float(s.max_score) for s in submissions.values()), default=0.0)
+    full = full or (bundle.points + bundle.by_hand if bundle else 0.0)
+    everybody = results.keys() | submissions.keys() | listed.keys()
+    for student in sorted(everybody if only is None else everybody & {only}):
+        person = listed.get(student) or Student(student, login=student)
+        row = Mark(person, points=full, moodle=called.get(student))
+        if student not in submissions.keys() | results.keys():
+            nothing = "no defence yet" if assignment == DEFENCE else "nothing was handed in"
+            yield replace(row, remark=nothing)
+            continue
+        about = row, submissions.get(student), results.get(student), assignment
+        done = for_student(student, _marked, *about)
+        if isinstance(done, Failure):
+            yield replace(row, missing=done.why)
+        elif done.missing or done.result is None:
+            yield done
+        elif done.result.rejected:
+            why = f"rejected: {done.result.rejected}; ask for the file again"
+            yield replace(done, remark=why)
+        else:
+            gone = "nothing of theirs is in submitted/; the mark stays as it was"
+            yield replace(done, remark="" if student in handed_in else gone)
 
 
 def _of_teams(rows: Sequence[Mark]) -> Iterator[Mark]:
@@ -178,56 +191,11 @@ def _of_teams(rows: Sequence[Mark]) -> Iterator[Mark]:
             reports.setdefault(row.person.team, row)
     for row in rows:
         report = reports.get(row.person.team) if row.absent else None
-        if report is None:
-            yield row
-            continue
-        mine = replace(report, person=row.person, listed=row.listed, moodle=row.moodle)
-        remark = f"the team's report, handed in by {report.student}"
-        yield replace(mine, author=report.student, remark=remark)
-
-
-def _own_marks(
-    course: Course, assignment: str, submissions: Mapping[str, Any], only: str | None
-) -> Iterator[Mark]:
-    """The mark of each student for what they handed in themselves.
-
-    Args:
-        course: The course.
-        assignment: The assignment.
-        submissions: The gradebook's submissions, by student.
-        only: One student; by default all students.
-    """
-    called, handed_in = participants(course).get(assignment, {}), {*students(course, assignment)}
-    results = {one.student: one for one in current_results(course, assignment, only)}
-    roster = read_roster(course)
-    listed = {student.id for student in roster.students}
-    full = max((float(s.max_score) for s in submissions.values()), default=0.0)
-    full = full or full_marks(course, assignment)
-    everybody = results.keys() | submissions.keys() | listed
-    for student in sorted(everybody if only is None else everybody & {only}):
-        submission, result = submissions.get(student), results.get(student)
-        person = roster.get(student) or Student(student)
-        row = Mark(person, student in listed, points=full, moodle=called.get(student))
-        if submission is None and result is None:
-            nothing = "no defence yet" if assignment == DEFENCE else "nothing was handed in"
-            yield replace(row, remark=nothing)
-            continue
-        done = for_student(student, _marked, row, submission, result, assignment)
-        if isinstance(done, Failure):
-            yield replace(row, missing=done.why)
-        else:
-            yield replace(done, remark=_remark(done, student in handed_in))
-
-
-def _remark(row: Mark, handed_in: bool) -> str:
-    """Why the mark is as it is, if it was rejected, is empty, or outlived its submission."""
-    if row.missing or row.result is None:
-        return ""
-    if row.result.unanswered:
-        if row.result.rejected:
-            return f"rejected: {row.result.rejected}; ask for the file again"
-        return f"{row.result.unanswered}; ask for the right one"
-    return "" if handed_in else "nothing of theirs is in submitted/; the mark stays as it was"
+        if report:
+            remark = f"the team's report, handed in by {report.student}"
+            row = replace(report, person=row.person, moodle=row.moodle, author=report.student,
+                          remark=remark)  # fmt: skip
+        yield row
 
 
 def mark_of(result: Result) -> Mark:
@@ -240,19 +208,10 @@ def mark_of(result: Result) -> Mark:
 
 def _marked(row: Mark, submission: Any, one: Result | Failure | None, assignment: str) -> Mark:
     """The row with the mark in the gradebook, or with the reason why it does not count."""
-    if isinstance(one, Failure):
-        row = replace(row, missing=one.why)
-    elif one is not None:
-        row = replace(row, result=one)
+    how = how_to_grade(assignment, row.student)
+    row = replace(row, missing=one.why) if isinstance(one, Failure) else replace(row, result=one)
     if submission is None:
-        why = f"graded, but not in the gradebook; {how_to_grade(assignment, row.student)}"
-        return replace(row, missing=row.missing or why)
-    if not row.listed:
-        who = submission.student
-        names = (who.first_name, who.last_name, who.email, who.lms_user_id)
-        first, last, email, number = (clean_line(name or "") for name in names)
-        person = Student(row.student, first, last, email, number, id_number=number)
-        row = replace(row, person=person)
+        return replace(row, missing=row.missing or f"graded, but not in the gradebook; {how}")
     row = replace(
         row,
         when=str(submission.timestamp or ""),
@@ -260,16 +219,13 @@ def _marked(row: Mark, submission: Any, one: Result | Failure | None, assignment
         points=float(submission.max_score),
     )
     lines = tuple(_lines(submission))
-    missing = row.missing or _differs(assignment, row, lines)
-    if missing:
-        return replace(row, missing=missing)
+    if other := row.result and _other(row.result, lines):
+        row = replace(row, missing=f"the gradebook has other points for {other}; {how}")
+    if row.missing:
+        return row
     row = replace(row, lines=lines, late=span(submission.total_seconds_late))
     if none := [line.name for line in lines if line.score is None]:
-        how = "mark by hand, in formgrader"
-        if assignment == DEFENCE:
-            how = f"type: labkit defence {shlex.quote(row.student)} --mark A,B,C"
-        why = f"still to be marked: {', '.join(none)}; {how}"
-        return replace(row, missing=why)
+        return replace(row, missing=f"still to be marked: {', '.join(none)}; use formgrader")
     if row.open:
         why = f"changed after the mark by hand: {', '.join(row.open)}; look at it in formgrader"
         return replace(row, missing=why)
@@ -294,23 +250,14 @@ def _lines(submission: Any) -> Iterator[MarkLine]:
             )
 
 
-def _differs(assignment: str, row: Mark, lines: tuple[MarkLine, ...]) -> str:
-    """Where result and gradebook disagree, and what to do; empty if they agree."""
-    if row.result is None:
-        return ""
-    earned = {q.verdict.name: q.verdict.earned for q in row.result.questions}
+def _other(result: Result, lines: Sequence[MarkLine]) -> str:
+    """The first question for which the gradebook has other points than the result; or ""."""
     for line in lines:
-        score = 0.0 if row.result.rejected else earned.get(line.name, line.automatic)
-        if line.automatic != score:
-            return (
-                f"the result gives {_said(score)} for {line.name}, the gradebook "
-                f"{_said(line.automatic)}; {how_to_grade(assignment, row.student)}"
-            )
+        if line.automatic != (
+            0.0 if result.rejected else result.earned.get(line.name, line.automatic)
+        ):
+            return line.name
     return ""
-
-
-def _said(score: float | None) -> str:
-    return "nothing" if score is None else f"{score:g}"
 
 
 def current_results(
@@ -328,65 +275,38 @@ def current_results(
         submission is not graded, if another one has been handed in since, if a later release has
         other questions or points, or if the file is damaged.
     """
-    if assignment == DEFENCE:
-        return  # it has a command of its own, and no result files
-    results = Results(course, assignment)
+    results, bundle = Results(course, assignment), _released(course, assignment)
     handed_in = set(students(course, assignment))
-    released = _released(course, assignment)
     if student is None:
         yield from misnamed(course, assignment)
     for name in sorted(handed_in | set(results.students())):
-        if not is_name(name):
-            yield Failure(plain_name(name), f"a file in {results.folder} has this name; delete it")
-        elif student in {None, name}:
-            is_there = name in handed_in
-            yield for_student(name, _current_result, course, results, name, is_there, released)
+        if student in {None, name}:
+            submission = Submission.of(course, assignment, name) if name in handed_in else None
+            yield for_student(name, _current_result, results, name, submission, bundle)
 
 
-def full_marks(course: Course, assignment: str) -> float:
-    """All points of an assignment, those that a person gives included; 0 before its release."""
-    if not (course.bundle / f"{assignment}.json").exists():
-        return 0.0
-    bundle = Bundle.of(course, assignment)
-    return bundle.points + bundle.by_hand
+def _current_result(
+    results: Results, student: str, submission: Submission | None, bundle: Bundle | None
+) -> Result:
+    assignment = results.folder.name
+    how = how_to_grade(assignment, student)
+    try:
+        result = results.read(student)
+    except LabkitError as error:
+        raise LabkitError(f"{error}; {how}") from None
+    if result is None:
+        raise LabkitError(f"handed in but not graded; {how}")
+    if submission and digest(submission.read()[0]) != result.hashes["submission"]:
+        raise LabkitError(f"handed in again but not graded since; {how}")
+    asked = {q["name"]: q["points"] for q in bundle.data["questions"]} if bundle else result.asked
+    if submission and not result.rejected and result.asked != asked:
+        raise LabkitError(
+            f"graded before the last release; type: labkit grade {assignment}, and add --lower "
+            "if that keeps the old mark"
+        )
+    return result
 
 
 def how_to_grade(assignment: str, student: str) -> str:
     """What to type to grade a student's submission and record the result."""
     return f"type: labkit grade {assignment} --student {shlex.quote(student)}"
-
-
-def _released(course: Course, assignment: str) -> Mapping[str, float] | None:
-    """The points of each question in the last release; None before the first."""
-    if not (course.bundle / f"{assignment}.json").exists():
-        return None
-    return {q["name"]: q["points"] for q in Bundle.of(course, assignment).data["questions"]}
-
-
-def _current_result(
-    course: Course,
-    results: Results,
-    student: str,
-    is_handed_in: bool,
-    released: Mapping[str, float] | None,
-) -> Result:
-    assignment = results.folder.name
-    remedy = how_to_grade(assignment, student)
-    if not is_handed_in:
-        remedy = f"nothing of theirs is in submitted/; restore {results.path(student)} or delete it"
-    try:
-        result = results.read(student)
-    except LabkitError as error:
-        raise LabkitError(f"{error}; {remedy}") from None
-    if result is None:
-        raise LabkitError(f"handed in but not graded; {remedy}")
-    if is_handed_in:
-        data, _, _ = Submission.of(course, assignment, student).read()
-        if digest(data) != result.hashes["submission"]:
-            raise LabkitError(f"handed in again but not graded since; {remedy}")
-        if released is not None and not result.rejected and result.asked != released:
-            raise LabkitError(
-                f"graded before the last release; type: labkit grade {assignment}, and add --lower "
-                "if that keeps the old mark"
-            )
-    return result

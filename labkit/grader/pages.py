@@ -43,12 +43,13 @@ def render_page(template: str, style: str = "", *, replays: bool = False, **valu
         values: The other values that the template needs.  It also gets
             ``recorded_html`` for a motion, which ``motion_of`` reads from the text in a result.
     """
-    style, code = file("feedback.css") + style, scripts() if replays else ()
+    style = file("feedback.css") + style
+    code = (*viewer_scripts(), file("feedback.js")) if replays else ()
     return render(
         template,
         style=style,
         scripts=code,
-        policy=policy(style, code),
+        policy=_policy(style, code),
         motion_of=lambda text: json.loads(text or "null"),
         recorded_html=figure_html,
         **values,
@@ -62,17 +63,10 @@ def file(name: str) -> str:
 
 
 @cache
-def scripts() -> tuple[str, ...]:
-    """The scripts that show replays on a page."""
-    return (*viewer_scripts(), file("feedback.js"))
-
-
-@cache
-def policy(style: str, scripts: tuple[str, ...]) -> str:
+def _policy(style: str, scripts: tuple[str, ...]) -> str:
     """The content security policy: this style, these scripts, nothing else."""
-    rules = ["default-src 'none'", f"style-src {_hash(style)}"]
-    rules += [f"script-src {' '.join(map(_hash, scripts))}"] if scripts else []
-    return "; ".join([*rules, "base-uri 'none'", "form-action 'none'"])
+    rules = f"default-src 'none'; style-src {_hash(style)}; base-uri 'none'; form-action 'none'"
+    return f"{rules}; script-src {' '.join(map(_hash, scripts))}" if scripts else rules
 
 
 def _hash(text: str) -> str:

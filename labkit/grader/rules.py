@@ -2,7 +2,7 @@
 
 The file gives the name of the course, the due date and weight of each assignment, extensions and
 the penalty for late work.  Due dates and extensions are written into the gradebook, where
-formgrader shows them, and nbgrader's plugin for late work deducts the penalty.
+formgrader shows them, with the penalty.
 """
 
 from __future__ import annotations
@@ -11,12 +11,10 @@ import math
 import tomllib
 from collections.abc import Mapping
 from datetime import UTC, datetime, timedelta
-from pathlib import Path
 from typing import Annotated
 from zoneinfo import ZoneInfo, ZoneInfoNotFoundError
 
 import msgspec
-from nbgrader.plugins import LateSubmissionPlugin
 
 from ..course.authoring.layout import DEFENCE, Course
 from ..errors import LabkitError
@@ -24,15 +22,6 @@ from ..errors import LabkitError
 FILE = "course.toml"
 _Share = Annotated[float, msgspec.Meta(ge=0.0, le=100.0)]
 _Positive = Annotated[float, msgspec.Meta(ge=0.0, le=10_000.0)]
-_DAY = 86400.0
-
-
-_FORM = (
-    "The keys are name, id and zone; in [late]: percent_per_day, at_most and "
-    "grace_minutes; in [assignments.NAME]: due and weight; in [[extensions]]: student, days and "
-    "assignment. A due date has no quotation marks: due = 2026-11-06T23:59:00"
-)
-"""The form of the file, for a message about a wrong key or value."""
 
 
 class _Table(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
@@ -56,7 +45,7 @@ class Late(_Table, frozen=True):
         """The points to deduct from ``score`` for work that was ``seconds`` late."""
         if seconds <= 60 * self.grace_minutes:
             return 0.0
-        percent = min(self.at_most, self.percent_per_day * math.ceil(seconds / _DAY))
+        percent = min(self.at_most, self.percent_per_day * math.ceil(seconds / 86400))
         return round(score * percent / 100, 4)
 
 
@@ -65,10 +54,6 @@ class Assignment(_Table, frozen=True):
 
     due: datetime | None = None
     weight: _Positive = 1.0
-
-    def __post_init__(self) -> None:
-        if self.due is not None and not 2000 <= self.due.year < 2100:
-            raise ValueError(f"due in the year {self.due.year}, which is not between 2000 and 2099")
 
 
 class Extension(_Table, frozen=True):
@@ -126,51 +111,15 @@ def read_rules(course: Course) -> Rules:
         LabkitError: The file is not TOML, or a rule in it is not valid.
     """
     path = course.root / FILE
-    rules = rules_in(path)
-    unknown = {*rules.assignments, *(x.assignment for x in rules.extensions)} - {
-        "",
-        DEFENCE,
-        *course.names(),
-    }
-    if unknown:
-        raise LabkitError(
-            f"{path} names {min(unknown)!r}, which is not an assignment; there are "
-            f"{', '.join(course.names())}"
-        )
-    return rules
-
-
-def rules_in(path: Path) -> Rules:
-    """The rules of a file; `read_rules` also checks the names of assignments.
-
-    Raises:
-        LabkitError: The file is not TOML, or a rule in it is not valid.
-    """
     try:
         rules = msgspec.convert(tomllib.loads(path.read_text(encoding="utf-8-sig")), Rules)
+        ZoneInfo(rules.zone)
     except FileNotFoundError:
         return Rules()
-    except (ValueError, RecursionError) as error:
-        says = str(error)
-        form = f". {_FORM}" if isinstance(error, msgspec.ValidationError) else ""
-        raise LabkitError(f"{path}: {says}; correct that line{form}") from None
-    try:
-        ZoneInfo(rules.zone)
-    except (ValueError, OSError, ZoneInfoNotFoundError):
-        says = f"{rules.zone[:60]!r} is not a time zone; write one such as 'Europe/Berlin'"
-        raise LabkitError(f"{path}: {says}") from None
+    except (ValueError, RecursionError, OSError, ZoneInfoNotFoundError) as error:
+        raise LabkitError(f"{path}: {error}; correct that, as in the guide's example") from None
+    named = {*rules.assignments, *(x.assignment for x in rules.extensions)}
+    if unknown := named - {"", DEFENCE, *course.names()}:
+        there = ", ".join(course.names())
+        raise LabkitError(f"{path}: there is no assignment {min(unknown)!r}; there are {there}")
     return rules
-
-
-class CourseRules(LateSubmissionPlugin):  # type: ignore[misc]
-    """nbgrader's plugin for late work, by the rules of ``course.toml``."""
-
-    def late_submission_penalty(
-        self, student_id: str, score: float, total_seconds_late: float
-    ) -> float:
-        """The points to deduct."""
-        root = self.config.get("CourseDirectory", {}).get("root") or Path.cwd()
-        late = read_rules(Course.here(Path(root))).late
-        if late == Late():  # then nbgrader's own setting counts, if there is one
-            return super().late_submission_penalty(student_id, score, total_seconds_late) or 0.0
-        return late.penalty(score, total_seconds_late)

@@ -10,7 +10,6 @@ import hmac
 import json
 import secrets
 from collections.abc import Callable
-from functools import partial
 
 from ..course.authoring.layout import PUBLIC_SEED, Course
 from ..errors import LabkitError
@@ -64,15 +63,11 @@ def pseudonyms(course: Course) -> Callable[[str], str]:
     """A function that gives each student a name, which nobody can compute without the key."""
     file = course.root / PSEUDONYMS
     if not file.exists():
-        write(file, secrets.token_hex(16) + "\n")
-    return partial(pseudonym, file.read_bytes())
+        write(file, secrets.token_hex(16))
+    key = file.read_text()
+    return lambda student: f"S-{rank(key, student).hex()[:8]}"
 
 
-def pseudonym(key: bytes, student: str) -> str:
-    """The pseudonym of a student under a term's key."""
-    return f"S-{hmac.new(key, student.encode(), 'sha256').hexdigest()[:8]}"
-
-
-def rank(key: str, student: str, what: str) -> bytes:
-    """The sort key of a thing that is drawn by lot for a student: HMAC-SHA256 under a key."""
-    return hmac.digest(key.encode(), f"{student}/{what}".encode(), "sha256")
+def rank(key: str, *what: str) -> bytes:
+    """What is drawn by lot for things of a student: HMAC-SHA256 under a key."""
+    return hmac.digest(key.encode(), "/".join(what).encode(), "sha256")
