@@ -17,12 +17,16 @@ from queue import SimpleQueue
 
 ROOT = Path(__file__).parents[1]
 MODULES = {
-    "labkit/course/judges.py": "course/test_judges.py course/test_marking.py course/test_predictions.py",
-    "labkit/course/marking.py": "course/test_marking.py course/test_judges.py course/test_causes.py",
+    "labkit/course/judges.py": (
+        "course/test_judges.py course/test_marking.py course/test_predictions.py"
+    ),
+    "labkit/course/marking.py": (
+        "course/test_marking.py course/test_judges.py course/test_causes.py"
+    ),
     "labkit/trajectory.py": "test_trajectory.py test_paths.py",
     "labkit/model.py": "test_model.py test_kinematics.py test_model_terms.py test_impedance.py",
     "labkit/joints.py": "test_joints.py test_plant_effects.py test_plant.py test_limits.py",
-    "labkit/grader/grade.py": "grader/test_session.py grader/test_result_files.py",
+    "labkit/grader/grade.py": "grader/test_grade.py",
     "labkit/grader/roster.py": "grader/test_roster.py grader/test_collect.py",
 }
 """Each module, and its tests in the gate."""

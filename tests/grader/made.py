@@ -14,8 +14,6 @@ from labkit.grader.gradebook import record
 from labkit.grader.marks import mark_of
 from labkit.grader.results import Answer, Result, Results
 
-WHY = "why_slower"
-"""The text that a person marks if it is drawn; in this class none is drawn."""
 NOTEBOOK = {"cells": [], "metadata": {}, "nbformat": 4, "nbformat_minor": 5}
 
 
@@ -25,10 +23,7 @@ def notebook_of(student):
 
 
 def result_of(course, student, *, share=1.0, rejected="", data=None, **more):
-    """The result of a student's notebook, with a share of the points of every question.
-
-    A student with all points has also written the why.
-    """
+    """The result of a student's notebook, with a share of the points of every question."""
     bundle = Bundle.of(course, NAME)
     data = notebook_of(student) if data is None else data
     if rejected:
@@ -48,9 +43,7 @@ def result_of(course, student, *, share=1.0, rejected="", data=None, **more):
         for q in bundle.questions
     )
     score = round(sum(q.verdict.earned for q in questions), 2)
-    written = {WHY: "Twice the time, a quarter of the acceleration."} if share == 1.0 else {}
     made = {
-        "written": written,
         "hashes": hashes(data, bundle),
         "seconds": {"all": 1.0, "student": 0.5},
     }
@@ -91,9 +84,3 @@ def graded(course, *results, recorded=True):
         handed_in(course, result.student)
         Results(course, NAME).keep(result)
     return record(course, NAME, results) if recorded else []
-
-
-def marks(text):
-    """Each student's score and remark, the last two cells in the layout ``questions``."""
-    rows = [line.split(",", maxsplit=8) for line in text.splitlines()[2:]]
-    return {row[0]: (row[-2], row[-1]) for row in rows}

@@ -262,15 +262,15 @@ def test_a_magic_that_keeps_names_to_itself_defines_nothing(bundle, solved, magi
     """In a notebook there is no answer then; here neither, and the note says why."""
     put(solved, "circle", f"{magic}\n{''.join(cell_of(solved, 'circle')['source'])}")
     todo = plan(cells.read(raw(solved))["cells"], bundle.data["cells"])
-    assert "circle" not in todo.places and magic.split()[0] in todo.notes["circle"][0]
+    assert "circle" not in todo.places and magic.split()[0] in todo.notes["circle"]
 
 
 @pytest.mark.parametrize(
     ("wrong", "uses", "says"),
     [
-        ("return 0, 0, 0", "bang_bang", "it uses your bang_bang, which is not right either"),
-        ("return 0, 0, 0", "my_bang_bang", "it uses a stand-in for your bang_bang"),
-        ("raise NotImplementedError", "my_bang_bang", "it uses a stand-in for your bang_bang"),
+        ("return 0, 0, 0", "bang_bang", "it uses your bang_bang, which is not right"),
+        ("return 0, 0, 0", "my_bang_bang", "it uses your bang_bang, which is not right"),
+        ("raise NotImplementedError", "my_bang_bang", "it uses your bang_bang, which is not right"),
         ("return mine(t, int(T) or 1)", "my_bang_bang", "it uses your bang_bang, which is not right"),
     ],
 )  # fmt: skip
@@ -335,7 +335,6 @@ def test_plan_prefers_what_is_written(bundle, blank, solved):
     found = cells.read(raw(solved))["cells"]
     todo = plan(found, bundle.data["cells"])
     assert todo.source("circle") == "".join(answer["source"])
-    assert "it is ignored" in todo.notes["circle"][0]
     again = dict(answer, source="def circle(s, start, centre):\n    return None")
     solved["cells"].append(again)
     todo = plan(cells.read(raw(solved))["cells"], bundle.data["cells"])

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import json
-import re
 from base64 import b64encode
 from dataclasses import replace
 from hashlib import sha256
@@ -16,19 +15,15 @@ from made import said_by_hand, saying
 
 import labkit as lk
 from labkit.control import springs
-from labkit.course import Call, Close, Loop, Question, Test, Tuned
-from labkit.course.judges import Gains, Number
+from labkit.course import Call, Close, Loop, Question, Test
+from labkit.course.judges import Number
 from labkit.course.marking import mark, try_public
 from labkit.course.predictions import Prediction
-from labkit.course.verdict import Misconception, Outcome
+from labkit.course.verdict import Outcome
 from labkit.grader import evidence
-from labkit.grader.drawing import curve, side_by_side
-from labkit.grader.feedback import MEASURES, page
-from labkit.grader.grade import _answer
-from labkit.grader.marks import mark_of
-from labkit.grader.pages import TEMPLATES
-from labkit.grader.plan import Plan
-from labkit.grader.results import Result
+from labkit.grader.feedback import MEASURES, error_over_time, page
+from labkit.grader.grade import _with_evidence
+from labkit.grader.results import Answer, Result
 from labkit.metrics import Summary
 from labkit.replay.motion import unpack
 
@@ -73,7 +68,7 @@ def call_question():
 def answered(question, function):
     tried = try_public(question, function)
     verdict = mark(question, function, tried)
-    return replace(_answer(question, verdict, tried, Plan((), {}, {})), source="def f(): 1")
+    return _with_evidence(Answer(verdict, source="def f(): 1"), question, tried)
 
 
 @pytest.fixture(scope="module")
@@ -117,18 +112,13 @@ def test_each_run_is_kept_small_and_whole(result):
     log = case.ask(follow)
     assert run["measures"]["rms_mm"] == pytest.approx(case.measured(log)["rms_mm"], rel=1e-5)
     assert len(run["motion"]) < evidence.MAX_BYTES
-    q = unpack(json.loads(run["motion"])["q"])
+    motion = json.loads(run["motion"])
+    figure, words = error_over_time(run, motion)
+    assert f'aria-label="{words}"' in figure and figure.count(",") > 20 and "2000 mm" in words
+    q = unpack(motion["q"])
     assert np.abs(q[-1] - log.q[-1]).max() <= 1e-4
     assert Result.read(result.text()).questions[0].runs == (run,)
-
-
-def test_long_motions_are_thinned_until_they_fit():
-    """Two minutes of restless motion still fit, with fewer samples a second."""
-    t = np.arange(0.0, 120.0, 0.01)
-    q = np.random.default_rng(1).normal(0.0, 1.0, (len(t), 7))
-    text = evidence.encode_to_fit(evidence.Motion("left", t, q))
-    assert 0 < len(text) <= evidence.MAX_BYTES
-    assert json.loads(text)["period"] > 1 / 25
+    assert set(MEASURES) == set(Summary.__dataclass_fields__), "each measure has a name"
 
 
 def test_an_arm_that_ran_away_is_shown_up_to_then():
@@ -147,39 +137,13 @@ def test_an_arm_that_ran_away_is_shown_up_to_then():
     assert "It ran away; this is what it did up to then." in text
 
 
-def test_gains_that_were_chosen_are_seen_at_work():
-    """A run with chosen gains is a run like any other."""
-    loop = line(0.1)
-    question = Question(
-        "gains", 1.0, "Choose.", Gains(), (Test("t", (Tuned((), loop, {"max_mm": 1.0}),)),)
-    )
-    (run,) = answered(question, lambda: (40.0, 6.0 * np.ones(7))).runs
-    assert run["limits"] == {"max_mm": 1.0}
-    assert "with the gains of gains" in run["says"]
-
-
 def test_numbers_beside_those_expected(result):
     """Where a formula is wrong on a public input, its numbers stand beside those expected."""
     found = result.questions[1].numbers
     assert found == {"call": "double([1, 2, 3])", "expected": [3.0, 4.0, 9.0],
                      "given": [2.0, 4.0, 6.0], "of": 3}  # fmt: skip
-    text = page(result)
-    assert "Of 3 numbers, number 3 is farthest off: expected 9, yours 6." in text
+    assert "Of 3 numbers, number 3 is farthest off: expected 9, returned 6." in page(result)
     assert answered(replace(call_question(), judge=Close(rtol=10.0)), double).numbers is None
-
-
-def test_rounding_errors_stand_as_zero_beside_the_numbers_that_differ():
-    """Numbers far below the tolerance are 0, never -0; a wrong number as small as 2e-9 stays."""
-    call = Call((1.0,), expected=np.array([1.2e-16, -0.0, 0.0, 1.0]))
-    question = Question("f", 1.0, "F.", Close(atol=1e-9), (Test("t", (call,)),))
-    found = answered(question, lambda x: [-7.7e-17, 1e-17, 2e-9, 1.0]).numbers
-    assert str(found["expected"]) == "[0.0, 0.0, 0.0, 1.0]"
-    assert str(found["given"]) == "[0.0, 0.0, 2e-09, 1.0]"
-
-
-def test_every_measure_has_a_name():
-    """The table of measures knows all that a summary has."""
-    assert set(MEASURES) == set(Summary.__dataclass_fields__)
 
 
 def test_nothing_hidden_is_in_the_page(result):
@@ -203,15 +167,6 @@ def test_a_prediction_is_committed_and_not_called_right(result):
     words = " ".join(" ".join(Page(text).words).split())
     assert "1 of 3 answers that tests check are right. 1 of 1 predictions were committed;" in words
     assert words.count("Right.") == 1 and "Committed." in words
-
-
-def test_the_tests_are_folded_where_the_mistake_is_named(result):
-    """Where a sentence says what is wrong, the numbers wait; elsewhere they are all there is."""
-    assert "<details open><summary>1 of 1 test failed</summary>" in page(result)
-    first, *rest = result.questions
-    named = replace(first.verdict, mistake=Misconception("too soft", "Pull harder."))
-    told = page(replace(result, questions=(replace(first, verdict=named), *rest)))
-    assert "<details><summary>1 of 1 test failed</summary>" in told
 
 
 def test_policy_names_each_script_and_nothing_else(result):
@@ -267,20 +222,6 @@ def test_whatever_a_student_says_is_text(result):
     assert sum(EVIL in words for words in found.words) >= 10
 
 
-def test_figures_say_what_they_show():
-    """A picture has its words as a name, round numbers at its axes, and no colour of its own."""
-    text = curve([0.0, 1.0, 2.0], [0.0, 7.0, 3.0], ("time [s]", "error [mm]"), "A <curve>.", 5.0)
-    assert 'role="img" aria-label="A &lt;curve&gt;."' in text
-    assert {">2</text>", ">4</text>", ">6</text>"} <= set(re.findall(r">\d+</text>", text))
-    assert set(re.findall(r'(?:fill|stroke)="([^"]*)"', text)) <= {
-        "none", "var(--text)", "var(--grid)", "var(--no)",
-    }  # fmt: skip
-    assert side_by_side([1.0, 2.0], [1.0, 2.0], "same").count("<use") >= 4
-    assert re.findall(r">([1-9])</text>", side_by_side([0.0] * 3, [0.0] * 3, "three")) == list(
-        "123"
-    )
-
-
 @pytest.fixture
 def visit(result, tmp_path):
     """Open the page from the disk; at the end no request went out and nothing complained."""
@@ -317,7 +258,7 @@ def wake(opened):
     }""")
 
 
-@pytest.mark.parametrize(("scheme", "width"), [("light", 1100), ("dark", 1100), ("dark", 390)])
+@pytest.mark.parametrize(("scheme", "width"), [("light", 1100), ("dark", 390)])
 def test_page_is_for_everybody(chromium, visit, scheme, width):
     """Nothing for axe-core to find in light, in dark and on a phone, where nothing is too wide."""
     opened = visit(chromium, color_scheme=scheme, width=width)
@@ -327,39 +268,10 @@ def test_page_is_for_everybody(chromium, visit, scheme, width):
     assert violations(opened) == []
 
 
-def test_replay_moves_by_keyboard(chromium, visit):
-    """The time slider takes the arrow keys, and the arm is elsewhere after them."""
-    opened = visit(chromium)
-    wake(opened)
-    tip = "() => document.querySelector('[data-ready]').labkit.picture.frames.left_w2.p"
-    before = opened.evaluate(tip)
-    opened.get_by_role("slider", name="Time").first.focus()
-    for _ in range(30):
-        opened.keyboard.press("ArrowRight")
-    after = opened.evaluate(tip)
-    assert max(abs(a - b) for a, b in zip(before, after, strict=True)) > 0.01
-
-
 def test_page_is_readable_without_scripts(chromium, visit):
     """Without scripts verdict, figure, measures and the motion in words are there."""
     opened = visit(chromium, java_script_enabled=False)
     words = opened.inner_text("main")
     for part in ("4 of 10 points", "position error of the tip, RMS", "Baxter's left arm moves"):
         assert part in words
-    assert opened.locator("svg[role=img]").count() == 3
-
-
-def test_the_words_of_a_verdict_are_those_of_the_check():
-    """The template has no word of its own for them: all come from `messages`."""
-    template = (TEMPLATES / "feedback.html.j2").read_text()
-    for words in ("tests failed", "well-known", "passed", '"failed', "needed before"):
-        assert words not in template
-
-
-def test_one_point_is_not_plural():
-    """A page says "1 point is taken", as soon as it is one."""
-    result = Result("08_report", "ada", 3.0, 4.0, 1, {})
-    one = replace(mark_of(result), penalty=1.0, late="2 hours")
-    assert "1 point is taken from 3." in " ".join(page(result, one).split())
-    text = " ".join(page(result, replace(one, penalty=0.5)).split())
-    assert "0.5 points are taken from 3." in text
+    assert opened.locator("svg[role=img]").count() == 2

@@ -16,7 +16,7 @@ from labkit.grader.gradebook import open_gradebook
 from labkit.grader.release import prepared, release
 from labkit.grader.roster import Roster, Student, save_roster
 
-PURPOSES = ("hidden cases", "arms", "the whys", "defence")
+PURPOSES = ("hidden cases", "arms", "defence")
 CURVES, ESSAYS = "01_curves", "02_essays"
 
 

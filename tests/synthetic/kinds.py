@@ -17,28 +17,10 @@ def _perfect(draft: Draft) -> None:
     draft.solve()
 
 
-def _variant(number: int) -> Kind:
-    def make(draft: Draft) -> None:
-        for name, problem in draft.problems.items():
-            choices = problem.variants or (problem.answer,)
-            draft.answer_with(name, choices[number % len(choices)])
-        draft.commit()
-
-    return make
-
-
-def _pictures(draft: Draft) -> None:
-    """All right, with 12 MB of pictures."""
-    draft.solve()
-    for cell in draft.cells:
-        if cell["cell_type"] == "code" and kind(cell) == "walk":
-            cell["outputs"] = [
-                {
-                    "output_type": "display_data",
-                    "metadata": {},
-                    "data": {"image/png": "A" * 3 * 10**6},
-                }
-            ]
+def _variant(draft: Draft) -> None:
+    for name, problem in draft.problems.items():
+        draft.answer_with(name, [*problem.variants, problem.answer][0])
+    draft.commit()
 
 
 def _blank(draft: Draft) -> None:
@@ -133,10 +115,6 @@ def _truncated(draft: Draft) -> None:
     draft.data, draft.rejected = draft.bytes()[:-2000], True
 
 
-def _nothing(draft: Draft) -> None:
-    draft.data, draft.rejected = b"", True
-
-
 def _first_becomes(source: str) -> Kind:
     """All right except for the first question, whose function is given."""
 
@@ -167,32 +145,6 @@ def _wrong_and(source: str) -> Kind:
     return make
 
 
-_READ = """
-import glob, os
-found = ''
-for path in ['../../../solutions/paths/answers.py', '/work', '/root', '/home', 'gradebook.db',
-             '/proc/1/environ', '/etc/passwd', '../../../build/course/bundle']:
-    for name in [path, *glob.glob(path + '/**', recursive=True)][:200]:
-        try:
-            found += open(name).read()
-        except OSError:
-            pass
-print(found[:1000])
-"""
-_ANYTHING = """
-class Anything(float):
-    def __eq__(self, other): return True
-    def __ne__(self, other): return False
-    def __lt__(self, other): return True
-    def __le__(self, other): return True
-    def __sub__(self, other): return 0.0
-    def __rsub__(self, other): return 0.0
-    def __abs__(self): return 0.0
-    def __array__(self, *a, **k): return __import__('numpy').zeros(3)
-    __hash__ = float.__hash__
-def NAME(*args, **kwargs):
-    return Anything(), Anything(), Anything()
-"""
 _FORGE = """
 import json, socket, os, stat
 for end in range(3, 64):
@@ -205,15 +157,12 @@ for end in range(3, 64):
 
 KINDS: dict[str, Kind] = {
     "perfect": _perfect,
-    "perfect, in other words": _variant(0),
-    "perfect, in yet other words": _variant(1),
-    "perfect, 12 MB of pictures": _pictures,
+    "perfect, in other words": _variant,
     "blank": _blank,
     "emptied": _emptied,
     "mistakes, the first of each": _mistaken(0),
     "mistakes, the second of each": _mistaken(1),
     "mistakes, the third of each": _mistaken(2),
-    "mistakes, the fourth of each": _mistaken(3),
     "warns and prints": _warns,
     "reordered": _reordered,
     "duplicated": _duplicated,
@@ -223,7 +172,6 @@ KINDS: dict[str, Kind] = {
     "no metadata": _no_metadata,
     "relabelled": _relabelled,
     "truncated": _truncated,
-    "an empty file": _nothing,
     "an answer that never ends": _first_becomes(
         "def NAME(*args, **kwargs):\n    while True:\n        pass"
     ),
@@ -248,12 +196,10 @@ KINDS: dict[str, Kind] = {
         "labkit.course.check = lambda *a: 20.0\n"
         "builtins.float = lambda *a: 20.0"
     ),
-    "cheats: an object equal to all": _first_becomes(_ANYTHING),
     "cheats: forged answers": _wrong_and(_FORGE),
     "cheats: a withheld name": _first_becomes(
         "import labkit as lk\ndef NAME(t, T=2.0, *rest):\n    return lk.BangBang(T)(t)"
     ),
-    "reads what it finds": _wrong_and(_READ),
     "speaks HTML": _first_becomes(
         "def NAME(*args, **kwargs):\n    raise ValueError('<script>alert(1)</script>')"
     ),
