@@ -179,6 +179,27 @@ Form = Choose | Number | Curve
 
 
 @dataclass(frozen=True)
+class Letter(RightOrWrong):
+    """The judge of one letter, which is not told; where `UNSAID` is expected, any one will do.
+
+    Attributes:
+        options: The letters.
+    """
+
+    options: str
+
+    def __call__(self, answer: Any, expected: Any) -> Difference | None:
+        """None if the answer is the letter that is expected, else what is wrong."""
+        said = letters(answer)
+        if said not in tuple(self.options):
+            found = f"it is {shown(answer)}; write one of {', '.join(self.options)}"
+            return Difference(Kind.REFUSED, found=found)
+        if expected in (said, UNSAID):
+            return None
+        return Difference(Kind.REFUSED, found=f"it is not {said}")
+
+
+@dataclass(frozen=True)
 class Measured(RightOrWrong):
     """The judge of a measured number, which must be within a tolerance of the arm's.
 
@@ -597,7 +618,7 @@ class Found(RightOrWrong):
         return bug.cause, bug.first_visible()
 
 
-Judge = Close | Response | Gains | AtTip | Form | Measured | Found
+Judge = Close | Response | Gains | AtTip | Form | Letter | Measured | Found
 
 
 def accepts(judge: Judge, answer: Any, expected: Any) -> bool:

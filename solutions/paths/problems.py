@@ -163,6 +163,12 @@ DURATION_FOR = Problem(
             cure="Use the smaller of v_max and √(distance·a_max) as the top speed.",
         ),
         Wrong(
+            "always a triangle",
+            "Over a long distance your arm goes faster than v_max.",
+            mistakes.Lasting(lambda d, v, a: 2.0 * sqrt(d / a)),
+            cure="Where √(distance·a_max) exceeds v_max, the arm cruises at v_max.",
+        ),
+        Wrong(
             "five seconds a metre",
             "This is the report's equation 1. Its 5 has the unit s/m, so the arm's limits do not "
             "matter in it, and a short move needs an acceleration without bound.",

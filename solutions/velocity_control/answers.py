@@ -22,7 +22,7 @@ def joint_velocity_pd(state: lk.State, target: lk.Sample, *, kp: Any, kd: Any) -
 
 def what_shows(run: str) -> str:
     """The term that spoils a run of equation 17, and the run of 16 in which the tilt stays."""
-    return {"H": "a", "P": "-", "F": "a", "tilt": "H"}[run]
+    return {"H": "a", "P": "-", "F": "a", "tilt": "h"}[run]
 
 
 def decay_rate(kp: float, kd: float) -> float:

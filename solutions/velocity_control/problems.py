@@ -4,8 +4,9 @@ from __future__ import annotations
 
 import numpy as np
 
-from labkit.course import PUBLIC_ARMS, Close, OwnArm
+from labkit.course import PUBLIC_ARMS, Call, Close, Letter, OwnArm
 from labkit.course.authoring.problem import Problem, Trial, Wrong, call
+from labkit.course.judges import UNSAID
 
 from . import answers, hidden, mistakes, variants
 from .hidden import (
@@ -119,9 +120,15 @@ WHAT_SHOWS = Problem(
     'wrong, or "-" if it shows nothing wrong; for "tilt" the run of equation 16 in which the '
     "tilt does not die. F is done for you.",
     answer=answers.what_shows,
+    judge=Letter("abchpf-"),
     trials=(
         Trial("F, which is done for you", (call("F"),), weight=0.0),
-        Trial("H, P and the tilt", (), hidden.runs_of_the_figure),
+        Trial(
+            "H, P and the tilt, of which the check tells only whether they are letters",
+            tuple(Call((run,), expected=UNSAID) for run in ("H", "P", "tilt")),
+            hidden.runs_of_the_figure,
+            "whether these letters are right",
+        ),
     ),
     hints=(
         "A run shows a mistake if its error grows, or does not die. Compare the scales.",
@@ -488,6 +495,12 @@ FIND_LAG = Problem(
             "the time to nearly all of the speed",
             "This is the time until the speed is reached, which is three time constants or more.",
             mistakes.Lag(lambda log: mistakes.reaches(log, 0.95)),
+            cure="After one time constant 63 % of the step is reached.",
+        ),
+        Wrong(
+            "the time to nine tenths of the speed",
+            "This is the time to 90 % of the step, which is 2.3 time constants.",
+            mistakes.Lag(lambda log: mistakes.reaches(log, 0.9)),
             cure="After one time constant 63 % of the step is reached.",
         ),
         Wrong(

@@ -13,6 +13,7 @@ from labkit.course import (
     Call,
     Close,
     Gains,
+    Letter,
     Outcome,
     Question,
     Test,
@@ -20,7 +21,7 @@ from labkit.course import (
     question_data,
     read_question,
 )
-from labkit.course.judges import factor, value
+from labkit.course.judges import UNSAID, factor, value
 from labkit.course.marking import mark
 from labkit.course.verdict import Kind
 
@@ -100,6 +101,15 @@ def test_samples_tables_and_texts():
     assert CLOSE("yes", "yes") is None
     assert CLOSE("no", "yes") is not None
     assert CLOSE(1, True) is not None
+
+
+def test_a_letter_is_one_of_some_and_not_told():
+    """Where nothing is expected any of them will do; no message holds the right one."""
+    judge = Letter("abh-")
+    assert judge("A", "a") is None and judge("-", "-") is None and judge("h", UNSAID) is None
+    assert "a" not in judge("b", "a").found.split()
+    for odd in ("?", "x", "ab", 1, None):
+        assert judge(odd, UNSAID).kind is Kind.REFUSED
 
 
 def test_at_most():

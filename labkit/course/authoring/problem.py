@@ -143,6 +143,6 @@ class Problem:
         return Test(trial.name, (*public, *hidden), trial.weight, trial.also, trial.part)
 
     def _with_expected(self, case: Case, *, hidden: bool) -> Case:
-        if isinstance(case, Call):
+        if isinstance(case, Call) and case.expected is None:
             return replace(case, expected=case.ask(self.expected or self.answer), hidden=hidden)
         return replace(case, hidden=hidden)  # a run carries its limits
