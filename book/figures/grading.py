@@ -21,11 +21,9 @@ MEASURED = {
     "cost_open_s": 0.314,
     "cost_open_per_minute": 382.0,
     "cost_open_own_share": 0.196,
-    "cost_open_dask_per_minute": 337.0,
     "cost_loops_s": 1.20,
     "cost_loops_per_minute": 99.6,
     "cost_loops_own_share": 0.358,
-    "cost_loops_dask_per_minute": 88.4,
     "cost_answer_s": 8.97,
     "cost_endless_s": 45.3,
 }
@@ -60,7 +58,7 @@ COSTS = (
     ("a 01 with one answer that never ends", "answer"),
     ("a 01 in which no answer ends", "endless"),
 )
-"""Kinds of submissions, and their names in ``python -m tests.bench costs``."""
+"""Kinds of submissions, and their names in ``python -m tests.bench grading``."""
 ENDLESS = ("answer", "endless")
 """Kinds for which only the time is measured, because the limits determine it."""
 
@@ -68,22 +66,20 @@ ENDLESS = ("answer", "endless")
 def table_of_costs() -> HTML:
     """The cost of different kinds of submissions, and the share of the students' own code."""
     parts = (("s", "{:.2g} s"), ("own_share", "{:.0%}"), ("per_minute", "{:.0f}"))
-    parts += (("dask_per_minute", "{:.0f}"),)
     rows = [(words, *(_cost(key, *part) for part in parts)) for words, key in COSTS]
     head = (
         "Submission",
         "time of a worker",
         "share of student code",
         "submissions per minute",
-        "per minute with Dask",
     )
     origin = _measured("cost_open_s")[1]
-    title = f"What a submission costs, and how many two workers grade in a minute, {origin}"
+    title = f"What a submission costs, and how many are graded in a minute, {origin}"
     return table(head, rows, title)
 
 
 def _cost(key: str, part: str, form: str) -> str:
-    """A number of ``python -m tests.bench costs``, or an empty cell if there is none."""
+    """A number of ``python -m tests.bench grading``, or an empty cell if there is none."""
     name = f"cost_{key}_{part}"
     if key in ENDLESS and part != "s":
         return ""

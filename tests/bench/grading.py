@@ -1,8 +1,16 @@
-"""The speed of grading: its overhead per submission, and compared with nbgrader's engine."""
+"""The speed of grading: compared with nbgrader's engine, and the cost of a class.
 
+The seconds include a worker's start and imports and the student's own computation, so they are an
+upper bound, and larger on a busy machine.
+"""
+
+import json
 import os
 import shutil
+import tempfile
 import time
+from contextlib import contextmanager
+from pathlib import Path
 
 from labkit.course.authoring.layout import Course
 from labkit.grader.batch import GradeOptions, grade_class
@@ -11,65 +19,101 @@ from labkit.grader.plain import write_plain
 from labkit.grader.release import release
 from labkit.grader.submission import students
 
-from .courses import fresh_course
-
-ASSIGNMENT = "00_warmup"
-COUNT = 100
-"""Number of solved submissions that the isolated engine grades."""
+ROOT = Path(__file__).parents[2]
+WARMUP, OPEN, LOOPS = "00_warmup", "01_paths", "05_impedance"
 SERIAL = 10
-"""Number of these submissions that nbgrader's serial engine grades."""
+"""Number of submissions that nbgrader's serial engine grades."""
+ENDLESS = "\n\ndef {name}(*args, **kwargs):\n    while True:\n        pass\n"
 
 
-def submit_solved(course):
-    """Hand in the solved notebook for each student."""
-    release(course, ASSIGNMENT, seed=1)
-    solved = course.solution / ASSIGNMENT / f"{ASSIGNMENT}.ipynb"
-    for k in range(COUNT):
-        place = course.submitted / f"s{k:03d}" / ASSIGNMENT
-        place.mkdir(parents=True)
-        shutil.copy(solved, place)
+@contextmanager
+def fresh_course():
+    """A course of these sources without a release, which is deleted after the block."""
+    with tempfile.TemporaryDirectory(prefix="labkit-bench-") as folder:
+        (Path(folder) / "solutions").symlink_to(ROOT / "solutions")
+        shutil.copy(ROOT / "nbgrader_config.py", folder)
+        yield Course(Path(folder))
 
 
-def scores_by_nbgrader(course, who):
-    """The scores by nbgrader's own engine, in a course that was prepared before the clock ran."""
-    api = nbgrader_api(course)
-    with quiet_database():
-        for student in who:
-            result = api.autograde(ASSIGNMENT, student, force=True, create=True)
-            assert result["success"], result["log"]
-        with api.gradebook as book:
-            return {book.find_submission(ASSIGNMENT, student).score for student in who}
+def endless(notebook, most):
+    """Change the first answers, at most `most` of them, so that they never end."""
+    answers = (x for x in notebook["cells"] if x["metadata"].get("nbgrader", {}).get("solution"))
+    code = [cell for cell in answers if cell["cell_type"] == "code"]
+    for cell in code[:most]:
+        name = cell["metadata"]["nbgrader"]["grade_id"]
+        cell["source"] = "".join(cell["source"]) + ENDLESS.format(name=name)
+    return notebook
 
 
-def prepared(course, who):
-    """A course for nbgrader alone, with some of the submissions."""
+@contextmanager
+def handed_in(assignment, count, never_end=0):
+    """A course in which `count` students hand in a solved notebook with some endless answers."""
+    with fresh_course() as course:
+        release(course, assignment, seed=1)
+        path = course.solution / assignment / f"{assignment}.ipynb"
+        text = json.dumps(endless(json.loads(path.read_text()), never_end))
+        for k in range(count):
+            place = course.submitted / f"s{k:03d}" / assignment
+            place.mkdir(parents=True)
+            (place / path.name).write_text(text)
+        yield course
+
+
+def graded(course, assignment, jobs):
+    """Grade everybody; the seconds that passed, the share of the students' code, the score."""
+    who = students(course, assignment)
+    start = time.perf_counter()
+    done = [one.result for one in grade_class(course, assignment, who, GradeOptions(jobs=jobs))]
+    elapsed = time.perf_counter() - start
+    (score,) = {result.score for result in done}
+    whole, own = (sum(result.seconds[part] for result in done) for part in ("all", "student"))
+    return elapsed, own / whole, score
+
+
+def by_nbgrader(course, who):
+    """The seconds that nbgrader's own engine takes, after its course was made, and the scores."""
     plain = Course(course.root / "plain")
-    write_plain(course, [ASSIGNMENT], plain.root)
+    write_plain(course, [WARMUP], plain.root)
     for student in who:
         shutil.copytree(course.submitted / student, plain.root / "submitted" / student)
-    assert nbgrader_api(plain).generate_assignment(ASSIGNMENT)["success"]
-    return plain
+    api = nbgrader_api(plain)
+    assert api.generate_assignment(WARMUP)["success"]
+    start = time.perf_counter()
+    with quiet_database():
+        for student in who:
+            assert api.autograde(WARMUP, student, force=True, create=True)["success"]
+        elapsed = time.perf_counter() - start
+        with api.gradebook as book:
+            return elapsed, {book.find_submission(WARMUP, student).score for student in who}
 
 
-def measure():
-    """Grading: seconds of a worker for one submission, and throughput relative to nbgrader.
+def measure(warmup=100, opened=600, loops=100, never=4):
+    """Grading: against nbgrader; a worker's seconds for a submission; the students' own share.
 
-    The seconds include a worker's start and imports and the student's own computation, so they are
-    an upper bound, and larger on a busy machine.  Both engines grade in one run, the isolated one
-    on all cores.
+    ``open`` is a solved notebook 01, ``loops`` a solved 05 with its runs of the arm, ``answer`` a
+    01 with one answer that never ends, ``endless`` a 01 in which no answer ends.
+
+    Args:
+        warmup: Number of students who hand in a solved 00.
+        opened: Number of students who hand in a solved 01.
+        loops: Number of students who hand in a solved 05.
+        never: Number of students who hand in a 01 that does not end.
     """
-    jobs = len(os.sched_getaffinity(0))
-    with fresh_course() as course:
-        submit_solved(course)
-        who = students(course, ASSIGNMENT)
-        start = time.perf_counter()
-        done = list(grade_class(course, ASSIGNMENT, who, GradeOptions(jobs=jobs)))
-        isolated = (time.perf_counter() - start) / COUNT
-        scores = {getattr(getattr(one, "result", None), "score", None) for one in done}
-        plain = prepared(course, who[:SERIAL])
-        start = time.perf_counter()
-        theirs = scores_by_nbgrader(plain, who[:SERIAL])
-        serial = (time.perf_counter() - start) / SERIAL
-    if scores != theirs or len(scores) != 1:
-        raise RuntimeError(f"the engines disagree: {scores} and {theirs}")
-    return {"grading_overhead_s": isolated * jobs, "grading_vs_nbgrader": serial / isolated}
+    jobs, figures = len(os.sched_getaffinity(0)), {}
+    with handed_in(WARMUP, warmup) as course:
+        seconds, _, score = graded(course, WARMUP, jobs)
+        serial, theirs = by_nbgrader(course, students(course, WARMUP)[:SERIAL])
+    assert theirs == {score}, "the engines disagree"
+    figures["grading_overhead_s"] = seconds * jobs / warmup
+    figures["grading_vs_nbgrader"] = (serial / SERIAL) / (seconds / warmup)
+    for key, assignment, count, most in (
+        ("open", OPEN, opened, 0), ("loops", LOOPS, loops, 0),
+        ("answer", OPEN, never, 1), ("endless", OPEN, never, 1000),
+    ):  # fmt: skip
+        with handed_in(assignment, count, most) as course:
+            seconds, share, _ = graded(course, assignment, jobs)
+        figures[f"cost_{key}_s"] = seconds * jobs / count
+        if not most:
+            figures[f"cost_{key}_per_minute"] = 60.0 * count / seconds
+            figures[f"cost_{key}_own_share"] = share
+    return figures

@@ -6,7 +6,7 @@ import nbformat
 
 from labkit.grader.release import release
 
-from .courses import fresh_course
+from .grading import fresh_course
 
 USED = """
 import resource, time

@@ -1,9 +1,8 @@
-"""A tag's pose, and OpenCV's: `python -m tests.bench.tags --seed 1` writes build/tags.json.
+"""A tag's pose, and OpenCV's: `python -m tests.bench.tags [SEED]` writes build/tags.json.
 
 Nothing here is fitted: the poses come from the seed and the true values from the simulation.
 """
 
-import argparse
 import json
 import sys
 from pathlib import Path
@@ -17,6 +16,7 @@ from solutions.study.sensing import Setup, pictures, random_poses, read
 
 TILT = (0.26, 1.05)
 NOISE = 3.0
+OUT = Path("build/tags.json")
 CONDITIONS = {
     "sharp": {"optics": {"noise": 0.0}},
     "noise 3": {},
@@ -89,26 +89,23 @@ def right(name, one):
     return not one["missed"] and one["median_mm"] <= enough and 3.0 <= one["nees"] <= 12.0
 
 
-def main():
+def main(seed=1):
     """Measure, write the file, and say which rows are not right."""
-    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("--seed", type=int, default=1, help="of the poses")
-    parser.add_argument("--out", type=Path, default=Path("build/tags.json"))
-    options = parser.parse_args()
-    rows = {name: row(name, seed=options.seed) for name in CONDITIONS}
-    options.out.parent.mkdir(parents=True, exist_ok=True)
-    options.out.write_text(json.dumps({"seed": options.seed, "rows": rows}, indent=1) + "\n")
-    print(f"{'30 pictures each':18}  found median    max  NEES | OpenCV: found, median, max [mm]")
+    rows = {name: row(name, seed=seed) for name in CONDITIONS}
+    OUT.parent.mkdir(parents=True, exist_ok=True)
+    OUT.write_text(json.dumps({"seed": seed, "rows": rows}, indent=1) + "\n")
+    print("30 pictures each: found, median, max [mm], NEES | OpenCV: found, refined, median, max")
     for name, one in rows.items():
-        cv = one["opencv"]
-        print(
-            f"{name:18} {one['found']:6} {one['median_mm']:6.2f} {one['max_mm']:6.2f} "
-            f"{one['nees']:5.1f} | {cv['found']:2} {cv['refined']:2}"
-            + (f" {cv['median_mm']:6.2f} {cv['max_mm']:6.2f}" if cv["refined"] else "")
-            + ("" if right(name, one) else "  not right")
+        numbers, theirs = (
+            [f"{x or 0:6.3g}" for x in part]
+            for part in (
+                [one[key] for key in ("found", "median_mm", "max_mm", "nees")],
+                one["opencv"].values(),
+            )
         )
-    return 0 if all(right(name, one) for name, one in rows.items()) else 1
+        print(f"{name:18}", *numbers, "|", *theirs, "" if right(name, one) else "not right")
+    return not all(right(name, one) for name, one in rows.items())
 
 
 if __name__ == "__main__":
-    sys.exit(main())
+    sys.exit(main(*map(int, sys.argv[1:])))

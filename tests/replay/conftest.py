@@ -17,7 +17,7 @@ def node():
     assert shutil.which("node"), "node is missing: apt-get install nodejs (version 20 or newer)"
 
     def evaluate(expression: str, x=None):
-        names = ("so3", "kinematics", "scaling", "recording", "rotation_demo")
+        names = ("so3", "kinematics", "scaling", "recording")
         imports = "\n".join(
             f"import * as {n} from {json.dumps((SOURCES / f'{n}.js').as_uri())};"
             for n in names

@@ -67,28 +67,6 @@ def test_logarithm_equals_pinocchio(node):
     np.testing.assert_allclose(node("x.map(so3.log)", rotations), vectors, rtol=0, atol=1e-6)
 
 
-def test_euler_angles_equal_pinocchio(node):
-    """Roll, pitch and yaw give Pinocchio's matrix, and come back from it."""
-    rng = np.random.default_rng(10)
-    angles = rng.uniform([-np.pi, -1.5, -np.pi], [np.pi, 1.5, np.pi], (50, 3))
-    rotations = node("x.map(so3.fromEuler)", angles.tolist())
-    for rpy, R in zip(angles, rotations, strict=True):
-        np.testing.assert_allclose(
-            np.reshape(R, (3, 3)), pin.rpy.rpyToMatrix(rpy), rtol=0, atol=1e-12
-        )
-    np.testing.assert_allclose(node("x.map(so3.toEuler)", rotations), angles, rtol=0, atol=1e-9)
-
-
-def test_orientation_error_turns_actual_into_target(node):
-    """Its logarithm, applied to the actual rotation, gives the target; its length is the angle."""
-    rng = np.random.default_rng(11)
-    for target, actual in rng.uniform(-1.4, 1.4, (20, 2, 3)):
-        found = node("rotation_demo.errors(...x)", [target.tolist(), actual.tolist()])
-        Rd, Ra = (pin.rpy.rpyToMatrix(a) for a in (target, actual))
-        np.testing.assert_allclose(pin.exp3(np.array(found["log"])) @ Ra, Rd, rtol=0, atol=1e-9)
-        assert found["angle"] == pytest.approx(np.linalg.norm(found["log"]))
-
-
 @pytest.mark.parametrize(
     ("expression", "T", "ramp", "a"),
     [

@@ -18,10 +18,10 @@ function viewer(model) {
 }
 
 async function render({ model, el }) {
-  const data = () => JSON.parse(model.get("data"));
+  const data = JSON.parse(model.get("data"));
   const host = document.createElement("div");
   const alt = document.createElement("p");
-  alt.textContent = data().alt ?? "";
+  alt.textContent = data.alt ?? "";
   el.append(alt, host);
   host.tabIndex = -1; // after a click beside a button, keys still come here
   host.style.outline = "none";
@@ -41,11 +41,9 @@ async function render({ model, el }) {
   const restarted = () => { gone ||= cut(); };
   model.on("comm_live_update", restarted);
   const link = model.send && { send: (message) => model.send(message), hear: (f) => hear.push(f), cut };
-  let shown = mount(host, data(), link);
-  const change = () => { hear.length = 0; shown.dispose(); shown = mount(host, data(), link); };
-  model.on("change:data", change);
+  const shown = mount(host, data, link);
   model.on("msg:custom", heard);
-  return () => { model.off("comm_live_update", restarted); model.off("change:data", change); model.off("msg:custom", heard); shown.dispose(); };
+  return () => { model.off("comm_live_update", restarted); model.off("msg:custom", heard); shown.dispose(); };
 }
 
 export default { render };
