@@ -205,8 +205,8 @@ def _keep(
     course: Course, assignment: str, student: str, theirs: Sequence[File], at: datetime | None
 ) -> Iterator[Taken]:
     """Keep one student's files, and let the newest count."""
-    kept, folder = course.root / FOLDER / student / assignment, course.submitted / student
-    folder /= assignment
+    kept = course.root / FOLDER / student / assignment
+    folder = course.submitted / student / assignment
     if any(x.is_symlink() for x in (folder.parent, folder, kept.parent, kept)):
         raise LabkitError(f"{folder} or {kept} is a link; put a folder there")
     read: list[tuple[datetime, bool, File]] = []
@@ -231,8 +231,7 @@ def _keep(
     if there and there != data and file.when <= before:
         yield Taken(student, file.name, f"kept, but the one of {before:%Y-%m-%d %H:%M} UTC counts")
         return
-    newer = there != data or file.when >= before  # of equal ones students ask about the newest
-    if newer and (there != data or file.folder):
+    if there != data or (file.folder and file.when >= before):  # students ask about the newest
         beside = {TIMESTAMP: str(file.when).encode() if file.exact else None}
         beside[SECRET] = read_secret(file.folder)
         if there:

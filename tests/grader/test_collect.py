@@ -81,18 +81,6 @@ def test_everybody_has_their_own_work_or_none(people):
         assert numbers.items() >= counting(course).items()
 
 
-def test_no_name_of_a_file_replaces_anothers_work(bare, tmp_path):
-    """Eve calls her file as Moodle would call Ada's: it is Eve's, and Ada's stays."""
-    take(bare, from_moodle(tmp_path / "1.zip", [(ADA, f"{NAME}.ipynb", "ada's")]))
-    file = "x_101_assignsubmission_file_01_curves(9).ipynb"
-    take(bare, zipped(tmp_path / "2.zip", [(moodle_writes(*EVE, file, False), "eve's")]))
-    assert counting(bare) == {"ada": "ada's", "eve": "eve's"}
-    assert {x: y.number for x, y in participants(bare)[NAME].items()} == {
-        "ada": "101",
-        "eve": "102",
-    }
-
-
 def test_two_who_are_called_alike_are_left(bare, tmp_path):
     """In one download, or after one of them was collected; nothing that is there changes."""
     both = [(ADA, "x.ipynb", "ada's"), (("Ada Lovelace", 103), "x.ipynb", "another's")]
@@ -138,14 +126,6 @@ def test_canvas_knows_its_users_by_number(bare, tmp_path):
     stamp = (bare.submitted / "eve" / NAME / "timestamp.txt").read_text()
     assert datetime.fromisoformat(stamp).date().isoformat() == "2026-03-01", "late by Canvas's word"
     assert not (bare.submitted / "ada" / NAME / "timestamp.txt").exists()
-
-
-@pytest.mark.parametrize("name", ["eve_77_901_902_x.ipynb", "x_77_901_ada_42_900_x.ipynb"])
-def test_a_file_that_could_be_anothers_is_left(bare, tmp_path, name):
-    """The user 901 is called Eve 77, or Eve, user 77, calls her file so."""
-    take(bare, zipped(tmp_path / "1.zip", [("lovelaceada_42_900_x.ipynb", "ada's")]))
-    _, left = take(bare, zipped(tmp_path / "2.zip", [(name, "another's")], (2030, 1, 1, 0, 0, 0)))
-    assert left and counting(bare) == {"ada": "ada's"}
 
 
 # nbgrader's exchange

@@ -7,7 +7,6 @@ from downloaded import bare_course
 from hypothesis import given
 from hypothesis import strategies as st
 
-from labkit.__main__ import main
 from labkit.course.own_arm import Arms
 from labkit.errors import LabkitError
 from labkit.grader.clean import LONGEST, safe_name
@@ -122,15 +121,6 @@ def test_a_list_in_another_encoding_is_refused(course):
     """A name would be wrong in every table."""
     with pytest.raises(LabkitError, match="not in UTF-8"):
         imported(course, "name,login\nZoë,zoe\n", "cp1252")
-
-
-def test_the_command(course, capsys):
-    """It says how many there are, and refuses what is no file."""
-    path = course.root / "list.csv"
-    path.write_text(MOODLE)
-    assert main(["roster", str(path), "--course", str(course.root)]) == 0
-    assert "2 students, 2 of them new" in capsys.readouterr().out
-    assert main(["roster", "nowhere.csv", "--course", str(course.root)]) == 2
 
 
 TEXT = st.text(st.characters(exclude_categories=("Cs", "Cc", "Cf", "Zl", "Zp")), max_size=12)
