@@ -34,7 +34,7 @@ NOTEBOOKS = {
     "07_comparison": "margins, tuning, and a comparison that means something",
 }
 """The content of each notebook."""
-_TIME = re.compile(r"\*\*Time\*\* \|\D*([\d.]+)(?: hours, all about ([\d.]+))?")
+_TIME = re.compile(r"\*\*Time\*\* \|\D*([\d.]+)(?: hours.* all (?:about )?([\d.]+))?")
 
 
 def picked() -> HTML:

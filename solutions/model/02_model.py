@@ -15,7 +15,7 @@
 # | **You need** | numpy; the cross product, derivatives in several variables; 1-D arrays, twists as (v, w), `T_ab` (notebook 00) |
 # | **Given** | the simulated arm; where its joints and bodies are (`model.links`) |
 # | **You write** | the Jacobian, the mass matrix, gravity; as extensions the Coriolis matrix and the power balance |
-# | **Time** | core 2.5 hours, 13 points; with the extensions 21 points. Stop after 3 hours; what is left is read, not written. |
+# | **Time** | core 2.5 hours, 13 points; all 3.5 hours, 21 points. Stop after 3 hours; what is left is read, not written. |
 
 # %% setup=true
 import matplotlib.pyplot as plt
