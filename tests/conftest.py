@@ -2,7 +2,6 @@
 
 from collections import Counter
 from contextlib import contextmanager
-from importlib.util import find_spec
 
 import numpy as np
 import pytest
@@ -28,7 +27,6 @@ ARGUMENTS = [
 SOAK = {"soak", "study", "test_build.py", "test_live_pages.py", "test_reading.py", "test_search.py"}
 """Folders and files of tests that the gate leaves out, but for the files and tests of `GATE`."""
 GATE = {"test_controllers.py", "test_a_mouse_pulls_the_hand_and_lets_it_go"}
-collect_ignore = [] if find_spec("pinocchio") else ["test_dynamics.py", "test_robot.py"]
 FIRST = "test_pages_of_the_contents_exist"
 
 

@@ -29,16 +29,19 @@ class MuJoCo:
         return T
 
     def pose(self, q: Array) -> Array:
-        return self._tip(self._at(q))
+        data, T = self._at(q), np.eye(4)
+        T[:3, :3] = data.xmat[-1].reshape(3, 3) @ self._hand_tip[:3, :3]
+        T[:3, 3] = self._tip(data)
+        return T
 
     def tip_jacobian(self, q: Array) -> Array:
         data, J = self._at(q), np.empty((6, self._n))
-        mujoco.mj_jac(self._model, data, J[:3], J[3:], self._tip(data)[:3, 3], self._n)
+        mujoco.mj_jac(self._model, data, J[:3], J[3:], self._tip(data), self._n)
         return J
 
     def tip_jacobian_rate(self, q: Array, dq: Array) -> Array:
         data, dJ = self._at(q, dq), np.empty((6, self._n))
-        mujoco.mj_jacDot(self._model, data, dJ[:3], dJ[3:], self._tip(data)[:3, 3], self._n)
+        mujoco.mj_jacDot(self._model, data, dJ[:3], dJ[3:], self._tip(data), self._n)
         return dJ
 
     def mass_matrix(self, q: Array) -> Array:
@@ -52,17 +55,16 @@ class MuJoCo:
 
         Here :math:`c(v) = C(q, v)\,v`; the gravity of the three biases is not in it.
         """
-        g, c = self.gravity(q), self.bias(q, dq)
-        columns = [self.bias(q, dq + w) - c - self.bias(q, w) + g for w in self._each]
+        data = self._at(q)
+        g, c = self._bias(data, self._still), self._bias(data, dq)
+        columns = [self._bias(data, dq + w) - c - self._bias(data, w) + g for w in self._each]
         return 0.5 * np.array(columns).T
 
     def gravity(self, q: Array) -> Array:
         return self.bias(q, self._still)
 
     def bias(self, q: Array, dq: Array) -> Array:
-        data, tau = self._at(q, dq), np.empty(self._n)
-        mujoco.mj_rne(self._model, data, 0, tau)
-        return tau
+        return self._bias(self._at(q), dq)
 
     def inverse_dynamics(self, q: Array, dq: Array, ddq: Array) -> Array:
         data, tau = self._at(q, dq), np.empty(self._n)
@@ -71,8 +73,19 @@ class MuJoCo:
         return tau + self._rotors * ddq
 
     def free_motion(self, q: Array, dq: Array, tau: Array) -> tuple[Array, Array]:
-        inverse = np.asarray(np.linalg.inv(self.mass_matrix(q)))
-        return inverse @ (tau - self.bias(q, dq)), inverse
+        data, inverse = self._at(q), np.empty_like(self._each)
+        bias = self._bias(data, dq)
+        mujoco.mj_crb(self._model, data)
+        mujoco.mj_factorM(self._model, data)
+        mujoco.mj_solveM(self._model, data, inverse, self._each)
+        return inverse.dot(tau - bias), inverse
+
+    def _bias(self, data: mujoco.MjData, dq: Array) -> Array:
+        tau = np.empty(self._n)
+        data.qvel[:] = dq
+        mujoco.mj_comVel(self._model, data)
+        mujoco.mj_rne(self._model, data, 0, tau)
+        return tau
 
     def _at(self, q: Array, dq: Array | None = None) -> mujoco.MjData:
         """The working memory, with what follows from q, and from dq if it is given."""
@@ -86,6 +99,6 @@ class MuJoCo:
         return data
 
     def _tip(self, data: mujoco.MjData) -> Array:
-        T = np.eye(4)
-        T[:3, :3], T[:3, 3] = data.xmat[-1].reshape(3, 3), data.xpos[-1]
-        return T @ self._hand_tip
+        """Where the tip is, shape (3,)."""
+        p: Array = data.xpos[-1] + data.xmat[-1].reshape(3, 3) @ self._hand_tip[:3, 3]
+        return p
