@@ -168,26 +168,15 @@ class Spline:
     """
 
     def __init__(self, s: Any, values: Any) -> None:
-        """Interpolate at least six ``values`` at ``s``.
-
-        Raises:
-            OutOfRange: There are fewer than six, or ``s`` does not rise.
-            ShapeError: The numbers of ``s`` and ``values`` differ.
-        """
+        """Interpolate at least six ``values`` at ``s``."""
         from scipy.interpolate import make_interp_spline  # slow to import and seldom needed
 
-        self.s = locked(as_numbers(s, "s"))
-        self.values = locked(as_numbers(values, "values"))
-        if self.s.ndim != 1 or self.s.size < 6 or np.diff(self.s).min() <= 0.0:
-            raise OutOfRange("s must be at least six rising numbers")
-        if self.values.ndim != 2 or len(self.values) != self.s.size:
-            n = self.values.shape[-1] if self.values.ndim > 1 else 1
-            raise ShapeError("values", (self.s.size, n), self.values.shape)
+        self.s, self.values = locked(as_numbers(s, "s")), locked(as_numbers(values, "values"))
         spline = make_interp_spline(self.s, self.values, k=5)
         self._knots = np.unique(spline.t)[:-1]
         # Each piece is its Taylor polynomial, which takes half as long as SciPy's own evaluation.
-        taylor = np.array([spline(self._knots, nu=min(k, 6)) for k in range(8)])
-        taylor[6:] = 0.0
+        taylor = np.array([spline(self._knots, nu=k) for k in range(6)])
+        taylor = np.concatenate([taylor, 0.0 * taylor[:2]])
         pieces = np.stack([taylor[k : k + 6] for k in range(3)])  # value and two derivatives
         self._pieces = np.ascontiguousarray(pieces.transpose(2, 0, 1, 3))
 

@@ -149,63 +149,42 @@ class Evidence(NamedTuple):
 
 
 _MISSED = (0.005, -0.005, 0.005, 0.005, -0.005, -0.005, 0.005)  # 4.9 mm at the ready pose
-_FRICTION = np.array(BAXTER.stiction)
-_ROTORS = np.array(BAXTER.armature)
+
+
+def _times(factor: float, numbers: Any) -> tuple[float, ...]:
+    return tuple(factor * np.array(numbers))
+
 
 EVIDENCE = {
     "gravity_compensation": Evidence(
-        "", "Rethink, Gravity Compensation: a channel of its own, always on", False, True, True
-    ),
+        "", "Rethink, Gravity Compensation: a channel of its own, always on", False, True, True),
     "armature": Evidence(
-        "kg m²",
-        "not published; without rotors the report's torque gains make w2 unstable at 200 Hz",
-        True,
-        tuple(0.5 * _ROTORS),
-        tuple(2.0 * _ROTORS),
-    ),
+        "kg m²", "not published; without rotors the report's torque gains make w2 unstable at "
+        "200 Hz", True, _times(0.5, BAXTER.armature), _times(2.0, BAXTER.armature)),
     "viscous": Evidence("N m s/rad", "damping in Rethink's URDF", False, 0.35, 1.4),
     "stiction": Evidence(
-        "N m",
-        "read off the plateaus of torque in the report's figures",
-        True,
-        tuple(0.25 * _FRICTION),
-        tuple(2.0 * _FRICTION),
-    ),
+        "N m", "read off the plateaus of torque in the report's figures", True,
+        _times(0.25, BAXTER.stiction), _times(2.0, BAXTER.stiction)),
     "payload": Evidence("kg", "an empty gripper", False, 0.0, 0.0),
     "velocity_lag": Evidence("s", "not published", True, 0.01, 0.06),
     "position_gain": Evidence("1/s", "not published", True, 10.0, 100.0),
     "state_rate": Evidence("Hz", "Rethink's default joint_state_publish_rate", False, 100.0, 100.0),
     "state_delay": Evidence("s", "four hops of a millisecond each, estimated", True, 0.0, 0.02),
     "encoder_offset": Evidence(
-        "rad",
-        "left out by default; about 5 mm at the tip is what users report of the real arm",
-        True,
-        0.0,
-        _MISSED,
-    ),
+        "rad", "left out by default; about 5 mm at the tip is what users report of the real arm",
+        True, 0.0, _MISSED),
     "encoder_step": Evidence(
-        "rad", "left out by default; 14 bits a turn would be 0.00038", True, 0.0, 0.00038
-    ),
+        "rad", "left out by default; 14 bits a turn would be 0.00038", True, 0.0, 0.00038),
     "velocity_noise": Evidence(
-        "rad/s",
-        "read off the report's figures",
-        True,
-        0.0,
-        tuple(2.0 * np.array(BAXTER.velocity_noise)),
-    ),
+        "rad/s", "read off the report's figures", True, 0.0, _times(2.0, BAXTER.velocity_noise)),
     "torque_noise": Evidence(
-        "N m",
-        "not published; what a spring's deflection sensor may give",
-        True,
-        0.0,
-        tuple(2.0 * np.array(BAXTER.torque_noise)),
-    ),
+        "N m", "not published; what a spring's deflection sensor may give", True, 0.0,
+        _times(2.0, BAXTER.torque_noise)),
     "torque_lag": Evidence("s", "not published", True, 0.0, 0.05),
     "lost_ticks": Evidence("", "not published; Linux without a real-time kernel", True, 0.0, 0.1),
     "command_timeout": Evidence(
-        "s", "Rethink's joint command timeout, 0.2 s by default", False, 0.2, 0.2
-    ),
-}
+        "s", "Rethink's joint command timeout, 0.2 s by default", False, 0.2, 0.2),
+}  # fmt: skip
 """The evidence for each number of `BAXTER`, by the name of its field.
 
 The plant does not model the springs in Baxter's joints, the counter-springs at s1 and their

@@ -11,7 +11,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -19,7 +19,10 @@ from . import se3
 from .errors import OutOfRange, UnknownName
 from .joints import TipForce
 from .shapes import Array, as_number, lock_vectors, locked
-from .world import Standing, World
+from .world import World
+
+if TYPE_CHECKING:
+    from .arm import Arm
 
 TIP_RADIUS = 0.01
 """Radius of the ball about the tip's origin, in [m]; contact begins at this distance."""
@@ -56,7 +59,7 @@ class _Slab:
         for arm in world.arms:
             self._meet(arm, world.dt, *arm.tip())
 
-    def _meet(self, arm: Standing, dt: float, p: Array, v: Array) -> None:
+    def _meet(self, arm: Arm, dt: float, p: Array, v: Array) -> None:
         """Push back a tip in the slab with the springs and the dampers of slab and pad."""
         n = self.T_wf[:3, 2]
         x, y, z = self.T_wf[:3, :3].T @ (p - self.T_wf[:3, 3])
@@ -208,16 +211,12 @@ class Spring:
         arm.touch(TipForce(np.append(pull, np.zeros(3)), give * np.eye(3)))
 
 
-def _arm_of(world: World, side: str | None) -> Standing:
+def _arm_of(world: World, side: str | None) -> Arm:
     arms = [arm for arm in world.arms if side in (None, arm.robot.name)]
-    if len(arms) == 1:
-        return arms[0]
-    if arms:
-        names = " or ".join(f"side={arm.robot.name!r}" for arm in arms)
-        raise OutOfRange(f"this world has {len(arms)} arms: give {names}")
-    if not world.arms:
-        raise OutOfRange("this world has no arm to push: lk.Arm(world=world) puts one into it")
-    raise UnknownName("arm in this world", str(side), [arm.robot.name for arm in world.arms])
+    if len(arms) != 1:
+        names = [arm.robot.name for arm in world.arms]
+        raise UnknownName("single arm of this world called", str(side), names)
+    return arms[0]
 
 
 def _check_slab(thing: Any) -> None:

@@ -33,10 +33,6 @@ class Sample(NamedTuple):
     velocity: Array
     acceleration: Array
 
-    def __array_ufunc__(self, ufunc: Any, *_: Any, **__: Any) -> Any:
-        """Arithmetic, for which numpy would take this tuple for an array."""
-        raise TypeMismatch(f"{ufunc.__name__} takes arrays, not a 'Sample'")
-
 
 class PoseSample(NamedTuple):
     """The value and two derivatives of a curve of tip poses at one place, in world axes.
@@ -51,10 +47,9 @@ class PoseSample(NamedTuple):
     twist: Array
     dtwist: Array
 
-    def __array_ufunc__(self, ufunc: Any, *_: Any, **__: Any) -> Any:
-        """Arithmetic, for which numpy would take this tuple for an array."""
-        raise TypeMismatch(f"{ufunc.__name__} takes arrays, not a 'PoseSample'")
 
+Sample.__array_ufunc__ = PoseSample.__array_ufunc__ = None  # type: ignore[attr-defined]
+# NumPy would take these tuples for arrays.
 
 AnySample = Sample | PoseSample
 
@@ -94,8 +89,7 @@ class Trajectory:
         _check_path(self.path)
         if not callable(self.scaling) or not hasattr(self.scaling, "duration"):
             raise TypeMismatch(
-                f"scaling is {shown(self.scaling)}; a time scaling is a function of t that has a "
-                "duration: Trajectory(path, scaling)"
+                f"scaling is {shown(self.scaling)}; it must be a function of t with a duration"
             )
 
     @property
@@ -117,24 +111,20 @@ class Trajectory:
                 f"the scaling returned {shown(at_t)}, expected three numbers: s, ds/dt and d2s/dt2"
             ) from None
         at_s = self.path(s)
-        try:
-            x, dx, ddx = at_s
-            return type(at_s)(x, dx * ds, ddx * (ds * ds) + dx * dds)
-        except (TypeError, ValueError):
+        if not isinstance(at_s, AnySample):
             raise TypeMismatch(
                 f"the path returned {shown(at_s)}, expected lk.Sample(position, velocity, "
-                "acceleration) of arrays, with derivatives with respect to s, or an lk.PoseSample"
-            ) from None
+                "acceleration), with derivatives with respect to s, or an lk.PoseSample"
+            )
+        x, dx, ddx = at_s
+        return type(at_s)(x, dx * ds, ddx * (ds * ds) + dx * dds)
 
 
 def _check_path(path: Any) -> None:
     if not callable(path):
         raise TypeMismatch(f"path is {shown(path)}; a path is a function of s")
     if hasattr(path, "duration"):
-        raise TypeMismatch(
-            f"path is {shown(path)}, which has a duration: a function of t.  A path is a function "
-            "of s from 0 to 1: Trajectory(path, scaling), Trajectory(PosePath(path, R_wt), scaling)"
-        )
+        raise TypeMismatch(f"path is {shown(path)}, a function of t; a path is one of s")
 
 
 LARGEST_JUMP = 1e-4

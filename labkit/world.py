@@ -4,12 +4,14 @@ from __future__ import annotations
 
 import threading
 from collections.abc import Iterable
-from typing import Any, Protocol, Self
+from typing import TYPE_CHECKING, Any, Protocol, Self
 
 from .errors import Closed, OutOfRange, TypeMismatch
-from .joints import TipForce
-from .shapes import Array, as_number, shown
+from .shapes import as_number, shown
 from .sim import chosen
+
+if TYPE_CHECKING:
+    from .arm import Arm
 
 
 class Thing(Protocol):
@@ -17,32 +19,6 @@ class Thing(Protocol):
 
     def act(self, world: World) -> None:
         """Act on the arms of ``world`` for the next physics step."""
-
-
-class Standing(Protocol):
-    """The part of an arm's interface that its world and the things around it use."""
-
-    @property
-    def robot(self) -> Any:
-        """The robot, with its names."""
-
-    def truth(self) -> Any:
-        """The true state of the joints."""
-
-    def tip(self) -> tuple[Array, Array]:
-        """Position [m] and velocity [m/s] of the tip, world axes, each of shape (3,)."""
-
-    def push(self, force: Array, moment: Array) -> None:
-        """Push the tip during the next physics step: (3,) [N] and (3,) [N m], world axes."""
-
-    def touch(self, touch: TipForce) -> None:
-        """Let something act on the tip during the next physics step."""
-
-    def step(self) -> None:
-        """Take a physics step."""
-
-    def release(self) -> None:
-        """Free the engine's resources."""
 
 
 class Shown(Protocol):
@@ -88,7 +64,7 @@ class World:
         self.engine = chosen(engine)
         self.steps = 0
         self.things: list[Thing] = []
-        self.arms: list[Standing] = []
+        self.arms: list[Arm] = []
         self.shown: list[Shown] = []
         self.closed = False
         for thing in things:

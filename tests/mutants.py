@@ -23,9 +23,9 @@ MODULES = {
     "labkit/course/marking.py": (
         "course/test_marking.py course/test_judges.py course/test_causes.py"
     ),
-    "labkit/trajectory.py": "test_trajectory.py test_paths.py",
-    "labkit/model.py": "test_model.py test_kinematics.py test_model_terms.py test_impedance.py",
-    "labkit/joints.py": "test_joints.py test_plant_effects.py test_plant.py test_limits.py",
+    "labkit/trajectory.py": "test_trajectory.py test_paths.py test_refusals.py",
+    "labkit/model.py": "test_model.py test_kinematics.py test_impedance.py test_refusals.py",
+    "labkit/joints.py": "test_joints.py test_plant_effects.py test_plant.py test_scene.py",
     "labkit/grader/grade.py": "grader/test_grade.py",
     "labkit/grader/roster.py": "grader/test_roster.py grader/test_collect.py",
 }

@@ -15,7 +15,6 @@ from labkit.errors import (
     LabkitError,
     NotFinite,
     ShapeError,
-    TypeMismatch,
     UnknownName,
 )
 
@@ -227,38 +226,6 @@ def test_there_are_two_arms(side):
     """The error for any other side lists 'left' and 'right'."""
     with pytest.raises(UnknownName, match="there is 'left', 'right'"):
         lk.Arm(side)
-
-
-def test_a_plant_in_the_place_of_the_side_makes_no_long_sentence():
-    """The plant is cut short, so that the sentence has fewer than 120 characters."""
-    with pytest.raises(
-        UnknownName, match=r"no arm Plant\(name='baxter'.*; there is 'left'"
-    ) as caught:
-        lk.Arm(lk.BAXTER)
-    assert len(str(caught.value)) < 120
-
-
-@pytest.mark.parametrize(
-    ("given", "words"),
-    [
-        ({"plant": "baxter"}, r"plant is 'baxter' \(str\), expected lk.IDEAL, lk.BAXTER"),
-        ({"seed": "one"}, "seed is 'one'.*whole number from 0 up"),
-        ({"seed": -1}, "seed is -1"),
-        ({"world": lk.Table()}, "world is Table"),
-    ],
-)
-def test_what_is_no_plant_no_seed_or_no_world_is_named(given, words):
-    """The error for a wrong plant, seed or world has its name and its value."""
-    with pytest.raises(TypeMismatch, match=words):
-        lk.Arm("left", **given)
-
-
-def test_a_world_has_each_arm_once():
-    """Two would be in one place and push each other off by their tips."""
-    with lk.Arm() as arm:
-        lk.Arm("right", world=arm.world)
-        with pytest.raises(LabkitError, match=r"left arm already.*new World"):
-            lk.Arm(world=arm.world)
 
 
 def test_it_leaves_no_file_that_somebody_could_take_away(tmp_path):

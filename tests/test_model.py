@@ -6,7 +6,7 @@ from curves import slope_along
 from numpy.testing import assert_allclose
 
 import labkit as lk
-from labkit.errors import LabkitError, NotFinite, ShapeError
+from labkit import se3
 
 STEP = 1e-6
 
@@ -103,38 +103,29 @@ def test_answers_are_the_callers_own(model):
         assert (first == kept).all()
 
 
-BAD = [
-    (np.zeros((7, 1)), ShapeError, "q has shape.*ravel"),
-    (np.zeros((1, 7)), ShapeError, "q has shape.*ravel"),
-    (np.zeros(6), ShapeError, "give 7 numbers, not 6"),
-    (np.eye(7), ShapeError, "a matrix came where a vector belongs"),
-    ("neutral", LabkitError, "q is 'neutral'"),
-    (None, LabkitError, "q is None"),
-    (np.full(7, np.nan), NotFinite, "q holds nan at index 0"),
-]
-
-
-@pytest.mark.parametrize(("q", "error", "words"), BAD)
-@pytest.mark.parametrize(
-    "ask",
-    ["pose", "tip_jacobian", "body_jacobian", "spatial_jacobian", "mass_matrix", "gravity",
-     "operational_inertia", "potential_energy", "manipulability", "within_limits"],
-)  # fmt: skip
-def test_bad_angles_never_reach_pinocchio(ask, q, error, words):
-    """Each question refuses a wrong shape, a word, None and NaN with a sentence about q."""
-    with pytest.raises(error, match=words) as caught:
-        getattr(MODEL, ask)(q)
-    assert isinstance(caught.value, LabkitError)
-
-
 MODEL = lk.Model()
 
 
-@pytest.mark.parametrize("ask", ["coriolis", "bias", "kinetic_energy", "tip_jacobian_rate"])
-def test_bad_speeds_never_reach_pinocchio(ask):
-    """A column of speeds is refused by name, and lists give what arrays do."""
-    with pytest.raises(ShapeError, match="dq has shape"):
-        getattr(MODEL, ask)(np.zeros(7), np.zeros((7, 1)))
-    assert_allclose(
-        getattr(MODEL, ask)([0] * 7, [0.1] * 7), getattr(MODEL, ask)(np.zeros(7), np.full(7, 0.1))
-    )
+def test_inverse_dynamics_is_the_equation_of_motion(side, model, states, random):
+    """M ddq + C dq + g."""
+    for q, dq in states(side, 40):
+        ddq = random.uniform(-5.0, 5.0, 7)
+        tau = model.mass_matrix(q) @ ddq + model.coriolis(q, dq) @ dq + model.gravity(q)
+        assert_allclose(model.inverse_dynamics(q, dq, ddq), tau, rtol=0, atol=1e-9)
+
+
+def test_a_wrench_is_found_again_from_its_joint_torques(side, model, states):
+    """tip_wrench(q, J^T F) is F, away from singularities."""
+    for q, dq in states(side, 40):
+        if model.nearness_to_singularity(q) > 0.02:
+            F = dq[:6]
+            assert_allclose(model.tip_wrench(q, model.tip_jacobian(q).T @ F), F, rtol=0, atol=1e-8)
+
+
+def test_a_pose_error_is_target_minus_actual(side, model, states):
+    """Following the error from the actual pose, turning in world axes, reaches the target."""
+    for q, dq in states(side, 40):
+        T_wt, T_wd = model.pose(q), model.pose(q + 0.2 * dq)
+        e = model.pose_error(T_wd, q)
+        assert_allclose(T_wt[:3, 3] + e[:3], T_wd[:3, 3], rtol=0, atol=1e-9)
+        assert_allclose(se3.rotation(e[3:]) @ T_wt[:3, :3], T_wd[:3, :3], rtol=0, atol=1e-9)

@@ -9,7 +9,6 @@ from hypothesis.extra.numpy import arrays
 from numpy.testing import assert_allclose, assert_array_equal
 
 from labkit import Circle, Line, Polyline
-from labkit.errors import LabkitError, NotFinite, OutOfRange, ShapeError
 from labkit.paths import Spline
 
 points = arrays(np.float64, 3, elements=st.floats(-2.0, 2.0))
@@ -166,32 +165,3 @@ def test_what_a_path_was_given_may_change_later_without_harm():
     assert line.start[0] == 0.0
     with pytest.raises(ValueError, match="read-only"):
         line.start[0] = 1.0
-
-
-@pytest.mark.parametrize(
-    ("call", "error", "words"),
-    [
-        (lambda: Line([0, 0, 0], [1, 0]), ShapeError, "goal has shape"),
-        (lambda: Line([[0], [0], [0]], [1, 0, 0]), ShapeError, "start has shape.*ravel"),
-        (lambda: Line([0, 0, np.nan], [1, 0, 0]), NotFinite, "start holds nan at index 2"),
-        (lambda: Line("here", "there"), LabkitError, "start is 'here'"),
-        (lambda: Line(None, [0, 0, 0]), LabkitError, "start"),
-        (lambda: Circle([0, 0], [1, 0]), ShapeError, "start has shape"),
-        (lambda: Circle([1, 2, 0], [1, 2, 3]), OutOfRange, "lies on the circle's axis"),
-        (lambda: Circle([1, 0, 0], [0, 0, 0], axis=[0, 0, 0]), OutOfRange, "axis"),
-        (lambda: Circle([1, 2, 0], [0, 0, 0], np.nan), NotFinite, "turns is nan"),
-        (lambda: Polyline([[0, 0, 0]]), LabkitError, "points"),
-        (lambda: Polyline([0, 0, 0]), LabkitError, "points"),
-        (lambda: Polyline([[0, 0], [1]]), LabkitError, "rows of different lengths"),
-        (lambda: Polyline([[0, 0, 0], [0, 0, 0]]), OutOfRange, "all points are the same"),
-        (lambda: Polyline([[0, 0, 0], [0, np.inf, 0]]), NotFinite, "points holds inf"),
-        (lambda: Spline([0, 1], [[0], [1]]), OutOfRange, "at least six"),
-        (lambda: Spline(np.linspace(1, 0, 9), np.zeros((9, 2))), OutOfRange, "rising"),
-        (lambda: Spline(np.linspace(0, 1, 9), np.zeros((8, 2))), ShapeError, "values has shape"),
-    ],
-)
-def test_a_path_that_cannot_be_is_refused_in_a_sentence(call, error, words):
-    """Wrong shapes, NaN, words, a circle of no radius and one single point are named."""
-    with pytest.raises(error, match=words) as caught:
-        call()
-    assert isinstance(caught.value, LabkitError)

@@ -7,7 +7,6 @@ import pytest
 from numpy.testing import assert_array_equal
 
 import labkit as lk
-from labkit.errors import LabkitError
 from labkit.plant import EVIDENCE
 
 PER_JOINT = (
@@ -62,42 +61,3 @@ def test_one_effect_is_changed_at_a_time():
     quiet = dataclasses.replace(lk.BAXTER, velocity_noise=0.0)
     assert_array_equal(quiet.each("velocity_noise", 7), np.zeros(7))
     assert quiet.stiction == lk.BAXTER.stiction
-
-
-@pytest.mark.parametrize("field", PER_JOINT)
-@pytest.mark.parametrize("value", [np.ones((7, 1)), np.nan, "high", None, -1.0])
-def test_a_bad_effect_per_joint_is_named(field, value):
-    """The error for a column, NaN, a word, None or a negative number names the effect."""
-    with pytest.raises(LabkitError, match=field):
-        lk.Plant(**{field: value})
-
-
-@pytest.mark.parametrize("field", PER_JOINT)
-def test_a_plant_of_another_number_of_joints_is_refused_by_the_arm(field):
-    """The error for six numbers and seven joints names the effect."""
-    with pytest.raises(LabkitError, match=f"{field}.*give 7 numbers, not 6"):
-        lk.Arm(plant=lk.Plant(**{field: np.arange(1.0, 7.0)}))
-
-
-@pytest.mark.parametrize(
-    "field",
-    ["payload", "velocity_lag", "position_gain", "state_rate", "state_delay", "lost_ticks",
-     "command_timeout"],
-)  # fmt: skip
-@pytest.mark.parametrize("value", [-1.0, np.nan, "high", None, [1.0, 2.0]])
-def test_a_bad_number_is_named(field, value):
-    """The error for a negative number, NaN, a word, None or a list names the effect."""
-    with pytest.raises(LabkitError, match=field):
-        lk.Plant(**{field: value})
-
-
-def test_more_than_all_ticks_cannot_be_lost():
-    """The error for a share of 1.5 names lost_ticks."""
-    with pytest.raises(LabkitError, match="lost_ticks"):
-        lk.Plant(lost_ticks=1.5)
-
-
-def test_a_state_rate_must_fit_the_physics_step():
-    """300 Hz does not fit a step of 1 ms, and the error suggests 333 Hz."""
-    with pytest.raises(LabkitError, match=r"plant\.state_rate is 300 Hz.*try 333"):
-        lk.Arm(plant=lk.Plant(state_rate=300.0))

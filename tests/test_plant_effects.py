@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 import labkit as lk
-from labkit.errors import Diverged, JointLimitExceeded, NotFinite, OutOfRange, ShapeError
+from labkit.errors import Diverged, JointLimitExceeded
 from labkit.plant import EVIDENCE
 from solutions.study.joint_torque import AugmentedPD, ComputedTorque
 from solutions.study.joint_velocity import JointVelocityPD
@@ -287,23 +287,6 @@ def test_a_joint_stops_at_its_end():
         for _ in range(20):
             q = steps(arm, lk.JointVelocity(np.eye(7)[3]), 100)[-1].q
         assert q[3] == pytest.approx(arm.robot.upper[3], abs=0.02)
-
-
-@pytest.mark.parametrize(
-    ("field", "value", "error"),
-    [
-        ("armature", -0.1, OutOfRange),
-        ("stiction", ((1.0, 2.0),), ShapeError),
-        ("velocity_noise", float("nan"), NotFinite),
-        ("payload", -1.0, OutOfRange),
-        ("lost_ticks", 1.5, OutOfRange),
-        ("state_rate", float("inf"), NotFinite),
-    ],
-)
-def test_an_impossible_plant_is_refused(field, value, error):
-    """The sentence names the field."""
-    with pytest.raises(error, match=field):
-        replace(lk.IDEAL, **{field: value})
 
 
 def test_an_encoder_that_is_off_leaves_the_hand_off_and_the_controller_content():

@@ -4,7 +4,6 @@ import numpy as np
 import pytest
 
 import labkit as lk
-from labkit.errors import Closed, OutOfRange, ShapeError, TypeMismatch, UnknownName
 from labkit.scene import TIP_RADIUS, TIP_STIFFNESS, contact_stiffness
 
 READY = lk.robot("left").ready
@@ -151,49 +150,3 @@ def test_things_are_put_where_they_say():
         assert T[:3, :3].T @ T[:3, :3] == pytest.approx(np.eye(3), abs=1e-12)
         assert np.linalg.det(T[:3, :3]) == pytest.approx(1.0)
     assert lk.Table(height=0.1).T_wf[2, 3] == 0.1
-
-
-@pytest.mark.parametrize(
-    ("make", "error"),
-    [
-        (lambda: lk.Wall((0, 0, 0), (0, 0, 0)), OutOfRange),
-        (lambda: lk.Wall((0, 0), (0, 0, 1)), ShapeError),
-        (lambda: lk.Wall((0, 0, 0), (0, 0, 1), stiffness=-1.0), OutOfRange),
-        (lambda: lk.Table(size=(0.0, 1.0)), OutOfRange),
-        (lambda: lk.Table(colour="red"), TypeMismatch),
-        (lambda: lk.Spring((0, 0, 0), stiffness=-5.0), OutOfRange),
-        (lambda: lk.Push((1.0, 0.0)), ShapeError),
-        (lambda: lk.Push((1.0, 0.0, 0.0), duration=0.0), OutOfRange),
-    ],
-)
-def test_impossible_things_are_refused(make, error):
-    """A thing that cannot be says which of its numbers is wrong."""
-    with pytest.raises(error):
-        make()
-
-
-def test_a_push_needs_to_know_whom():
-    """In a world of two arms, or of none on that side, a push asks for the side."""
-    with lk.World(things=[lk.Push((0, 0, 1.0))]) as world:
-        lk.Arm("left", world=world)
-        lk.Arm("right", world=world)
-        with pytest.raises(OutOfRange, match=r"2 arms: give side='left' or side='right'"):
-            world.step()
-    with (
-        lk.World(things=[lk.Spring((0, 0, 1.0), 100.0)]) as world,
-        pytest.raises(OutOfRange, match=r"no arm to push.*Arm\(world"),
-    ):
-        world.step()
-    with lk.World(things=[lk.Push((0, 0, 1.0), side="right")]) as world:
-        lk.Arm("left", world=world)
-        with pytest.raises(UnknownName, match="'right'"):
-            world.step()
-    with pytest.raises(Closed):
-        world.put(lk.Table())
-
-
-@pytest.mark.parametrize("thing", ["table", lk.Table, None])
-def test_what_is_no_thing_is_refused(thing):
-    """A word, a class or None cannot be put into a world, and the error says what can."""
-    with lk.World() as world, pytest.raises(TypeMismatch, match=r"cannot add .* such as lk\.Table"):
-        world.put(thing)

@@ -67,11 +67,8 @@ def chosen(name: str | None = None) -> str:
     if name not in ENGINES:
         raise UnknownName("engine", name, ENGINES)
     if find_spec(name) is None:
-        others = ", ".join(installed()) or "none"
-        raise LabkitError(
-            f"the engine {ENGINES[name]} is not installed here: pip install {name}, which needs a "
-            f"compiler where there is no wheel of it; or take one that is installed: {others}"
-        )
+        others = ", ".join(installed())
+        raise LabkitError(f"the engine {name} is not installed; take one that is: {others}")
     return name
 
 

@@ -10,7 +10,6 @@ from make_urdf import JOINTS, full_model
 from numpy.testing import assert_allclose
 
 import labkit as lk
-from labkit.errors import LabkitError, UnknownName
 from labkit.robot import _rpy
 
 FULL = full_model()
@@ -172,16 +171,6 @@ def test_a_rotation_survives_being_written_as_roll_pitch_yaw(side, random):
             assert_allclose(pin.rpy.rpyToMatrix(_rpy(R)), R, rtol=0, atol=5e-12)
 
 
-def test_there_is_no_middle_arm():
-    """Robot, arm and model refuse a side that does not exist, and the error lists both."""
-    with pytest.raises(UnknownName, match="no arm 'middle'; there is 'left', 'right'") as caught:
-        lk.robot("middle")
-    assert isinstance(caught.value, LabkitError)
-    for thing in (lk.Arm, lk.Model):
-        with pytest.raises(UnknownName):
-            thing("Left")
-
-
 def test_the_data_cannot_be_changed_by_accident(side):
     """Neither a number in a robot's limits nor the limits themselves can be replaced."""
     r = lk.robot(side)
@@ -189,8 +178,3 @@ def test_the_data_cannot_be_changed_by_accident(side):
         r.effort[0] = 1e9
     with pytest.raises(dataclasses.FrozenInstanceError):
         r.effort = np.ones(7)
-
-
-def test_a_robot_prints_itself_in_a_line(side):
-    """Its name and how many joints it has; no screenful of bodies."""
-    assert repr(lk.robot(side)) == str(lk.robot(side)) == f"<Robot '{side}' with 7 joints>"
