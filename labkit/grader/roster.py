@@ -102,9 +102,6 @@ class Roster:
 
     students: tuple[Student, ...] = ()
 
-    def __contains__(self, id: str) -> bool:
-        return self.get(id) is not None
-
     def get(self, id: str) -> Student | None:
         """The student with this id, which is the name of their folder."""
         return next((one for one in self.students if one.id == id), None)
@@ -153,7 +150,7 @@ def import_list(course: Course, file: Path, teams: str = "") -> list[str]:
     save_roster(course, roster)
     tell_gradebook(course, roster)
     give_arms(course, roster, key_of(course, "arms"))
-    new = [str(one) for one in roster.students if one.id not in before]
+    new = [str(one) for one in roster.students if not before.get(one.id)]
     absent = [str(one) for one in before.students if one.id not in listed]
     says = [f"{FILE}: {how_many(len(roster.students), 'student')}, {len(new)} of them new"]
     says += [f"new: {few(new)}"] if new and before.students else []
@@ -307,10 +304,9 @@ def tell_gradebook(course: Course, roster: Roster) -> None:
     """Write the students into nbgrader's gradebook, where formgrader reads their names."""
     with open_gradebook(course) as book:
         for one in roster.students:
-            about = (one.first_name, one.last_name, one.email, one.lms_user_id or one.id_number)
-            names = ("first_name", "last_name", "email", "lms_user_id")
-            known = {name: value or None for name, value in zip(names, about, strict=True)}
-            book.update_or_create_student(one.id, **known)
+            known = {"lms_user_id": one.lms_user_id or one.id_number, "email": one.email}
+            known |= {"first_name": one.first_name, "last_name": one.last_name}
+            book.update_or_create_student(one.id, **{k: v or None for k, v in known.items()})
 
 
 def give_arms(course: Course, roster: Roster, key: str) -> None:

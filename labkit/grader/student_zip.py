@@ -52,7 +52,6 @@ def student_zip(
         LabkitError: An assignment is not released, or the course is not the whole repository, or
             the wheel could not be built.
     """
-    check_repository(course.root)
     there = sorted(path.name for path in course.release.iterdir() if path.is_dir())
     if course.term.exists():
         there = [name for name in there if (course.bundle / f"{name}.json").exists()]
@@ -116,15 +115,6 @@ def _first_prediction(folder: Path, name: str) -> tuple[str, str] | None:
     text = (folder / name / f"{name}.ipynb").read_text(encoding="utf-8")
     found = re.search(r"\*\*Predict first: `(\w+)`\*\* · 1 point", text)
     return (name, found[1]) if found else None
-
-
-def check_repository(root: Path) -> None:
-    """Raise a LabkitError if a course lacks labkit's source, from which the wheel is built."""
-    if not (root / "constraints.txt").exists():
-        raise LabkitError(
-            f"{root} holds a course without labkit's source and constraints.txt, which students "
-            "or Gradescope get too; make this in the whole repository, or name it with --course"
-        )
 
 
 def wheel(root: Path, to: Path) -> None:

@@ -12,7 +12,6 @@ import zipfile
 import pytest
 from handmade import ROOT
 
-from labkit.__main__ import main
 from labkit.course.authoring.layout import Course
 from labkit.grader.student_zip import NOT_FOR_STUDENTS, PICTURE, _start_here, student_zip
 
@@ -55,18 +54,6 @@ def unpacked(released, tmp_path_factory):
     with zipfile.ZipFile(wheel) as archive:
         archive.extractall(folder / "wheel")
     return folder
-
-
-@pytest.mark.parametrize(
-    "words", [["student-zip", "01_curves"], ["export", "01_curves", "--layout", "gradescope"]]
-)
-def test_a_course_without_labkits_source_is_a_sentence(course, words, tmp_path, capsys):
-    """Both hand out labkit itself; the sentence says what to name, and no file is begun."""
-    to = tmp_path / "made.zip"
-    assert main([*words, "--to", str(to), "--course", str(course.root)]) == 2
-    said = capsys.readouterr().err
-    assert f"{course.root} holds a course without labkit's source" in said
-    assert "the whole repository, or name it with --course" in said and not to.exists()
 
 
 @pytest.mark.slow
