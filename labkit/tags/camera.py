@@ -200,10 +200,12 @@ class Camera:
         normal, middle = T_cm[:3, 2], T_cm[:3, 3]
         plane = (normal @ middle) / (normal[0] * right + (normal[1] * down + normal[2])[:, None])
         before = ((z < plane) | (plane <= 0.0)) & (z < 0.99 * FAR)
-        tiles = (window.height, n, window.width, n)
-        share = before.reshape(tiles).mean(axis=(1, 3))[..., None]
-        colour = (255.0 * colours * before[..., None]).reshape(*tiles, 3).mean(axis=(1, 3))
-        part += colour - share * part
+        size, seen = (window.width, window.height), before.astype(np.float32)[..., None]
+        share, colour = (
+            cv2.resize(x, size, interpolation=cv2.INTER_AREA)
+            for x in (seen, 255.0 * colours * seen)
+        )
+        part += colour - share[..., None] * part
 
     def _window(self, board: Board, T_cm: Array) -> tuple[Window, float] | None:
         """The part of the picture that a board's paper covers, and a depth just behind it."""

@@ -366,7 +366,7 @@ lk.replay.show(lk.replay.motion_of(log, "The arm in the same run", label="the ha
 # %% [markdown]
 # Now move the tag yourself: press *Start* and drag it. The hand follows some tenths of a second behind, and
 # overshoots where you turn: it believes in straight lines. Hide the tag from the camera: for how long does the
-# hand go on? (While this runs, only this cell can use the arm; *Stop* releases it.)
+# hand go on? (While this runs, only this cell can use the arm; *Pause* releases it.)
 
 # %%
 arm.reset(arm.robot.ready)

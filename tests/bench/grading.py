@@ -45,18 +45,16 @@ def endless(notebook, most):
     return notebook
 
 
-@contextmanager
-def handed_in(assignment, count, never_end=0):
-    """A course in which `count` students hand in a solved notebook with some endless answers."""
-    with fresh_course() as course:
-        release(course, assignment, seed=1)
-        path = course.solution / assignment / f"{assignment}.ipynb"
-        text = json.dumps(endless(json.loads(path.read_text()), never_end))
-        for k in range(count):
-            place = course.submitted / f"s{k:03d}" / assignment
-            place.mkdir(parents=True)
-            (place / path.name).write_text(text)
-        yield course
+def hand_in(course, assignment, count, never_end=0):
+    """Let `count` students, and nobody else, hand in a solved notebook with endless answers."""
+    release(course, assignment, seed=1)
+    path = course.solution / assignment / f"{assignment}.ipynb"
+    text = json.dumps(endless(json.loads(path.read_text()), never_end))
+    shutil.rmtree(course.submitted, ignore_errors=True)
+    for k in range(count):
+        place = course.submitted / f"s{k:03d}" / assignment
+        place.mkdir(parents=True)
+        (place / path.name).write_text(text)
 
 
 def graded(course, assignment, jobs):
@@ -100,20 +98,21 @@ def measure(warmup=100, opened=600, loops=100, never=4):
         never: Number of students who hand in a 01 that does not end.
     """
     jobs, figures = len(os.sched_getaffinity(0)), {}
-    with handed_in(WARMUP, warmup) as course:
+    with fresh_course() as course:
+        hand_in(course, WARMUP, warmup)
         seconds, _, score = graded(course, WARMUP, jobs)
         serial, theirs = by_nbgrader(course, students(course, WARMUP)[:SERIAL])
-    assert theirs == {score}, "the engines disagree"
-    figures["grading_overhead_s"] = seconds * jobs / warmup
-    figures["grading_vs_nbgrader"] = (serial / SERIAL) / (seconds / warmup)
-    for key, assignment, count, most in (
-        ("open", OPEN, opened, 0), ("loops", LOOPS, loops, 0),
-        ("answer", OPEN, never, 1), ("endless", OPEN, never, 1000),
-    ):  # fmt: skip
-        with handed_in(assignment, count, most) as course:
+        assert theirs == {score}, "the engines disagree"
+        figures["grading_overhead_s"] = seconds * jobs / warmup
+        figures["grading_vs_nbgrader"] = (serial / SERIAL) / (seconds / warmup)
+        for key, assignment, count, most in (
+            ("open", OPEN, opened, 0), ("loops", LOOPS, loops, 0),
+            ("answer", OPEN, never, 1), ("endless", OPEN, never, 1000),
+        ):  # fmt: skip
+            hand_in(course, assignment, count, most)
             seconds, share, _ = graded(course, assignment, jobs)
-        figures[f"cost_{key}_s"] = seconds * jobs / count
-        if not most:
-            figures[f"cost_{key}_per_minute"] = 60.0 * count / seconds
-            figures[f"cost_{key}_own_share"] = share
+            figures[f"cost_{key}_s"] = seconds * jobs / count
+            if not most:
+                figures[f"cost_{key}_per_minute"] = 60.0 * count / seconds
+                figures[f"cost_{key}_own_share"] = share
     return figures
