@@ -65,15 +65,3 @@ def test_a_bar_says_how_long_it_takes_and_when_it_is_done(shown, widgets, monkey
     assert bar.value == 2.5
     tell(10.0)
     assert bar.value == 10.0 and shown[1:] == [{"text/plain": "pushing: done"}]
-
-
-def test_boxes_are_words_where_no_widget_can_be_shown(shown, widgets):
-    """A page that shows the saved notebook as text says what was there."""
-    lk.plotting.dials(lambda kd: (plt.figure(), ""), kd=(0.0, 2.0, 1.0, "N m s/rad"))
-    lk.plotting.progress("pushing", 10.0)
-    words = [x["text/plain"] for x in shown if "text/plain" in x]
-    told = "Dials: kd from 0 to 2 N m s/rad"
-    assert words == [f"{told}; run the cell to turn them.", told, "", "pushing …"]
-    assert widgets[0].children[1].value == "0 to 2 N m s/rad"
-    assert 'class="lk-saved"' in shown[0]["text/html"]
-    assert "application/vnd.jupyter.widget-view+json" in shown[1]

@@ -1,6 +1,5 @@
 """Errors: one family, each also the built-in that a Python programmer would catch."""
 
-import inspect
 import pickle
 
 import pytest
@@ -8,56 +7,20 @@ import pytest
 from labkit import errors
 from labkit.errors import JointLimitExceeded, LabkitError, ShapeError, UnknownName
 
-FAMILY = [
-    e for _, e in inspect.getmembers(errors, inspect.isclass) if issubclass(e, LabkitError)
-]  # fmt: skip
-
-
-@pytest.mark.parametrize("error", FAMILY, ids=lambda e: e.__name__)
-def test_every_error_is_a_labkit_error_with_a_sentence_of_its_own(error):
-    """Each class derives from LabkitError, and its docstring ends with a full stop."""
-    assert issubclass(error, LabkitError)
-    assert error.__doc__.strip().endswith(".")
-
 
 @pytest.mark.parametrize(
-    ("error", "builtin"),
+    ("builtin", "names"),
     [
-        (errors.ShapeError, ValueError),
-        (errors.TypeMismatch, TypeError),
-        (errors.NotFinite, ValueError),
-        (errors.OutOfRange, ValueError),
-        (errors.JointLimitExceeded, ValueError),
-        (errors.UnknownName, KeyError),
-        (errors.Unreachable, ValueError),
-        (errors.Closed, RuntimeError),
+        (ValueError, ("ShapeError", "NotFinite", "JointLimitExceeded", "Unreachable")),
+        (TypeError, ("TypeMismatch",)),
+        (KeyError, ("UnknownName",)),
+        (RuntimeError, ("Closed",)),
     ],
-)
-def test_an_error_is_also_the_builtin_one_that_is_usual(error, builtin):
-    """Each is also the ValueError, TypeError, KeyError or RuntimeError that one expects."""
-    assert issubclass(error, builtin)
-
-
-@pytest.mark.parametrize(
-    ("expected", "actual", "way_out"),
-    [
-        ((7,), (7, 1), ".ravel()"),
-        ((7,), (1, 7), ".ravel()"),
-        ((7,), (6,), "give 7 numbers, not 6"),
-        ((7,), (), "give all 7"),
-        ((7,), (7, 7), "a matrix came where a vector belongs"),
-        ((3, 4), (4, 3), "the transpose would fit"),
-        ((), (1,), "expected one number; take the one number out of it, as in x[0], or"),
-        ((), (7,), "has shape (7,), expected one number"),
-    ],
-)
-def test_a_wrong_shape_names_both_shapes_and_the_way_out(expected, actual, way_out):
-    """The sentence has both shapes and the remedy; the attributes keep the shapes."""
-    error = ShapeError("q", expected, actual)
-    assert str(actual) in str(error)
-    assert str(expected or "one number") in str(error)
-    assert way_out in str(error)
-    assert (error.name, error.expected, error.actual) == ("q", expected, actual)
+)  # fmt: skip
+def test_an_error_is_also_the_builtin_one_that_is_usual(builtin, names):
+    """Each is also the error that a Python programmer would catch."""
+    assert all(issubclass(getattr(errors, x), LabkitError) for x in names)
+    assert all(issubclass(getattr(errors, x), builtin) for x in names)
 
 
 def test_a_joint_out_of_range_keeps_its_evidence_and_suspects_degrees():

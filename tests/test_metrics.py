@@ -59,19 +59,6 @@ def test_velocity_error_is_the_slope_of_the_position_error(joint_log):
     assert_allclose(metrics.velocity_error(joint_log)[5:-5], slope[5:-5], rtol=0, atol=1e-3)
 
 
-def test_the_velocity_error_of_a_still_pose_is_the_tips_own_speed(pose_log):
-    """For an arm that holds still it is zero to 0.1 mm/s."""
-    assert_allclose(
-        metrics.velocity_error(pose_log), np.zeros((len(pose_log), 3)), rtol=0, atol=1e-4
-    )
-
-
-def test_a_run_after_poses_has_no_joint_error(pose_log):
-    """The error says that poses were followed, and suggests tip_error."""
-    with pytest.raises(TypeMismatch, match=r"followed poses.*tip_error"):
-        metrics.joint_error(pose_log)
-
-
 def test_a_run_after_points_is_told_how_to_make_poses_of_them(ideal):
     """No orientation was asked for, so the tip has no error of it."""
     p = ideal.model.pose(ideal.robot.neutral)[:3, 3]

@@ -37,20 +37,6 @@ def test_a_line_has_its_slopes_and_exact_ends(a, b, s):
     assert line.length == pytest.approx(np.linalg.norm(b - a))
 
 
-def test_a_line_may_run_through_joint_angles():
-    """Halfway between seven angles and their opposites all seven are zero."""
-    q = np.linspace(-1.0, 1.0, 7)
-    assert_allclose(Line(q, -q)(0.5).position, np.zeros(7))
-
-
-def test_a_line_without_length_stands_still():
-    """Its position is the start, and velocity and acceleration are zero."""
-    x, dx, ddx = Line([1, 2, 3], [1, 2, 3])(0.3)
-    assert x.tolist() == [1.0, 2.0, 3.0]
-    assert not dx.any()
-    assert not ddx.any()
-
-
 @given(circles(), fractions)
 def test_a_circle_has_its_slopes(x, s):
     """Its velocity and acceleration in s are the slopes of its position and velocity."""
@@ -132,17 +118,6 @@ def test_a_polyline_runs_at_one_speed_and_has_its_slopes(corners, s):
     assume(np.abs(path._pieces[1] - s).min() > 1e-4)
     assert_slopes(path, s)
     assert np.linalg.norm(path(s).velocity) == pytest.approx(path.length)
-
-
-@pytest.mark.parametrize("s", [0.0, 0.2, 0.5, 0.9, 1.0])
-def test_a_corner_given_twice_does_no_harm(s):
-    """First, last or between: with a corner repeated the path gives the same samples."""
-    once, twice = Polyline([[0, 0], [1, 0], [1, 1]]), Polyline([[0, 0], [1, 0], [1, 0], [1, 1]])
-    last = Polyline([[0, 0], [1, 0], [1, 1], [1, 1]])
-    first = Polyline([[0, 0], [0, 0], [1, 0], [1, 1]])
-    for path in (twice, last, first):
-        for a, b in zip(path(s), once(s), strict=True):
-            assert_allclose(a, b, rtol=0, atol=1e-15)
 
 
 @given(fractions)

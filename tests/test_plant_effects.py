@@ -8,7 +8,7 @@ import pytest
 import labkit as lk
 from labkit.errors import Diverged, JointLimitExceeded
 from labkit.plant import EVIDENCE
-from solutions.study.joint_torque import AugmentedPD, ComputedTorque
+from solutions.study.joint_torque import AugmentedPD
 from solutions.study.joint_velocity import JointVelocityPD
 
 READY = lk.robot("left").ready
@@ -108,12 +108,6 @@ def test_the_velocity_mode_follows_with_a_first_order_lag():
         assert speed[t - 1] == pytest.approx(np.full(7, 0.3 * (1 - np.exp(-t / 30))), rel=0.02)
 
 
-def test_an_ideal_arm_has_the_speed_at_once():
-    """Without lag a speed is reached in a few physics steps, where the motors are strong enough."""
-    with lk.Arm(q0=READY) as arm:
-        assert steps(arm, velocity(1e-3), 10)[-1].dq == pytest.approx(np.full(7, 1e-3), rel=1e-3)
-
-
 def test_the_position_mode_closes_a_gap_at_its_gain():
     """With a gain of 20 / s the gap falls by e in 50 ms."""
     with lk.Arm(plant=lk.Plant(position_gain=20.0), q0=READY) as arm:
@@ -211,29 +205,6 @@ def test_gravity_compensation_is_a_switch():
         assert np.abs(steps(arm, lk.JointTorque(np.zeros(7)), 150)[-1].q - READY).max() < 1e-6
     with lk.Arm(q0=READY) as arm:
         assert np.abs(steps(arm, lk.JointTorque(np.zeros(7)), 150)[-1].q - READY).max() > 0.1
-
-
-def test_doubled_gravity_lifts_the_arm():
-    """A torque controller that adds g(q) on an arm that adds it too pushes the arm up."""
-    with lk.Arm(plant=lk.BAXTER, q0=READY) as arm:
-        twice = ComputedTorque(arm.model, 100.0, 20.0, gravity=True)
-        log = lk.run(arm, lk.Hold(READY, 1.0), twice)
-        assert arm.model.pose(log.q[-1])[2, 3] > arm.model.pose(READY)[2, 3] + 0.05
-
-
-def test_a_controller_with_another_model_tracks_worse():
-    """Told of a payload that is not there, computed torque leaves M^-1 of its weight over Kp."""
-    wrong = lk.Model("left", lk.Plant(payload=1.0))
-    errors = []
-    for model in (lk.Model(), wrong):
-        with lk.Arm(q0=READY) as arm:
-            log = lk.run(arm, SWAY, ComputedTorque(model), rate=1000, duration=2.0)
-        errors.append(log.target.position[-1] - log.q[-1])
-    q = log.q[-1]
-    excess = wrong.gravity(q) - lk.Model().gravity(q)
-    assert np.abs(errors[0]).max() < 1e-5
-    settled = -np.linalg.solve(wrong.mass_matrix(q), excess) / 400.0
-    assert errors[1] == pytest.approx(settled, abs=1e-5)
 
 
 # Limits

@@ -21,7 +21,6 @@ def test_ready_prints_one_line_with_versions_platform_and_the_motion(capsys):
         "mm",
         "Python 3",
         f"{chosen()} ",
-        "pin ",
     ):
         assert word in out
     assert len(out) <= 110  # a notebook beside its file browser breaks longer lines

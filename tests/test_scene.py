@@ -140,13 +140,3 @@ def test_a_spring_pulls_by_its_law():
         wrench = MODEL.tip_wrench(before.q, after.tau_ext)
     assert wrench[:3] == pytest.approx(spring.force(p + 1e-3 * v, v), abs=1e-9)
     assert np.abs(wrench[:3]).max() > 5.0
-
-
-def test_things_are_put_where_they_say():
-    """The frame of a face has its z axis along the normal, whatever the normal."""
-    for normal in ((0, 0, 1), (0, 1, 0), (1, -2, 0.5), (0, 0, -3)):
-        T = lk.Wall((1, 2, 3), normal).T_wf
-        assert T[:3, 2] == pytest.approx(np.array(normal) / np.linalg.norm(normal))
-        assert T[:3, :3].T @ T[:3, :3] == pytest.approx(np.eye(3), abs=1e-12)
-        assert np.linalg.det(T[:3, :3]) == pytest.approx(1.0)
-    assert lk.Table(height=0.1).T_wf[2, 3] == 0.1

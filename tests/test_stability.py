@@ -50,13 +50,6 @@ def step_response(joint, Kp, t):
     return control.step_response(control.feedback(loop), T=t).outputs
 
 
-def test_the_step_response_of_a_plain_integrator_is_the_exponential():
-    """For a gain of 3 it is 1 - exp(-3 t), to 1e-6 over 2 s."""
-    t = np.linspace(0.0, 2.0, 200)
-    found = step_response(VelocityJoint(0.0), 3.0, t)
-    np.testing.assert_allclose(found, 1.0 - np.exp(-3.0 * t), rtol=0, atol=1e-6)
-
-
 def test_the_age_of_the_state_is_the_one_in_the_log():
     """At 200 Hz mean age and Baxter's log agree to 0.2 ms, and the ideal arm's age is zero."""
     with lk.Arm(plant=lk.BAXTER, q0=lk.robot("left").ready) as arm:

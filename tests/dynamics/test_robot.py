@@ -2,7 +2,6 @@
 
 import dataclasses
 
-import mujoco
 import numpy as np
 import pinocchio as pin
 import pytest
@@ -14,31 +13,6 @@ from labkit.robot import _rpy
 
 FULL = full_model()
 ROTORS = lk.Plant(name="rotors", armature=lk.BAXTER.armature)
-
-
-@pytest.fixture(params=[lk.IDEAL, ROTORS], ids=lambda plant: plant.name)
-def plant(request):
-    """With and without rotor inertia."""
-    return request.param
-
-
-@pytest.fixture
-def body(side):
-    """The arm of the URDF text alone in PyBullet, without motors: engine, client and body."""
-    from tests.bench.hand_loop import open_arm, pybullet
-
-    client, body = open_arm(lk.robot(side).urdf())
-    bullet = pybullet()
-    yield bullet, client, body
-    bullet.disconnect(client)
-
-
-@pytest.fixture
-def mj(side, plant):
-    """The arm of the same text in MuJoCo."""
-    model = mujoco.MjModel.from_xml_string(lk.robot(side).urdf(plant))
-    model.dof_armature[:] = plant.armature
-    return model, mujoco.MjData(model)
 
 
 def expanded(side, x, fill):
@@ -90,58 +64,6 @@ def test_named_poses_lie_inside_the_limits(side, pose):
     q = getattr(r, pose)
     assert (r.lower < q).all()
     assert (q < r.upper).all()
-
-
-@pytest.mark.pybullet
-def test_pybullets_dynamics_are_pinocchios(side, body, states, random):
-    """Torque and mass matrix over 1,000 random states inside the limits."""
-    bullet, client, number = body
-    model = lk.Model(side)
-    for q, dq in states(side, 1000):
-        ddq = random.uniform(-10.0, 10.0, 7)
-        M, bias = model.mass_matrix(q), model.bias(q, dq)
-        motion = (list(x) for x in (q, dq, ddq))
-        tau = bullet.calculateInverseDynamics(number, *motion, physicsClientId=client)
-        assert_allclose(tau, M @ ddq + bias, rtol=0, atol=1e-6)
-        inertia = bullet.calculateMassMatrix(number, list(q), physicsClientId=client)
-        assert_allclose(inertia, M, rtol=0, atol=1e-6)
-
-
-@pytest.mark.pybullet
-def test_one_physics_step_gives_the_acceleration_of_the_equations_of_motion(
-    side, body, states, random
-):
-    """What the simulator does, not what it says: speeds after 1 ms over 1,000 random states."""
-    bullet, client, number = body
-    model, r = lk.Model(side), lk.robot(side)
-    for q, dq in states(side, 1000):
-        q = r.lower + (0.01 + 0.98 * (q - r.lower) / (r.upper - r.lower)) * (r.upper - r.lower)
-        ddq = random.uniform(-10.0, 10.0, 7)
-        tau = model.mass_matrix(q) @ ddq + model.bias(q, dq)
-        for j in range(7):
-            bullet.resetJointState(number, j, q[j], dq[j], physicsClientId=client)
-        bullet.setJointMotorControlArray(
-            number, range(7), bullet.TORQUE_CONTROL, forces=list(tau), physicsClientId=client
-        )
-        bullet.stepSimulation(physicsClientId=client)
-        joints = bullet.getJointStates(number, range(7), physicsClientId=client)
-        assert_allclose(
-            [(j[1] - v) / 1e-3 for j, v in zip(joints, dq, strict=True)], ddq, rtol=0, atol=1e-6
-        )
-
-
-def test_mujocos_dynamics_are_pinocchios(side, plant, mj, states):
-    """Mass matrix and bias agree over 300 random states, with and without rotor inertia."""
-    m, d = mj
-    model = lk.Model(side, plant)
-    M = np.zeros((7, 7))
-    for q, dq in states(side, 300):
-        d.qpos[:], d.qvel[:] = q, dq
-        mujoco.mj_forward(m, d)
-        for column, unit in zip(M, np.eye(7), strict=True):
-            mujoco.mj_mulM(m, d, column, unit)
-        assert_allclose(M, model.mass_matrix(q), rtol=0, atol=1e-9)
-        assert_allclose(d.qfrc_bias, model.bias(q, dq), rtol=0, atol=1e-9)
 
 
 def test_a_payload_hangs_at_the_tip(side, states):
