@@ -9,7 +9,6 @@ import nbformat
 from IPython.display import HTML
 
 from labkit.course.authoring.layout import OUTCOMES, Course
-from labkit.course.identification import Identification
 
 from .claims import holds
 from .front import NOTEBOOKS, hours
@@ -172,15 +171,14 @@ def numbers_told() -> None:
     number("marking_minutes", whole, ".1f")
     number("marking_hours", whole * CLASS / 60.0, ".0f")
     number("defence_minutes", DEFENCE - MINUTES[TALK], ".1f")
-    functions = sum(p.points for name in NOTEBOOKS for p in COURSE.problems(name))
-    asked = [one for name in NOTEBOOKS for one in COURSE.predictions(name)]
-    own_arm = sum(one.points for one in asked if isinstance(one, Identification))
+    problems = [p for name in NOTEBOOKS for p in COURSE.problems(name)]
+    own_arm = sum(p.points for p in problems if "experiment" in p.outcomes)
     everything = sum(sum(_points(name)) for name in NOTEBOOKS)
-    number("points_functions", functions, "g")
-    core = sum(p.points for name in NOTEBOOKS for p in COURSE.problems(name) if p.core)
-    number("points_core", core, "g")
+    functions = sum(p.points for p in problems)
+    number("points_functions", functions - own_arm, "g")
+    number("points_core", sum(p.points for p in problems if p.core), "g")
     number("points_arm", own_arm, "g")
-    number("points_whys", everything - functions - own_arm, "g")
+    number("points_whys", everything - functions, "g")
     number("reading_hours", sum(READING.values()), ".0f")
     number("report_minutes", REPORT_MINUTES, ".1f")
     number("long_report_minutes", (LONG_REPORT - REPORT_MINUTES) / TEAM, ".1f")
@@ -190,9 +188,7 @@ def outcomes() -> HTML:
     """A table of the skills of a student after the course, with the evidence for each."""
     evidence: dict[str, list[str]] = {name: [] for name in OUTCOMES}
     for notebook in NOTEBOOKS:
-        found = [x for x in COURSE.predictions(notebook) if isinstance(x, Identification)]
-        asked = [*COURSE.problems(notebook), *found]
-        for outcome in {name for one in asked for name in one.outcomes}:
+        for outcome in {name for one in COURSE.problems(notebook) for name in one.outcomes}:
             evidence[outcome].append(notebook[:2])
     holds(all(evidence.values()), "every outcome has its evidence")
     rows = [(sentence, ", ".join(evidence[name])) for name, sentence in OUTCOMES.items()]

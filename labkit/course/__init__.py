@@ -7,23 +7,20 @@ from __future__ import annotations
 
 from .calling import NoAnswer
 from .handin import hand_in, progress
-from .identification import Identification
 from .judges import (
     AtMost,
     AtTip,
     Choose,
     Close,
     Curve,
-    Found,
     Gains,
     Letter,
-    Measured,
     Number,
     Response,
     TipTorque,
 )
 from .marking import fingerprint, mark
-from .own_arm import PUBLIC_ARMS, Bug, OwnArm, commanded, my_arm, my_bug
+from .own_arm import PUBLIC_ARMS, PUBLIC_BUGS, Bug, OwnArm, commanded, my_arm, my_bug
 from .predictions import Prediction, predict
 from .question import Call, Chase, Choice, Loop, Mistake, Question, Raised, Test, Tuned
 from .serialize import question_data, read_question
@@ -32,6 +29,7 @@ from .verdict import Outcome, TestResult, Verdict
 
 __all__ = [
     "PUBLIC_ARMS",
+    "PUBLIC_BUGS",
     "AtMost",
     "AtTip",
     "Bug",
@@ -41,12 +39,9 @@ __all__ = [
     "Choose",
     "Close",
     "Curve",
-    "Found",
     "Gains",
-    "Identification",
     "Letter",
     "Loop",
-    "Measured",
     "Mistake",
     "NoAnswer",
     "Number",

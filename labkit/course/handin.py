@@ -42,8 +42,8 @@ SILENT = "LABKIT_SUBMIT_CHECK"
 LARGEST = 10.0
 """Size in megabytes above which a learning platform may reject a notebook."""
 _FOREIGN = "labkit-foreign"
-_BEGIN, _END = (f'__import__("{__name__}", fromlist=["_"]).{name}()' for name in ("_begin", "_end"))
-"""The cells around those of the notebook, which bind no name in it."""
+_END = f'__import__("{__name__}", fromlist=["_"])._end()'
+"""The cell below those of the notebook, which binds no name in it."""
 
 
 def hand_in(name: str) -> None:
@@ -158,7 +158,7 @@ def submit_check(path: Path, seconds: float = 600.0) -> Tried:
     name, asked = data["assignment"], [x["name"] for x in data["questions"]]
     code = [cell["source"] for cell in cells if cell["cell_type"] == "code"]
     ran, stopped = _run(code, folder / FILE, seconds)
-    errors, own = _errors(ran)
+    errors = _errors(ran)
     at_check = {question: last_verdict(ran[:-1], question) for question in asked}
     verdicts = {question: last_verdict(ran[-1:], question) for question in asked}
     problems, notes = [], []
@@ -167,7 +167,7 @@ def submit_check(path: Path, seconds: float = 600.0) -> Tried:
     problems += filter(None, [_too_large(path)])
     problems += [stopped] if stopped else errors
     for question, verdict in verdicts.items() if not stopped else ():
-        problems += _gaps(question, at_check[question], verdict, question in own)
+        problems += _gaps(question, at_check[question], verdict)
     none = [q for q, v in verdicts.items() if v and v.outcome is Outcome.NOT_ATTEMPTED]
     notes += [f"not answered: {', '.join(none)}"] if none else []
     for output in ran[-1]["outputs"]:
@@ -185,13 +185,9 @@ def _too_large(path: Path) -> str:
     return says if size > LARGEST else ""
 
 
-def _gaps(
-    question: str, at_check: Verdict | None, at_end: Verdict | None, measured: bool
-) -> Iterator[str]:
+def _gaps(question: str, at_check: Verdict | None, at_end: Verdict | None) -> Iterator[str]:
     """What must be corrected about an answer, by the verdicts at its check and at the end."""
-    if at_end is None and measured:
-        yield f"{question} comes from runs of your arm, which marking does not repeat; type a value"
-    elif at_end is None:
+    if at_end is None:
         yield f"no cell defines {question}; lk.restore({question!r}) brings its cell back"
     elif at_end.withheld:
         yield head(at_end)
@@ -203,12 +199,12 @@ def _gaps(
 
 
 def _run(code: Sequence[str], checks: Path, seconds: float) -> tuple[list[dict[str, Any]], str]:
-    """The cells after a run in a fresh kernel, between two of ours, and why it stopped, if so."""
+    """The cells after a run in a fresh kernel, one of ours the last, and why it stopped, if so."""
     from nbclient import NotebookClient
     from nbclient.exceptions import CellTimeoutError, DeadKernelError
     from nbformat import v4
 
-    made = v4.new_notebook(cells=[v4.new_code_cell(x) for x in (_BEGIN, *code, _END)])
+    made = v4.new_notebook(cells=[v4.new_code_cell(x) for x in (*code, _END)])
     stopped = ""
     with tempfile.TemporaryDirectory() as folder:
         shutil.copy(checks, folder)
@@ -229,28 +225,19 @@ def _run(code: Sequence[str], checks: Path, seconds: float) -> tuple[list[dict[s
     return made.cells, stopped
 
 
-def _errors(cells: Sequence[Mapping[str, Any]]) -> tuple[list[str], set[str]]:
-    """A sentence for each cell that raised, and the names that runs of one's own arm would bind.
-
-    These runs are not made here, as they are not made when the notebook is marked.
-    """
-    said, own = list[str](), set[str]()
+def _errors(cells: Sequence[Mapping[str, Any]]) -> Iterator[str]:
+    """A sentence for each cell that raised."""
     for cell in cells:
         for output in cell["outputs"]:
             if output["output_type"] != "error":
                 continue
             kind, text = str(output["ename"]), str(output["evalue"])
-            missing = re.match(r"name '(\w+)' is not defined", text)
-            if kind == NoOwnArm.__name__ or (missing and missing[1] in own):
-                own |= {*analyse(cell["source"])["binds"]}
-                continue
             beside = "; only the notebook is handed in, without the files beside it"
             why = beside if kind in ("ModuleNotFoundError", "FileNotFoundError") else ""
-            said.append(
+            yield (
                 f"the cell that begins with `{_first_line(cell['source'])}` ends with an error "
                 f"({textwrap.shorten(f'{kind}: {text}', 120, placeholder=' ...')}){why}"
             )
-    return said, own
 
 
 def _first_line(source: str) -> str:
@@ -275,20 +262,6 @@ def _texts(
         elif count < WORDS[0]:
             notes.append(f"{name} has {words_in_all(count)}; it needs at least {WORDS[0]}")
     return problems, notes
-
-
-class NoOwnArm(LabkitError):
-    """A cell runs the student's own arm, which is not done when a notebook is tried or marked."""
-
-
-def _begin() -> None:
-    """Before the first cell: withdraw what the grader does not have."""
-    import labkit
-
-    def none(*_: Any, **__: Any) -> None:
-        raise NoOwnArm("your own arm does not run while the notebook is tried")
-
-    vars(labkit).update(my_arm=none, my_bug=none)
 
 
 def _end() -> None:

@@ -18,7 +18,6 @@ from ..robot import robot
 from ..servo import Memory, Motion
 from ..shapes import Array, as_array, as_gains
 from ..trajectory import PoseSample, Sample
-from .own_arm import CAUSES, Bug
 from .verdict import Difference, Kind, Value
 
 COMMITTED = "committed before the arm answers"
@@ -26,9 +25,6 @@ COMMITTED = "committed before the arm answers"
 
 UNSAID = "?"
 """What stands in the place of a prediction until a student writes one."""
-
-OWN_ARM = "it is right for your own arm"
-"""The test of a number that a student measured; only the grader knows the arm."""
 
 
 def letters(said: Any) -> str:
@@ -46,19 +42,7 @@ def shown(said: Any) -> str:
         return "an integer of thousands of digits"
 
 
-class RightOrWrong:
-    """The base of judges without a tolerance: an answer is right or wrong, equal or not."""
-
-    def __call__(self, answer: Any, expected: Any) -> Difference | None:
-        """None if the answer is right, else how it differs."""
-        raise NotImplementedError
-
-    def same(self, answer: Any, other: Any) -> bool:
-        """Whether two answers, right or wrong, are the same."""
-        return np.array_equal(answer, other)
-
-
-class _Form(RightOrWrong):
+class _Form:
     """The base of the three forms: a prediction of the right form is accepted, whatever it says."""
 
     def problem(self, said: Any) -> str:
@@ -74,7 +58,7 @@ class _Form(RightOrWrong):
         """Whether two predictions are the same."""
         if said := letters(answer):
             return said == letters(other)
-        return super().same(answer, other)
+        return np.array_equal(answer, other)
 
 
 @dataclass(frozen=True)
@@ -179,7 +163,7 @@ Form = Choose | Number | Curve
 
 
 @dataclass(frozen=True)
-class Letter(RightOrWrong):
+class Letter(_Form):
     """The judge of one letter, which is not told; where `UNSAID` is expected, any one will do.
 
     Attributes:
@@ -197,40 +181,6 @@ class Letter(RightOrWrong):
         if expected in (said, UNSAID):
             return None
         return Difference(Kind.REFUSED, found=f"it is not {said}")
-
-
-@dataclass(frozen=True)
-class Measured(RightOrWrong):
-    """The judge of a measured number, which must be within a tolerance of the arm's.
-
-    Where no number is expected, every plausible number is accepted.
-
-    Attributes:
-        of: The name of the number, a field of `OwnArm`.
-        unit: Its unit.
-        least: The smallest plausible value.
-        most: The largest plausible value.
-        tolerance: Largest difference, in the same unit.
-    """
-
-    of: str
-    unit: str
-    least: float
-    most: float
-    tolerance: float
-
-    def __call__(self, answer: Any, expected: Any) -> Difference | None:
-        """None if the number is near enough, else how it differs."""
-        found = Number(self.unit, self.least, self.most).problem(answer)
-        if found:
-            return Difference(Kind.REFUSED, found=found)
-        if expected is None or abs(answer - expected) <= self.tolerance:
-            return None
-        return Difference(Kind.NUMBERS, expected=float(expected), found=float(answer))
-
-    def expected(self, arm: object) -> float:
-        """The right number for a student's `OwnArm`."""
-        return float(getattr(arm, self.of))
 
 
 FEW = 9
@@ -369,7 +319,7 @@ class AtMost:
 
 
 @dataclass(frozen=True)
-class Gains(RightOrWrong):
+class Gains:
     """The judge of the form of a pair (kp, kd); a run then tells how good the gains are.
 
     Each gain is one number or one for each joint, and no number is negative.
@@ -583,42 +533,7 @@ def as_expected(known: Any, expected: Any) -> Any:
     return known
 
 
-CHOICE = Choose(CAUSES)
-NEAR = 0.15
-"""Tolerance of the time at which a mistake is first visible, in [s]."""
-
-
-@dataclass(frozen=True)
-class Found(RightOrWrong):
-    """The judge of a diagnosis of a misbehaving run: the cause and when it is first visible.
-
-    Attributes:
-        number: Index of the run, from 0.
-    """
-
-    number: int
-
-    def __call__(self, answer: Any, expected: Any) -> Difference | None:
-        """None if the diagnosis is right, or if it is plausible and nothing is expected."""
-        try:
-            cause, seconds = answer
-            seconds = float(seconds)
-        except (TypeError, ValueError, OverflowError):
-            what = 'a letter and a time in s, such as ("b", 1.25)'
-            return Difference(Kind.REFUSED, found=f"it is {shown(answer)}; write {what}")
-        if found := CHOICE.problem(cause):
-            return Difference(Kind.REFUSED, found=found)
-        if expected is None or (cause == expected[0] and abs(seconds - expected[1]) <= NEAR):
-            return None
-        return Difference(Kind.VALUE, expected=str(expected), found=str(answer))
-
-    def expected(self, arm: Any) -> tuple[str, float]:
-        """The right diagnosis for a student's `OwnArm`."""
-        bug: Bug = arm.bugs[self.number]
-        return bug.cause, bug.first_visible()
-
-
-Judge = Close | Response | Gains | AtTip | Form | Letter | Measured | Found
+Judge = Close | Response | Gains | AtTip | Form | Letter
 
 
 def accepts(judge: Judge, answer: Any, expected: Any) -> bool:

@@ -14,7 +14,7 @@ import numpy as np
 from ..control import COMMANDS
 from ..errors import ControllerError, listed
 from ..shapes import Array
-from .judges import COMMITTED, OWN_ARM
+from .judges import COMMITTED
 from .question import Loop, Question, Test, Tuned, in_brief, in_points, is_shortened
 from .source import name_in_notebook
 from .verdict import Difference, Kind, Misconception, Outcome, TestResult, Value, Verdict
@@ -42,11 +42,6 @@ def head(verdict: Verdict) -> str:
     says = outcome_word(verdict)
     if verdict.withheld:
         says += f": {why_not_counted(verdict.withheld)}"
-    elif awaits_marking(verdict):
-        return (
-            f"{verdict.name}: a possible answer. When it is marked, it earns {points} if it is "
-            "right for your own arm."
-        )
     elif verdict.outcome is Outcome.RIGHT and not verdict.complete:
         return (
             f"{verdict.name}: {says} on all cases here; {points} if the instructor's cases agree."
@@ -62,12 +57,6 @@ def outcome_word(verdict: Verdict) -> str:
 def is_prediction(verdict: Verdict) -> bool:
     """Whether the verdict is on a prediction, which earns its point for being made."""
     return [test.name for test in verdict.tests] == [COMMITTED]
-
-
-def awaits_marking(verdict: Verdict) -> bool:
-    """Whether only marking can tell if the answer is right, because it depends on one's own arm."""
-    right = verdict.outcome is Outcome.RIGHT and not verdict.complete
-    return right and any(test.name == OWN_ARM for test in verdict.tests)
 
 
 def why_not_counted(withheld: Iterable[str]) -> str:
@@ -140,7 +129,7 @@ def message(
             hints = hints[:-1]  # the last one, which is nearly the answer, follows an attempt
         case Outcome.RIGHT:
             hints = ()
-            helps += [] if verdict.complete or awaits_marking(verdict) else _unseen(question)
+            helps += [] if verdict.complete else _unseen(question)
         case Outcome.NOT_COUNTED:
             it = "it" if len(verdict.withheld) == 1 else "them"
             helps.append(f"You may use {it} elsewhere in the notebook; here, write {it} yourself.")

@@ -24,7 +24,6 @@ from .source import analyse
 from .verdict import Verdict
 
 if TYPE_CHECKING:
-    from .identification import Identification
     from .predictions import Prediction
 
 FILE = "checks.json"
@@ -215,13 +214,13 @@ def manifest(source: Notebook) -> list[dict[str, Any]]:
 def source_notebook(
     path: Path,
     questions: Mapping[str, Question],
-    predictions: Sequence[Prediction | Identification] = (),
+    predictions: Sequence[Prediction] = (),
 ) -> Notebook:
     """The notebook that nbgrader takes as its source, with the solutions inside.
 
     In the source text, a code cell with ``question="name"`` holds a stub whose solution region
-    imports the answer.  An empty code cell with ``predict="name"`` or ``find_out="name"`` marks
-    the place of a value that students write down.  A Markdown cell with ``why="name"``, or
+    imports the answer.  An empty code cell with ``predict="name"`` marks the place of
+    a prediction.  A Markdown cell with ``why="name"``, or
     ``task="name" points=3`` for a longer text, asks for a text and holds a model answer in a
     solution region.  ``setup=true`` marks cells that students should leave alone; the code of
     cells with what `FOLDED` finds is folded.  The brief before a stub and the check after it are
@@ -230,7 +229,7 @@ def source_notebook(
     Args:
         path: The source, in jupytext's percent format.
         questions: The questions of the notebook, by name.
-        predictions: Its predictions and identifications.
+        predictions: Its predictions.
 
     Raises:
         LabkitError: Stubs and questions do not match.
@@ -278,7 +277,7 @@ def source_notebook(
 
 FOLDED = re.compile(r"^(import|from) |\buse\(|\bplt\.|\blk\.plotting\.", re.MULTILINE)
 """What is in cells whose code is folded at first: set-up, stand-ins and plotting."""
-_ASKS = ("question", "predict", "find_out", "why", "task")
+_ASKS = ("question", "predict", "why", "task")
 
 
 def _question_cells(question: Question, stub: Cell) -> Iterator[dict[str, Any]]:
@@ -289,7 +288,7 @@ def _question_cells(question: Question, stub: Cell) -> Iterator[dict[str, Any]]:
     yield _check(name, question.points)
 
 
-def _value_cells(asked: Prediction | Identification) -> Iterator[dict[str, Any]]:
+def _value_cells(asked: Prediction) -> Iterator[dict[str, Any]]:
     """The three cells of a value; the text under `BLANK` is the answer cell in students' copies.
 
     The check of a prediction is there for nbgrader, and out of sight: `predict` says the same.

@@ -30,12 +30,10 @@ from .advice import line_of, still_raises
 from .calling import LocalFunction, captured, copied
 from .card import card, picture
 from .causes import diagnosed
-from .identification import on_the_public_arm
 from .judges import UNSAID
 from .marking import Mismatch, mark, not_counted, try_public
-from .messages import HEADS, Message, awaits_marking, message, wrapped
+from .messages import HEADS, Message, message, wrapped
 from .notebook import read_checks, verdict_metadata
-from .own_arm import DEMO, normalised
 from .question import Call, Question
 from .serialize import read_question
 from .source import analyse, withheld_tools
@@ -222,9 +220,6 @@ def check(name: str, function: Any = UNSAID) -> float:
     verdict, printed, found = desk().verdict(name, function)
     stub = verdict.outcome is Outcome.NOT_ATTEMPTED
     more = [still_raises(function)] if stub else []
-    handle = shell() and str(shell().user_ns.get("HANDLE"))
-    if awaits_marking(verdict) and handle and normalised(handle) == DEMO:
-        verdict, *more = on_the_public_arm(question, verdict, function)
     wrong = desk().wrong_dependencies(name, function)
     says = message(question, verdict, printed, wrong, cure=cure_is_due(verdict, function))
     says = replace(says, helps=[*filter(None, more), *says.helps])
@@ -356,6 +351,5 @@ def say(says: Message, verdict: Verdict, found: Mismatch | None) -> None:
         return
     from IPython.display import display
 
-    outcome = Outcome.NOT_TRIED if awaits_marking(verdict) else verdict.outcome
-    shown = card(says, outcome, found and picture(found))
+    shown = card(says, verdict.outcome, found and picture(found))
     display(shown, metadata=verdict_metadata(verdict), raw=True)

@@ -160,7 +160,7 @@ def _is_up_to_date(
     """Whether the same submission, release and engine led to a result, and a sandbox if asked."""
     data, _, _ = submission.read()
     isolated = not (options.isolated and before.isolation.startswith("none"))
-    return isolated and before.hashes == hashes(data, bundle.of_student(submission.student))
+    return isolated and before.hashes == hashes(data, bundle)
 
 
 def changes(found: Sequence[GradedSubmission]) -> Iterator[str]:

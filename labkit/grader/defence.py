@@ -173,7 +173,7 @@ def _accepted(course: Course, student: str) -> Iterator[Accepted]:
             if isinstance(result, Failure):
                 raise LabkitError(f"{name}: {result.why}")
             right = {q.verdict.name: q for q in result.questions if q.verdict.right}
-            bundle = Bundle.of(course, name).of_student(student)
+            bundle = Bundle.of(course, name)
             for question in bundle.questions:
                 if question.name in right and edits(right[question.name].source):
                     yield Accepted(bundle, question, right[question.name], tuple(right))

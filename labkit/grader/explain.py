@@ -11,9 +11,7 @@ from dataclasses import replace
 
 from ..course.authoring.bundle import Bundle
 from ..course.authoring.layout import Course
-from ..course.judges import Found, Measured
 from ..course.messages import summary, test_line, wrapped
-from ..course.own_arm import DEMO
 from ..course.serialize import question_data
 from ..course.verdict import Outcome
 from ..errors import LabkitError, UnknownName
@@ -47,7 +45,7 @@ def explain(course: Course, assignment: str, student: str, question: str) -> str
         LabkitError: There is no mark to explain.
         NoIsolation: No sandbox can be made on this machine.
     """
-    bundle = Bundle.of(course, assignment).of_student(student)
+    bundle = Bundle.of(course, assignment)
     by_hand = [cell["grade_id"] for cell in bundle.data["cells"] if "points" in cell]
     if question in by_hand:
         raise LabkitError(f"a person marks {question}, in formgrader: Manual Grading, {assignment}")
@@ -79,12 +77,6 @@ def _explained(
     given = "no mark" if line.score is None else f"{line.score:g}"
     origin = f" ({line.origin})" if line.origin else ""
     yield f"{student}, {name}: {given} of {line.points:g}{origin}"
-    judge = next(q.judge for q in bundle.questions if q.name == name)
-    if isinstance(judge, Measured | Found):
-        own = bundle.arms.arm(student) is not None
-        arm = f"the arm that the course gave {student}" if own else f'the public arm "{DEMO}"'
-        near = f", within {judge.tolerance:g} {judge.unit}" if isinstance(judge, Measured) else ""
-        yield wrapped(f"Judged by {arm}{near}.")
     yield "\nWhat the student has read, and may be shown:"
     yield from (wrapped(f"Note: {note}.") for note in before.notes)
     yield from map(wrapped, summary(was))

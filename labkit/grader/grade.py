@@ -56,7 +56,6 @@ def grade(
         The result; nothing that a notebook does raises an exception here.
     """
     began = time.perf_counter()
-    bundle = bundle.of_student(student)
     try:
         cells = parse(data, sandbox, limits)
         todo = plan(cells, bundle.data["cells"])

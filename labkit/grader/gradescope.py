@@ -21,7 +21,6 @@ from zipfile import ZIP_DEFLATED, ZipFile, ZipInfo
 from ..course.authoring.bundle import Bundle
 from ..course.authoring.layout import Course
 from ..course.messages import summary
-from ..course.own_arm import HANDLES, Arms
 from .clean import clean_line
 from .files import write
 from .grade import grade, rejection
@@ -64,36 +63,30 @@ def _grade(place: Path, results: Path) -> None:
     source = Course(place / "source")
     (path,) = source.bundle.glob("*.json")
     bundle = Bundle.of(source, path.stem)
-    student, says = _student(place / "submission_metadata.json", bundle)
+    student = _student(place / "submission_metadata.json")
     data, note, why = Submission(student, path.stem, place / "submission").read()
     with Sandbox(imports(bundle.data["cells"]), isolation=Isolation.USER) as sandbox:
         if why:
             result = rejection(why, student, bundle, sandbox.level)
         else:
             result = grade(data, student, bundle, sandbox, LIMITS, note)
-    write(results, json.dumps(gradescope_results(bundle, result, says)))
+    write(results, json.dumps(gradescope_results(bundle, result)))
     print(result, result.isolation, sep="\n")
 
 
-def _student(path: Path, bundle: Bundle) -> tuple[str, str]:
-    """The address of the student who handed in, and a remark if it is not known."""
+def _student(path: Path) -> str:
+    """The address of the student who handed in."""
     users = json.loads(path.read_text()).get("users", []) if path.exists() else []
-    mails = [clean_line(str(user.get("email", ""))).casefold() for user in users] or [""]
-    known = [mail for mail in mails if mail in bundle.arms.handles]
-    unknown = (
-        f"The course's list has no address {mails[0]}, so answers about your own arm were "
-        'judged by the public arm "demo"; tell your instructor.'
-    )
-    return (known or mails)[0], unknown if bundle.arms.handles and not known else ""
+    mails = [clean_line(str(user.get("email", ""))).casefold() for user in users]
+    return (mails or [""])[0]
 
 
-def gradescope_results(bundle: Bundle, result: Result, says: str = "") -> dict[str, Any]:
+def gradescope_results(bundle: Bundle, result: Result) -> dict[str, Any]:
     """What Gradescope reads: points and words for each question, then what a person marks.
 
     Args:
         bundle: What was asked.
         result: The result of grading.
-        says: A remark on the whole submission.
     """
     tests: list[dict[str, Any]] = []
     for answer in result.questions:
@@ -106,13 +99,13 @@ def gradescope_results(bundle: Bundle, result: Result, says: str = "") -> dict[s
         tests.append({"name": cell["grade_id"], "output": said, "visibility": "visible"})
     look = f"Isolated by: {result.isolation}"
     tests.append({"name": "for the instructor", "output": look, "visibility": "hidden"})
-    lines = [says, *(f"Note: {note}." for note in result.notes)]
+    lines = [f"Note: {note}." for note in result.notes]
     lines += [f"It could not be graded: {result.rejected}."] if result.rejected else []
     lines += [f"Cell {x['cell'] + 1} failed: {x['error']}" for x in result.cells]
     return {"score": result.score, "output": "\n".join(filter(None, lines)), "tests": tests}
 
 
-def autograder(course: Course, assignment: str, to: Path) -> list[str]:
+def autograder(course: Course, assignment: str, to: Path) -> None:
     """Write the zip of an assignment: labkit, the release's bundle with hidden cases, two scripts.
 
     Args:
@@ -120,24 +113,15 @@ def autograder(course: Course, assignment: str, to: Path) -> list[str]:
         assignment: The assignment.
         to: The file to write.
 
-    Returns:
-        Students whose own arm Gradescope cannot find, as the roster has no address for them.
-
     Raises:
         LabkitError: The assignment was not released, the course is not the whole repository, or
             the wheel could not be built.
     """
     from .pages import TEMPLATES  # the container has no package of instructors
-    from .roster import read_roster
     from .student_zip import wheel
 
     bundle = Bundle.of(course, assignment)
     files = {f"build/course/bundle/{assignment}.json": json.dumps(bundle.data)}
-    handles, roster = bundle.arms.handles, read_roster(course).students
-    own = bundle.of_student(next(iter(handles), "")) is not bundle  # one student stands for all
-    if own:
-        by_mail = {x.email.casefold(): handles[x.id] for x in roster if x.email and x.id in handles}
-        files[HANDLES] = Arms(bundle.arms.key, by_mail).text()
     to.parent.mkdir(parents=True, exist_ok=True)
     with tempfile.TemporaryDirectory() as folder, ZipFile(to, "w", ZIP_DEFLATED) as archive:
         os.chmod(to, 0o600)
@@ -151,7 +135,6 @@ def autograder(course: Course, assignment: str, to: Path) -> list[str]:
             script = ZipInfo(name, (2026, 1, 1, 0, 0, 0))
             script.external_attr = 0o755 << 16
             archive.writestr(script, (TEMPLATES / f"gradescope_{template}.sh").read_text())
-    return [str(x) for x in roster if own and x.id in handles and not x.email]
 
 
 if __name__ == "__main__":

@@ -21,7 +21,6 @@ from ..course.notebook import BLANK, grade_id, manifest
 from ..course.source import analyse
 from ..errors import LabkitError
 from .gradebook import nbgrader_api, open_gradebook, reason
-from .roster import lay_arms
 
 FORBIDDEN = (
     "BEGIN SOLUTION",
@@ -77,7 +76,6 @@ def release(course: Course, name: str, seed: int) -> Released:
     write(made)
     generate(course, name)
     _verify(course.release / name)
-    lay_arms(course, name)
     by_hand = {m["grade_id"]: m["points"] for m in manifest(made.source) if "points" in m}
     return Released(name, len(made.questions), _points(made), by_hand)
 

@@ -21,15 +21,12 @@ from itertools import chain, count
 from pathlib import Path
 
 from ..course.authoring.layout import Course
-from ..course.own_arm import DEMO, HANDLES, Arms
-from ..course.own_arm import FILE as ARMS
 from ..errors import LabkitError
 from .clean import clean_line, few, from_no_formula, how_many, no_formula, safe_name
 from .files import write
 from .gradebook import open_gradebook
 from .rules import FILE as RULES
 from .rules import read_rules
-from .seeds import key_of
 
 FILE = "course_private/roster.csv"
 HEADS = {
@@ -149,7 +146,6 @@ def import_list(course: Course, file: Path, teams: str = "") -> list[str]:
     roster, listed = _merged(before, rows)
     save_roster(course, roster)
     tell_gradebook(course, roster)
-    give_arms(course, roster, key_of(course, "arms"))
     new = [str(one) for one in roster.students if not before.get(one.id)]
     absent = [str(one) for one in before.students if one.id not in listed]
     says = [f"{FILE}: {how_many(len(roster.students), 'student')}, {len(new)} of them new"]
@@ -307,45 +303,3 @@ def tell_gradebook(course: Course, roster: Roster) -> None:
             known = {"lms_user_id": one.lms_user_id or one.id_number, "email": one.email}
             known |= {"first_name": one.first_name, "last_name": one.last_name}
             book.update_or_create_student(one.id, **{k: v or None for k, v in known.items()})
-
-
-def give_arms(course: Course, roster: Roster, key: str) -> None:
-    """Record which student has which arm, and put the arms beside released notebooks.
-
-    The students of a team share one arm. An arm depends only on the key and the handle, so it
-    stays the same when others join the class.
-
-    Args:
-        course: The course.
-        roster: The students of the course.
-        key: The term's key for arms.
-    """
-    handles = {student.id: student.team or student.id for student in roster.students}
-    write(course.root / HANDLES, Arms(key, handles).text())
-    for name in course.names():
-        lay_arms(course, name)
-
-
-def lay_arms(course: Course, name: str) -> None:
-    """Put the arms beside a released notebook that asks about the student's own arm."""
-    arms, folder = Arms.of(course.root), course.release / name
-    if arms.handles and _asks(course, name) and folder.is_dir():
-        write(folder / ARMS, arms.table())
-        (folder / ARMS).chmod(0o644)
-
-
-def without_arms(course: Course, names: Sequence[str]) -> str:
-    """A warning about notebooks that ask about one's own arm but have only the public arm."""
-    lacking = [x for x in names if _asks(course, x) and not (course.release / x / ARMS).exists()]
-    if not lacking:
-        return ""
-    return (
-        f"{', '.join(lacking)}: every student has the public arm {DEMO!r}; for an arm each, import "
-        "the list of students (labkit roster LIST.csv), then make the zip again"
-    )
-
-
-def _asks(course: Course, name: str) -> bool:
-    """Whether a notebook has a question about one's own arm."""
-    text = course.notebook_source(name).read_text(encoding="utf-8")
-    return bool(re.search(r"\bmy_(arm|bug)\(", text))

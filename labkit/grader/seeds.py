@@ -1,7 +1,7 @@
 """The secret of a term, and what is derived from it: one key for each purpose.
 
 The secret has 128 random bits and stays in `course_private`.  A key tells neither the secret nor
-another key, so what is handed out, such as the students' own arms, gives nothing else away.
+another key, so what is handed out gives nothing else away.
 """
 
 from __future__ import annotations
@@ -17,7 +17,7 @@ from .files import write
 
 
 def key_of(course: Course, purpose: str) -> str:
-    """The key for a purpose, such as "arms", as 64 digits: HMAC-SHA256 under the term's secret.
+    """The key for a purpose, such as "seed", as 64 digits: HMAC-SHA256 under the term's secret.
 
     If no term was begun, the public seed takes the place of the secret.
 

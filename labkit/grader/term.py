@@ -11,8 +11,6 @@ from datetime import UTC, datetime
 from pathlib import Path
 
 from ..course.authoring.layout import Course
-from ..course.own_arm import FILE as ARMS
-from ..course.own_arm import HANDLES
 from ..errors import LabkitError
 from . import collect, roster
 from .files import write
@@ -24,7 +22,7 @@ from .submission import is_name
 PERSONAL_FILES = (
     *("submitted", "autograded", "feedback", "results", "gradebook.db", "build/course/bundle"),
     *("build/course/defence", "build/course/explain"),
-    *(collect.FOLDER, roster.FILE, HANDLES, collect.PARTICIPANTS, PSEUDONYMS),
+    *(collect.FOLDER, roster.FILE, collect.PARTICIPANTS, PSEUDONYMS),
 )
 """The files that belong to one term, with students' names or keys to them, and hidden cases.
 
@@ -37,7 +35,7 @@ _OF_A_STUDENT = (
 )
 """One student's files and folders within a term."""
 _OF_THE_CLASS = (
-    *(RULES, "gradebook.db", "course_private/*.*", "assignments/*/arms.json"),
+    *(RULES, "gradebook.db", "course_private/*.*"),
     "feedback/*/*/*.html",
 )
 """Files that may name a student beside others."""
@@ -76,11 +74,8 @@ def new_term(course: Course, names: Sequence[str] = (), even_with_work: bool = F
 def archive(course: Course) -> Path | None:
     """Move the personal files of the last term to an archive; None if there are none.
 
-    The archive has the layout of the course.  The rules are copied, as most of them are used again;
-    the students' arms are deleted from the students' notebooks.
+    The archive has the layout of the course.  The rules are copied, as most of them are used again.
     """
-    for path in course.release.glob(f"*/{ARMS}"):
-        path.unlink()
     there = [name for name in PERSONAL_FILES if (course.root / name).exists()]
     if not there:
         return None

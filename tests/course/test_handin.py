@@ -166,7 +166,6 @@ GAPS = {
     "an error in an experiment": ([RIGHT, CHECK, "{q}(1)[0]"], "`{q}(1)[0]` ends with an error"),
     "another magic": (["%%bash\ndef {q}(x): return 2 * x"], "no cell defines {q}"),
     "a withheld tool": (["def {q}(x): return np.multiply(2, x)", CHECK], "{q}: not counted"),
-    "runs of one's own arm": (["{q} = lk.my_arm().plant.payload"], "{q} comes from runs of your arm"),
 }  # fmt: skip
 """Cells that leave a gap, and what is said of it."""
 

@@ -9,7 +9,6 @@ from labkit.course import (
     Choose,
     Close,
     Curve,
-    Found,
     Number,
     Outcome,
     Prediction,
@@ -117,4 +116,3 @@ def test_a_number_of_any_size_is_refused_in_a_sentence(said):
         assert len(form.problem(said)) < 500
         asked = Prediction("x", "?", form, right).question()
         assert mark(asked, LocalFunction(said)).earned == 0.0
-    assert Found(0)(("b", said), None) and Found(0)(said, None)

@@ -81,28 +81,6 @@ def test_noise_costs_nothing(marks, solved):
     assert marks(solved).score == FULL
 
 
-def test_a_cell_that_runs_the_students_own_arm_is_not_said_to_fail(marks, solved):
-    """Their arm is not here: that cell and those that need its results are left out, no others."""
-    for source in (
-        "nobody",
-        "speed + nobody",
-        "speed = log.dq",
-        "import labkit as lk\nmine = lk.my_arm('ada')\nlog = mine.state()",
-    ):
-        add(solved, source)  # each before the last
-    result = marks(solved)
-    assert result.score == FULL
-    (failed,) = result.cells
-    assert failed["error"].startswith("name 'nobody' is not defined")
-
-
-def test_an_answer_from_the_students_own_arm_is_told_to_be_typed(marks, solved):
-    """Not that the notebook does not define it, for it does."""
-    put(solved, "circle", "import labkit as lk\ncircle = lk.my_arm('ada').state")
-    circle = verdict(marks(solved), "circle")
-    assert "comes from runs of your arm, which are not made here" in why(circle.tests[0])
-
-
 def test_an_answer_may_lean_on_cells_of_any_kind(marks, solved):
     """Helpers in own cells and in walk-through cells, above and below, are there when needed."""
     own = "".join(cell_of(solved, "circle")["source"]).replace("def circle", "def mine")

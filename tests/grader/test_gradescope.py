@@ -10,7 +10,6 @@ import subprocess
 import sys
 import time
 import zipfile
-from types import SimpleNamespace
 
 import pytest
 from autograder import as_root, graded, packed, unpacked
@@ -19,11 +18,9 @@ from made import NAME, result_of
 
 from labkit.__main__ import FOR_INSTRUCTORS, main
 from labkit.course.authoring.bundle import Bundle
-from labkit.course.own_arm import HANDLES, Arms
 from labkit.grader import gradescope
 from labkit.grader.grade import grade
 from labkit.grader.gradescope import gradescope_results
-from labkit.grader.roster import Roster, Student, save_roster
 from labkit.grader.sandbox.isolation import processes_of
 from labkit.grader.sandbox.launch import Sandbox
 from labkit.grader.sandbox.limits import Limits
@@ -125,36 +122,6 @@ def test_a_file_that_cannot_be_graded_says_why(course):
     refused = result_of(course, "ada", rejected="the file is empty")
     found = gradescope_results(Bundle.of(course, NAME), refused)
     assert found["score"] == 0 and "the file is empty" in found["output"]
-
-
-@pytest.mark.parametrize("mail, known", [("ADA@example.org", True), ("eve@example.org", False)])
-def test_an_arm_of_ones_own_is_known_by_the_address(tmp_path, bundle, mail, known):
-    """Of a group the member counts whom the list knows; an address that it lacks is named."""
-    path = tmp_path / "metadata.json"
-    path.write_text(json.dumps({"users": [{"email": "bob@example.org"}, {"email": mail}]}))
-    bundle = Bundle(bundle.data, Arms("1", {"ada@example.org": "ada"}))
-    student, says = gradescope._student(path, bundle)
-    assert (student == "ada@example.org", not says) == (known, known)
-
-
-def test_the_zip_knows_whose_arm_it_is_by_the_address(course, tmp_path, monkeypatch):
-    """Where a question is about one's own arm; a student without an address is named."""
-    whole = Bundle.of(course, NAME)
-
-    class Own(SimpleNamespace):
-        def of_student(self, student):
-            return Own(**vars(self))
-
-    own = Own(data=whole.data, arms=Arms("7", {"ada": "red", "bob": "red"}))
-    people = Roster((Student("ada", email="Ada@example.org"), Student("bob"), Student("eve")))
-    monkeypatch.setattr(gradescope.Bundle, "of", lambda *_: own)
-    save_roster(course, people)
-    monkeypatch.setattr("labkit.grader.student_zip.wheel", lambda root, to: None)
-    (course.root / "constraints.txt").touch()
-    unknown = gradescope.autograder(course, NAME, tmp_path / "a.zip")
-    assert unknown == ["bob"]
-    found = json.loads(zipfile.ZipFile(tmp_path / "a.zip").read(HANDLES))
-    assert found == {"key": "7", "handles": {"ada@example.org": "red"}}
 
 
 def test_the_container_needs_no_package_of_instructors():

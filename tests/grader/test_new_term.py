@@ -65,12 +65,11 @@ def test_a_public_seed_is_said_to_be_public(course, capsys):
 def test_the_next_term_archives_the_names(course):
     """What holds names moves into one folder."""
     (course.submitted / "ada" / CURVES).mkdir(parents=True)
-    page, arms = course.build / "explain/ada/bang_bang.html", course.release / "03/arms.json"
-    for file in (page, arms):
-        file.parent.mkdir(parents=True)
-        file.write_text("{}")
+    page = course.build / "explain/ada/bang_bang.html"
+    page.parent.mkdir(parents=True)
+    page.write_text("{}")
     folder = term.archive(course)
-    assert not course.submitted.exists() and not page.exists() and not arms.exists()
+    assert not course.submitted.exists() and not page.exists()
     assert (Course(folder).build / "explain/ada" / page.name).exists()
     assert (folder / "submitted" / "ada").is_dir()
 

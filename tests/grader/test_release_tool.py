@@ -76,7 +76,6 @@ def test_stubs_and_questions_must_match(tmp_path):
     [
         ("question", "twice_the_time", r"PROBLEMS of problems\.py"),
         ("predict", "circle", r"PREDICTIONS of predictions\.py"),
-        ("find_out", "circle", r"PREDICTIONS of predictions\.py"),
     ],
 )
 def test_what_is_in_the_other_list_is_refused(tmp_path, key, name, listed):

@@ -7,7 +7,6 @@ from downloaded import bare_course
 from hypothesis import given
 from hypothesis import strategies as st
 
-from labkit.course.own_arm import Arms
 from labkit.errors import LabkitError
 from labkit.grader.clean import LONGEST, safe_name
 from labkit.grader.gradebook import open_gradebook
@@ -58,10 +57,6 @@ def test_a_list_of_moodles(course, encoding, mark):
     ada, grace = read_roster(course).students
     assert ada == Student("Ada-Lovelace", "Ada", "Lovelace", "ada@x.test", id_number="4711")
     assert (grace.id, grace.team) == ("Grace-Hopper", "")
-    assert Arms.of(course.root).handles == {
-        "Ada-Lovelace": "Ada-Lovelace",
-        "Grace-Hopper": grace.id,
-    }
     with open_gradebook(course) as book:
         assert {x.id: x.email for x in book.students} == {ada.id: ada.email, grace.id: grace.email}
 

@@ -5,14 +5,12 @@ from __future__ import annotations
 import hashlib
 import json
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from functools import cached_property
 from typing import Any
 
 from ...errors import LabkitError
 from ...formats import check_stamp, stamp
-from ..identification import personalised
-from ..own_arm import Arms
 from ..question import Question
 from ..serialize import question_data, read_question
 from .layout import Course
@@ -24,11 +22,9 @@ class Bundle:
 
     Attributes:
         data: Assignment, seed, manifest, questions with their hidden cases, and hash.
-        arms: The students' own arms, if arms were given out.
     """
 
     data: Mapping[str, Any]
-    arms: Arms = field(default_factory=Arms)
 
     @classmethod
     def of(cls, course: Course, assignment: str) -> Bundle:
@@ -56,20 +52,7 @@ class Bundle:
             ) from None
         if checks != asked:
             raise LabkitError(f"{path} is damaged: {asked} questions, {checks} checks; {remedy}")
-        return cls(data, Arms.of(course.root))
-
-    def of_student(self, student: str) -> Bundle:
-        """The same bundle with the right answers for the student's own arm."""
-        arm = self.arms.arm(student)
-        if arm is None:
-            return self
-        questions = tuple(personalised(q, arm) for q in self.questions)
-        if all(own is q for own, q in zip(questions, self.questions, strict=True)):
-            return self
-        own_hash = hashlib.sha256(f"{self.data['hash']} {arm}".encode()).hexdigest()
-        bundle = Bundle({**self.data, "hash": own_hash}, self.arms)
-        bundle.__dict__["questions"] = questions
-        return bundle
+        return cls(data)
 
     @cached_property
     def questions(self) -> tuple[Question, ...]:

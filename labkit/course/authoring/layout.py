@@ -40,7 +40,6 @@ def check_outcomes(file: Path, name: str, outcomes: Iterable[str]) -> None:
 
 
 if TYPE_CHECKING:
-    from ..identification import Identification
     from ..predictions import Prediction
     from .problem import Problem
 
@@ -148,7 +147,7 @@ class Course:
         """
         return self._listed(name, "problems")
 
-    def predictions(self, name: str) -> tuple[Prediction | Identification, ...]:
+    def predictions(self, name: str) -> tuple[Prediction, ...]:
         """The predictions of an assignment, from the course's own ``solutions`` package.
 
         Raises:

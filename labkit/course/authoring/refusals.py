@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import ast
 import json
-from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import replace
 from typing import Any
 
@@ -19,11 +19,9 @@ from ...control import JointTorque
 from ...errors import LabkitError
 from ..calling import LocalFunction
 from ..causes import by_terms
-from ..identification import Identification
-from ..judges import Judge, Measured, TipTorque, numbers
+from ..judges import Judge, TipTorque, numbers
 from ..marking import fingerprint, mark, recognise
 from ..notebook import Notebook
-from ..own_arm import RANGES
 from ..question import Call, Question, Raised
 from ..serialize import encode
 from ..source import analyse, needed, withheld_tools
@@ -32,8 +30,6 @@ from .problem import Problem
 
 USE = "def use(name, function, given, yours=None, **options):\n    return yours or function\n"
 """Replaces the notebook's `use`, because the other answers are right."""
-GUESSED = 0.25
-"""The largest share of the students' own arms for which one constant may be right."""
 STAND_IN = "the_stand_in"
 """The name of a stand-in while it is tried alone."""
 
@@ -54,23 +50,6 @@ def refusals(
         for name, problem in problems.items()
         for reason in _reasons(problem, questions[name], texts.get(name))
     ]
-
-
-def guessable(asked: Iterable[object]) -> Iterator[str]:
-    """A sentence for each number of one's own arm that a constant would answer too often.
-
-    Args:
-        asked: The predictions and identifications of an assignment.
-    """
-    for one in asked:
-        if isinstance(one, Identification) and isinstance(one.judge, Measured):
-            least, most = RANGES[one.judge.of]
-            share = 2.0 * one.judge.tolerance / (most - least)
-            if share > GUESSED:
-                yield (
-                    f"{one.name}: one constant is right for {share:.0%} of the arms, and "
-                    f"{GUESSED:.0%} is the limit; reduce the tolerance or widen the range"
-                )
 
 
 def _reasons(problem: Problem, question: Question, text: str | None) -> Iterator[str]:

@@ -31,7 +31,7 @@ from ..source import needed
 from .bundle import write_bundle
 from .layout import Course
 from .problem import Problem
-from .refusals import guessable, refusals
+from .refusals import refusals
 
 
 def solution_notebook(source: Notebook, problems: Mapping[str, Problem]) -> Notebook:
@@ -112,7 +112,7 @@ def prepare(course: Course, name: str, seed: int) -> Prepared:
                 ) from None
     predictions = course.predictions(name)
     source = source_notebook(course.notebook_source(name), questions, predictions)
-    if reasons := [*refusals(source, problems, questions), *guessable(predictions)]:
+    if reasons := refusals(source, problems, questions):
         folder = course.notebook_source(name).parent.relative_to(course.root)
         raise LabkitError("\n".join([f"{folder}:", *reasons]))
     solved = solution_notebook(source, problems)

@@ -13,7 +13,6 @@ from typing import TypeVar
 
 from ...course.authoring.bundle import Bundle
 from ...course.authoring.layout import Course
-from ...course.own_arm import Arms
 from ...errors import LabkitError
 from ..grade import grade, rejection
 from ..plan import imports
@@ -87,8 +86,7 @@ def grade_submission(task: Task) -> Result:
 
 
 def _grade(task: Task, limits: Limits) -> Result:
-    arms = Arms.of(task.course.root).text()
-    bundle = _bundle(task.course, task.submission.assignment, task.bundle_hash, arms)
+    bundle = _bundle(task.course, task.submission.assignment, task.bundle_hash)
     student = task.submission.student
     data, note, why = task.submission.read()
 
@@ -146,8 +144,8 @@ def close_sandbox() -> None:
 
 
 @lru_cache(maxsize=4)
-def _bundle(course: Course, assignment: str, key: str, arms: str) -> Bundle:
-    """The bundle with a given hash; with other ``arms`` it is read again, not cached."""
+def _bundle(course: Course, assignment: str, key: str) -> Bundle:
+    """The bundle with a given hash."""
     bundle = Bundle.of(course, assignment)
     if bundle.data["hash"] != key:
         raise LabkitError(f"{assignment} was released again while it was being graded; grade again")

@@ -22,7 +22,7 @@ from typing import Any
 
 from labkit.course.calling import LONGEST, CappedText, TimeUp, kind, reply, sentence
 from labkit.course.serialize import decode
-from labkit.course.source import analyse, plain
+from labkit.course.source import plain
 
 from . import stubs
 from .protocol import Connection, Disconnected
@@ -60,7 +60,6 @@ class Notebook:
         self.names.update(__builtins__=__builtins__, In=[""], Out={})
         self.functions: dict[str, Any] = {}
         self.limits, self.output = limits, limits["output"]
-        self.own_arm_names: set[str] = set()  # bound by cells that need the student's own arm
         self.isolated = os.getpid() == 1 or os.getuid() == uid  # so kill(-1) reaches nobody else
         shell = getattr(builtins, "get_ipython", None)
         if shell is not None:
@@ -77,24 +76,12 @@ class Notebook:
             except TimeUp:
                 raised, error = "TimeUp", f"it was stopped after {seconds:g} s"
             except BaseException as why:
-                if not self._needs_own_arm(why, source):
-                    raised, error = kind(why), _sentence(why)
+                raised, error = kind(why), _sentence(why)
         for name in answers:
             if name in self.names:
                 self.functions[name] = self.names[name]
         self.output -= out.size
         return {"ran": cell, "kind": raised, "error": error, "output": out.getvalue()}
-
-    def _needs_own_arm(self, why: BaseException, source: str) -> bool:
-        """Whether a cell stopped because the student's own arm, or what it measures, is missing.
-
-        This is not the student's fault, so it is not reported.
-        """
-        wants = isinstance(why, stubs.NoOwnArm)
-        wants |= isinstance(why, NameError) and why.name in self.own_arm_names
-        if wants:
-            self.own_arm_names.update(analyse(source)["binds"])
-        return wants
 
     def _execute(self, name: str, source: str) -> None:
         text = plain(source)
@@ -137,10 +124,7 @@ class Notebook:
     def _reply(self, name: str, args: list[Any], kwargs: dict[str, Any]) -> dict[str, Any]:
         seconds = self.limits["call"]
         if name not in self.functions:
-            why = f"the notebook defines no {name}"
-            if name in self.own_arm_names:
-                why = f"{name} comes from runs of your arm, which are not made here; type the value"
-            raise NameError(why)
+            raise NameError(f"the notebook defines no {name}")
         try:
             with self._alarm(seconds):
                 return reply(self.functions[name], args, kwargs)

@@ -5,13 +5,9 @@
 
 # %% setup=true
 import labkit as lk
-from labkit.course import check
+from labkit.course import check, predict
 
-# %%
-HANDLE = "demo"
-mine = lk.my_arm(HANDLE)
-
-# %% find_out="my_payload"
+# %% predict="guess"
 
 # %% [markdown] why="why_slow"
 # Why slow?

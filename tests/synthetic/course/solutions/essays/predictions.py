@@ -1,14 +1,5 @@
-"""What students find out about their own arm, beside texts."""
+"""What students predict, beside texts."""
 
-from labkit.course import Identification, Measured
+from labkit.course import Number, Prediction
 
-PREDICTIONS = (
-    Identification(
-        "my_payload",
-        "What does your arm carry?",
-        Measured("payload", "kg", 0.0, 3.0, 0.07),
-        truth=0.334,
-        form="one number, in kg",
-        points=3.0,
-    ),
-)
+PREDICTIONS = (Prediction("guess", "What does the arm carry?", Number("kg", 0.0, 3.0), 0.3, 3.0),)
