@@ -248,6 +248,7 @@ TRAPEZOID = Problem(
             ),
             hidden.trapezoid_all,
             "times outside the motion",
+            weight=3.0,
         ),
     ),
     withheld=OWN_WORK,

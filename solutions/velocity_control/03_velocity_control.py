@@ -25,7 +25,7 @@ lk.ready()
 # ## Find and mend
 #
 # *Feed-forward* turns the joints at the target's own speed; *feedback* adds a pull in proportion to the error (P) and to its
-# rate (D). The report prints two such laws. This is *our reading of the printed formulas*, in the
+# rate (D). The report prints such a law. This is *our reading of the printed formula*, in the
 # course's sign. **Some terms are right. Change what is wrong, nothing else.**
 
 # %%
@@ -37,17 +37,8 @@ def equation_17(state, target, *, kp, kd):
     return lk.JointVelocity(a + b + c)
 
 
-def equation_16(state, target, *, kp=4.0, k_turn=0.04):
-    """The report's workspace velocity controller, its speed mended."""
-    T_wt = model.pose(state.q)
-    move = kp * (target.pose[:3, 3] - T_wt[:3, 3])
-    turn = k_turn * roll_pitch_yaw_difference(target.pose[:3, :3], T_wt[:3, :3])
-    twist = target.twist + np.concatenate([move, turn])
-    return lk.JointVelocity(np.linalg.pinv(model.tip_jacobian(state.q)) @ twist)
-
-
 # %% [markdown]
-# Each drives the textbook's arm in three runs: **H**, a held target, with the arm started beside it (under 16 also tilted by 5°);
+# It drives the textbook's arm in three runs: **H**, a held target, with the arm started beside it;
 # **P**, on the path from its start; **F**, a quick move, from beside.
 
 # %%
@@ -55,49 +46,24 @@ ideal, baxter = lk.Arm("left", lk.IDEAL), lk.Arm("left", lk.BAXTER, seed=1)
 model, q0 = ideal.model, ideal.robot.ready
 T_wt = model.pose(q0)
 start, upright = T_wt[:3, 3], T_wt[:3, :3]
-
-
-def roll_pitch_yaw_difference(R_wd, R_wt):
-    """The difference of the angles, brought to half a turn."""
-    both = np.array([R_wd, R_wt])
-    tilt = np.hypot(both[:, 2, 1], both[:, 2, 2])
-    across = np.array([both[:, 2, 1], -both[:, 2, 0], both[:, 1, 0]])
-    angles = np.arctan2(across, np.array([both[:, 2, 2], tilt, both[:, 0, 0]]))
-    return (angles[:, 0] - angles[:, 1] + np.pi) % (2 * np.pi) - np.pi
-
-
 beside = 0.1 * np.array([1, -1, 1, 1, -1, 1, 1])
 way = lk.Line(q0, q0 + [0.6, 0.2, 0.0, -0.4, 0.3, 0.2, 0.4])
 reach = lk.Trajectory(way, lk.Quintic(2.0))
-shifted = lk.se3.pose(upright, start + [0.02, -0.01, 0.01])
-tilted = lk.se3.pose(upright @ lk.se3.rotation(np.radians([3.0, 4.0, 0.0])), shifted[:3, 3])
 circle = lk.Circle(start, start + [0.0, -0.12, 0.0])
 poses = lk.Trajectory(lk.PosePath(circle, upright), lk.Quintic(5.0))
-dash = lk.Trajectory(lk.PosePath(lk.Line(start, start + [0.1, -0.2, 0.1]), upright), lk.Quintic(0.8))
-figure, (above, below) = plt.subplots(2, 3, figsize=(9, 4), sharey="row", layout="constrained")
+figure, panels = plt.subplots(1, 3, figsize=(9, 2.4), sharey=True, layout="constrained")
 says = []
 for panel, name, target, q in zip(
-    above, "HPF", (lk.Hold(q0, 3.0), reach, lk.Trajectory(way, lk.Quintic(0.7))), (q0 + 0.02, q0, q0 + beside)
+    panels, "HPF", (lk.Hold(q0, 3.0), reach, lk.Trajectory(way, lk.Quintic(0.7))), (q0 + 0.02, q0, q0 + beside)
 ):
     ideal.reset(q)
     log = lk.run(ideal, target, lambda state, target: equation_17(state, target, kp=3.0, kd=0.0001))
     largest = np.abs(lk.metrics.joint_error(log)).max(axis=1)
     panel.plot(log.t, largest)
-    panel.set_title(f"17, run {name}")
-    says.append(f"17 {name}: {largest[0]:.3f} rad at first, {largest.max():.3f} rad at most")
-for panel, name, target, T in zip(below, "HPF", (lk.Hold(T_wt, 3.0), poses, dash), (tilted, T_wt, shifted)):
-    ideal.reset(model.inverse_kinematics(T, q0))
-    log = lk.run(ideal, target, equation_16)
-    error = lk.metrics.tip_error(log)
-    off = 1e3 * np.linalg.norm(error[:, :3], axis=1)
-    turned = np.degrees(np.linalg.norm(error[:, 3:], axis=1))
-    panel.plot(log.t, off, label="position [mm]")
-    panel.plot(log.t, turned, "--", label="tilt [degrees]")
-    panel.set(title=f"16, run {name}", xlabel="time [s]")
-    says.append(f"16 {name}: {off[-1]:.1f} mm and {turned[-1]:.1f} degrees at the end")
-above[0].set_ylabel("largest error [rad]")
-below[0].legend(frameon=False)
-lk.plotting.show("The report's two laws in three runs. " + "; ".join(says) + ".")
+    panel.set(title=f"17, run {name}", xlabel="time [s]")
+    says.append(f"{name}, {largest[0]:.3f} rad at first and {largest.max():.3f} rad at most")
+panels[0].set_ylabel("largest error [rad]")
+lk.plotting.show("Equation 17 in three runs, the largest error of a joint: " + "; ".join(says) + ".")
 
 # %% [markdown]
 # A run that looks good proves little. Copy equation 17 into the stub and mend it. (The check starts beside a
@@ -110,17 +76,6 @@ def joint_velocity_pd(state, target, *, kp, kd):
     from solutions.velocity_control.answers import joint_velocity_pd as answer
 
     return answer(state, target, kp=kp, kd=kd)
-    ### END SOLUTION
-
-
-# %% question="what_shows"
-def what_shows(run):
-    """Replace the question marks in this line and use it:"""
-    # return {"H": "?", "P": "?", "F": "a", "tilt": "?"}[run]
-    ### BEGIN SOLUTION
-    from solutions.velocity_control.answers import what_shows as answer
-
-    return answer(run)
     ### END SOLUTION
 
 
@@ -325,6 +280,59 @@ lk.plotting.show(
 # %% [markdown]
 # ## A controller for the tip
 #
+# The report's equation 16 controls the tip. Here its first term is mended as in 17; the rest is as printed. In run H the hand is also
+# tilted by 5°.
+
+# %%
+def equation_16(state, target, *, kp=4.0, k_turn=0.04):
+    """The report's workspace velocity controller."""
+    T_wt = model.pose(state.q)
+    move = kp * (target.pose[:3, 3] - T_wt[:3, 3])
+    turn = k_turn * roll_pitch_yaw_difference(target.pose[:3, :3], T_wt[:3, :3])
+    twist = target.twist + np.concatenate([move, turn])
+    return lk.JointVelocity(np.linalg.pinv(model.tip_jacobian(state.q)) @ twist)
+
+
+# %%
+def roll_pitch_yaw_difference(R_wd, R_wt):
+    """The difference of the angles, brought to half a turn."""
+    both = np.array([R_wd, R_wt])
+    tilt = np.hypot(both[:, 2, 1], both[:, 2, 2])
+    across = np.array([both[:, 2, 1], -both[:, 2, 0], both[:, 1, 0]])
+    angles = np.arctan2(across, np.array([both[:, 2, 2], tilt, both[:, 0, 0]]))
+    return (angles[:, 0] - angles[:, 1] + np.pi) % (2 * np.pi) - np.pi
+
+
+shifted = lk.se3.pose(upright, start + [0.02, -0.01, 0.01])
+tilted = lk.se3.pose(upright @ lk.se3.rotation(np.radians([3.0, 4.0, 0.0])), shifted[:3, 3])
+dash = lk.Trajectory(lk.PosePath(lk.Line(start, start + [0.1, -0.2, 0.1]), upright), lk.Quintic(0.8))
+figure, panels = plt.subplots(1, 3, figsize=(9, 2.4), sharey=True, layout="constrained")
+says = []
+for panel, name, target, T in zip(panels, "HPF", (lk.Hold(T_wt, 3.0), poses, dash), (tilted, T_wt, shifted)):
+    ideal.reset(model.inverse_kinematics(T, q0))
+    log = lk.run(ideal, target, equation_16)
+    error = lk.metrics.tip_error(log)
+    off = 1e3 * np.linalg.norm(error[:, :3], axis=1)
+    turned = np.degrees(np.linalg.norm(error[:, 3:], axis=1))
+    panel.plot(log.t, off, label="position [mm]")
+    panel.plot(log.t, turned, "--", label="tilt [degrees]")
+    panel.set(title=f"16, run {name}", xlabel="time [s]")
+    says.append(f"{name}, {off[-1]:.1f} mm and {turned[-1]:.1f} degrees")
+panels[0].legend(frameon=False)
+lk.plotting.show("Equation 16 in three runs, off at the end: " + "; ".join(says) + ".")
+
+# %% question="what_shows"
+def what_shows(run):
+    """Replace the question marks in this line and use it:"""
+    # return {"H": "?", "P": "?", "F": "a", "tilt": "?"}[run]
+    ### BEGIN SOLUTION
+    from solutions.velocity_control.answers import what_shows as answer
+
+    return answer(run)
+    ### END SOLUTION
+
+
+# %% [markdown]
 # Now mend equation 16; `lk.se3.orientation_error(R_wd, R_wt)` is the turn of notebook 00. The trap: most wrong
 # versions draw a fine circle as long as the hand starts upright, so the check tilts it.
 

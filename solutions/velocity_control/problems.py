@@ -116,9 +116,9 @@ WHAT_SHOWS = Problem(
     name="what_shows",
     points=2,
     outcomes=("control", "experiment"),
-    asks='Return for "H", "P" and "F" of equation 17 the letter of the term that made the run go '
-    'wrong, or "-" if it shows nothing wrong; for "tilt" the run of equation 16 in which the '
-    "tilt does not die. F is done for you.",
+    asks='Look at both figures. Return for "H", "P" and "F" of equation 17 the letter of the term '
+    'that made the run go wrong, or "-" if it shows nothing wrong; for "tilt" the run of equation '
+    "16 in which the tilt does not die. F is done for you.",
     answer=answers.what_shows,
     judge=Letter("abchpf-"),
     trials=(
@@ -603,9 +603,9 @@ POSTURE_VELOCITY = Problem(
 
 PROBLEMS = (
     JOINT_VELOCITY_PD,
-    WHAT_SHOWS,
     DECAY_RATE,
     DAMPED_INVERSE,
+    WHAT_SHOWS,
     WORKSPACE_VELOCITY_PD,
     FIND_LAG,
     POSTURE_VELOCITY,
