@@ -298,8 +298,7 @@ def _value_cells(asked: Prediction) -> Iterator[dict[str, Any]]:
     cell["metadata"][BLANK] = asked.cell()
     yield cell
     checked = _check(asked.name, asked.points)
-    if not hasattr(asked, "hints"):
-        checked["metadata"]["jupyter"] = {"source_hidden": True, "outputs_hidden": True}
+    checked["metadata"]["jupyter"] = {"source_hidden": True, "outputs_hidden": True}
     yield checked
 
 

@@ -388,11 +388,11 @@ lk.replay.show(
 # ## Measure an arm
 #
 # A real arm has numbers that nobody tells you. Yours is a Baxter with motors, friction, a payload
-# and a wall of its own; the report of notebook 08 is about it. Put the name that your instructor gave you in place of
+# and a wall of its own; the report of notebook 08 is about it. Put your name in the course, or your team's, in place of
 # `"demo"`, a public arm.
 
 # %%
-HANDLE = "demo"  # in a course: the name that your instructor gave you
+HANDLE = "demo"  # your name in the course
 mine = lk.my_arm(HANDLE)
 
 # %% [markdown]
