@@ -58,7 +58,11 @@ class Arm:
         self.robot = robot = as_robot(robot)
         self.model = Model(robot, plant)
         self.world = World() if world is None else world
-        self._check_place()
+        if not isinstance(self.world, World):
+            raise TypeMismatch(f"world is {shown(self.world)}, expected an lk.World")
+        self.check_open()
+        if robot.name in [arm.robot.name for arm in self.world.arms]:
+            raise LabkitError(f"this world has a {robot.name} arm already; make a new World too")
         self._random = as_random(seed)
         if q0 is not None:
             self.model.within_limits(q0, "q")
@@ -78,17 +82,6 @@ class Arm:
         self._joints = Joints(model, dt)
         self._reports = Reports(plant, robot.n, dt, self._random)
         self._sensors = TorqueSensors(own, plant, dt)
-
-    def _check_place(self) -> None:
-        if not isinstance(self.world, World):
-            raise TypeMismatch(f"world is {shown(self.world)}, expected an lk.World")
-        self.check_open()
-        name = self.robot.name
-        if name in [arm.robot.name for arm in self.world.arms]:
-            raise LabkitError(
-                f"this world has a {name} arm already, and two would occupy the same place; "
-                "use that one, or make a new World too"
-            )
 
     # For controllers
 

@@ -57,11 +57,11 @@ def search(model: Model, T_wt: Any, q0: Any, posture: Any) -> Array:
     if e @ e < 1e-18:
         return q
     place = ", ".join(f"{x:.3f}" for x in T_wt[:3, 3])
-    raise Unreachable(f"the pose at ({place}) m {_reason(model, T_wt, q, nearest)}")
+    raise Unreachable(f"the pose at ({place}) m {_reason(model, T_wt, nearest)}")
 
 
-def _reason(model: Model, T_wt: Array, q: Array, nearest: Array) -> str:
-    """Why a search that ended at q failed: too far away, a joint at its limit, or stuck."""
+def _reason(model: Model, T_wt: Array, nearest: Array) -> str:
+    """Why a search failed: the pose is too far away, or unknown; and how near it came."""
     robot, e = model.robot, model.pose_error(T_wt, nearest)
     mm, degrees = 1e3 * np.linalg.norm(e[:3]), np.degrees(np.linalg.norm(e[3:]))
     off = f"(nearest found: {mm:.3g} mm and {degrees:.3g} degrees off)"
@@ -73,14 +73,7 @@ def _reason(model: Model, T_wt: Array, q: Array, nearest: Array) -> str:
             f"cannot be reached: it is {distance:.3f} m from the first joint, and the arm is "
             f"{reach:.3f} m long {off}; bring it nearer"
         )
-    at_limit = np.flatnonzero((q - robot.lower < 1e-6) | (robot.upper - q < 1e-6))
-    if at_limit.size:
-        i = at_limit[0]
-        return (
-            f"was not found from this q0 {off}: joint {robot.joint_names[i]} ended at its "
-            f"limit of {q[i]:.4g} rad; start from another q0, or change the orientation"
-        )
-    return f"was not found from this q0 {off}; start from another q0"
+    return f"was not found from this q0 {off}; start from another q0, or change the orientation"
 
 
 def joint_trajectory(model: Model, target: Any, q0: Any, samples: int) -> Any:

@@ -21,7 +21,7 @@ from .errors import (
 from .log import Log, Recorder
 from .robot import Robot
 from .shapes import Array, as_array, as_number, shown
-from .trajectory import AnySample, PoseSample, Sample, Target
+from .trajectory import AnySample, Sample, Target
 from .world import whole_steps
 
 ORDER = "the order is arm, target, controller"
@@ -178,7 +178,7 @@ def _loop(
         raise
     except Exception as error:
         samples.check(samples.latest, t)  # was it the target that broke the controller?
-        why = _reason(error, samples.latest, robot.n)
+        why = str(error) if isinstance(error, LabkitError) else f"{type(error).__name__}: {error}"
         raise ControllerError(f"{running} failed at t = {t:.3f} s, tick {k}: {why}") from error
     finally:
         driven.stop()
@@ -193,8 +193,9 @@ class _Samples:
         try:
             first: Any = target(0.0)
         except Exception as error:
-            what = f"{type(error).__name__}: {error}"
-            raise ControllerError(f"{self.name} failed at t = 0: {what}") from error
+            raise ControllerError(
+                f"{self.name} failed at t = 0: {type(error).__name__}: {error}"
+            ) from error
         self._kind: Any = type(first)
         self._shapes: tuple[tuple[int, ...], ...] = ((4, 4), (6,), (6,))
         if isinstance(first, Sample):
@@ -245,30 +246,12 @@ def _ticks(target: Target, duration: float | None, period: float) -> int:
     return round(as_number(duration, "duration", least=0.0) / period + 1e-9) + 1
 
 
-def _reason(error: Exception, sample: AnySample, joints: int) -> str:
-    """A controller's error in words, with a hint if the target does not give joint angles."""
-    if isinstance(error, LabkitError):
-        return str(error)
-    what, makes = f"{type(error).__name__}: {error}", "model.joint_trajectory(target, q0) makes"
-    if isinstance(error, AttributeError) and isinstance(error.obj, Sample | PoseSample):
-        has = ", ".join(error.obj._fields)
-        what = f"it asked the target's sample for its {error.name}, but that has only {has}"
-        if isinstance(error.obj, PoseSample):
-            what += f"; {makes} joint angles of poses"
-    elif isinstance(error, ValueError) and isinstance(sample, Sample):
-        n = sample.position.size
-        if n != joints:
-            what += f"; the target gives {n} numbers; {makes} joint angles of points"
-    return what
-
-
 def _command_type(command: object, kind: type | None, who: str, t: float) -> type:
     """The type of this run's commands; raises if the command does not fit."""
-    names = ", ".join(f"lk.{c.__name__}(...)" for c in COMMANDS)
     if not isinstance(command, COMMANDS):
-        hint = "; is a return missing?" if command is None else ""
+        names = ", ".join(f"lk.{c.__name__}(...)" for c in COMMANDS)
         raise ControllerError(
-            f"{who} returned {str(command)[:80]} at t = {t:.3f} s; return one of {names}{hint}"
+            f"{who} returned {str(command)[:80]} at t = {t:.3f} s; return one of {names}"
         )
     if kind is not None:
         raise ControllerError(
