@@ -21,9 +21,10 @@ from labkit.course import (
     question_data,
     read_question,
 )
-from labkit.course.judges import UNSAID, factor, value
+from labkit.course.judges import MOST_COEFFICIENTS, UNSAID, Ratio, as_expected, factor, value
 from labkit.course.marking import mark
 from labkit.course.verdict import Kind
+from labkit.errors import OutOfRange
 
 CLOSE = Close(rtol=1e-6, atol=1e-9)
 V = np.array([1.0, 2.0, 3.0])
@@ -236,3 +237,40 @@ def test_the_tolerance_is_relative_and_absolute(answer, right):
         command = lk.JointTorque(np.full(7, answer))
         assert (judge(command, lk.JointTorque(np.ones(7))) is None) == right
         assert judge(command, lk.JointVelocity(np.ones(7))) is not None
+
+
+def test_a_polynomial_has_at_most_fifty_coefficients():
+    """A longer one would take a judge long."""
+    assert Ratio((1.0,) * MOST_COEFFICIENTS, (1.0,))(1.0) == MOST_COEFFICIENTS
+    with pytest.raises(OutOfRange):
+        Ratio((1.0,), (1.0,) * (MOST_COEFFICIENTS + 1))
+
+
+def test_only_a_torque_is_compared_at_the_tip():
+    """The answer of a known mistake takes the form of the expected one; others stay."""
+    expected, _ = at_tip()
+    torque, speed = lk.JointTorque(np.ones(7)), lk.JointVelocity(np.ones(7))
+    assert np.array_equal(as_expected(torque, expected).value, torque.value)
+    assert as_expected(torque, expected).elbow is expected.elbow
+    assert as_expected(speed, expected) is speed and as_expected(torque, V) is torque
+
+
+@pytest.mark.parametrize("other", [1.001 * V, 1.5 * V, V[:2], None, object(), "abc"])
+def test_what_differs_is_not_the_same(other):
+    """By more than a rounding, in shape, or in kind."""
+    assert not CLOSE.same(V, other) and not CLOSE.same(other, V)
+
+
+def test_a_transfer_function_is_judged_by_its_response():
+    """At each frequency, within the tolerance of its size; whatever else is told what it is."""
+    judge, right = Response((1.0, 10.0), rtol=0.02), Ratio((2.0,), (1.0, 1.0))
+    for answer, kind in (
+        (Ratio((2.03,), (1.0, 1.0)), None),
+        (Ratio((4.0,), (2.0, 2.0)), None),
+        (Ratio((2.05,), (1.0, 1.0)), Kind.RESPONSE),
+        (Ratio((2.0,), (1.0, 1.05)), Kind.RESPONSE),
+        (lambda s: 2.0 / (s + 1.0), Kind.TYPE),
+    ):
+        found = judge(answer, right)
+        assert (found and found.kind) == kind
+    assert judge.same(right, right) and not judge.same(right, Ratio((3.0,), (1.0, 1.0)))

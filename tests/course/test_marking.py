@@ -18,6 +18,7 @@ from labkit.course import (
     Close,
     Gains,
     Loop,
+    Mistake,
     NoAnswer,
     Outcome,
     Question,
@@ -30,7 +31,7 @@ from labkit.course import (
     question_data,
     read_question,
 )
-from labkit.course.marking import mark
+from labkit.course.marking import mark, recognise, try_public
 from labkit.course.messages import why
 from labkit.course.serialize import decode, encode
 from labkit.errors import LabkitError
@@ -324,3 +325,33 @@ def test_gains_that_are_none_earn_nothing():
     for wrong in (3.0, (1.0,), (1.0, -1.0), (1.0, np.ones(6)), (np.nan, 1.0), None):
         assert judge(wrong, None) is not None
         assert not judge.same(wrong, wrong)
+
+
+def test_the_public_runs_are_kept_with_what_they_reached():
+    """A whole one, and one up to the moment at which the arm was lost; a call is no run."""
+    question = loop_question()
+    question = replace(question, tests=(*question.tests, Test("a call", CALLS[:1])))
+    for kind, size, complete in ((lk.JointVelocity, 0.0, True), (lk.JointTorque, 50.0, False)):
+        command = kind(np.full(7, size))
+        (run,) = try_public(question, lambda *_, command=command: command).runs(question)
+        assert (run.test, run.complete) == ("closed loop", complete)
+        assert isinstance(run.log, lk.Log) and run.case is question.tests[0].cases[0]
+
+
+def test_a_factor_stays_only_if_it_holds_in_every_wrong_call():
+    """A single wrong number has none; two have one, and so has an array of one call."""
+    plain = replace(DOUBLE, mistakes=())
+    for answer, times in ((lambda x: -2.0 * x, -1.0), (lambda x: 2.0 * abs(x), None)):
+        found = [x.difference.times for x in mark(plain, answer).tests if x.difference]
+        assert found == [pytest.approx(times)] * len(found) and found
+    one = replace(plain, tests=(Test("an array", (Call((), expected=np.arange(4.0)),)),))
+    (test,) = mark(one, lambda: 3.0 * np.arange(4.0)).tests
+    assert test.difference.times == pytest.approx(3.0)
+    two = replace(plain, tests=(Test("two", (Call((1,), expected=np.ones(3)),)),
+                                Test("more", (Call((2,), expected=np.ones(3)),))))  # fmt: skip
+    assert all(x.difference.times is None for x in mark(two, lambda x: np.full(3, 1.0 + x)).tests)
+
+
+def test_without_an_answer_there_is_no_known_mistake():
+    """Also if the mistake has none, as where a question has no public call."""
+    assert recognise(replace(DOUBLE, mistakes=(Mistake("nothing", "It is none."),)), []) is None
