@@ -16,6 +16,7 @@ from labkit.course import (
     Letter,
     Outcome,
     Question,
+    Response,
     Test,
     TipTorque,
     question_data,
