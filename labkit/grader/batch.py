@@ -12,7 +12,7 @@ from ..course.authoring.bundle import Bundle
 from ..course.authoring.layout import Course
 from ..course.verdict import Outcome
 from .each import Failure, for_student
-from .files import exclusive_run
+from .files import locked
 from .grade import hashes
 from .grading.executor import executor
 from .grading.worker import Task, grade_submission
@@ -109,7 +109,8 @@ def grade_class(
         NoIsolation: No sandbox can be made here.
     """
     bundle, results = Bundle.of(course, assignment), Results(course, assignment)
-    with exclusive_run(results.folder):
+    busy = f"another run is grading {assignment}; wait for it to end"
+    with locked(results.folder / ".running", busy):
         todo: list[Submission] = []
         for submission in (Submission.of(course, assignment, student) for student in who):
             before = results.get(submission.student)

@@ -10,7 +10,7 @@ from typing import Any
 from .sandbox.clean import clean_line, clean_text
 
 __all__ = ["LONGEST", "clean_data", "clean_line", "clean_text", "few", "from_no_formula",
-           "how_many", "no_formula", "safe_name", "span"]  # fmt: skip
+           "how_many", "no_formula", "safe_name"]  # fmt: skip
 
 _RESERVED = re.compile(r"(con|prn|aux|nul|com\d|lpt\d)(\..*)?", re.IGNORECASE)
 _FORMULAS = frozenset("=+-@\t\r")
@@ -55,17 +55,6 @@ def from_no_formula(cell: str) -> str:
 def how_many(count: float, what: str) -> str:
     """A number of things, for a sentence: 0 students, 1 student, 2.5 points."""
     return f"{count:.12g} {what}{'s' * (count != 1)}"
-
-
-def span(seconds: float) -> str:
-    """A duration in words; empty if it is not positive."""
-    if seconds <= 0:
-        return ""
-    days, rest = divmod(int(seconds), 86400)
-    hours, minutes = rest // 3600, rest % 3600 // 60
-    found = [(days, "day"), (hours, "hour")] if days else [(hours, "hour"), (minutes, "minute")]
-    said = [how_many(n, what) for n, what in found if n]
-    return " ".join(said) or "less than a minute"
 
 
 def few(names: Sequence[str]) -> str:

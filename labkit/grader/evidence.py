@@ -5,14 +5,12 @@ A result file holds a compact form of the evidence, so the file alone is enough 
 
 from __future__ import annotations
 
-from dataclasses import fields
 from typing import Any
 
 import numpy as np
 
 from ..course.marking import PublicResult, PublicRun
 from ..course.question import Question, Tuned
-from ..log import Log
 from ..replay import Motion, motion_of
 from .results import Numbers, Run
 
@@ -62,7 +60,8 @@ def numbers(question: Question, tried: PublicResult) -> Numbers | None:
 def _run(question: Question, ran: PublicRun) -> Run:
     loop = ran.case.loop if isinstance(ran.case, Tuned) else ran.case
     says = ran.case.shown(question.name)
-    shown = motion(ran.log, f"Your run: {ran.test}")
+    title = f"Your run: {ran.test}"
+    shown = motion_of(ran.log, title, label="your arm") if len(ran.log) > 1 else None
     measures = ran.case.measured(ran.log) if ran.complete else {}
     return {
         "test": ran.test,
@@ -74,25 +73,6 @@ def _run(question: Question, ran: PublicRun) -> Run:
         "words": "" if shown is None else shown.alt,
         "motion": "" if shown is None else encode_to_fit(shown),
     }
-
-
-def motion(log: Log, title: str) -> Motion | None:
-    """The motion that the viewer shows of a run, up to the first number that is not finite."""
-    log = _finite(log)
-    return motion_of(log, title, label="your arm") if len(log) > 1 else None
-
-
-def _finite(log: Log) -> Log:
-    """The rows of a log before the first that is not finite, as after an arm has run away."""
-    bad = np.flatnonzero(~np.isfinite(np.hstack([log.q, log.dq])).all(axis=1))
-    rows = int(bad[0]) if bad.size else len(log)
-
-    def cut(x: Any) -> Any:
-        if isinstance(x, tuple):
-            return type(x)(*(part[:rows] for part in x))
-        return x[:rows] if isinstance(x, np.ndarray) else x
-
-    return Log(**{f.name: cut(getattr(log, f.name)) for f in fields(log)})
 
 
 def encode_to_fit(motion: Motion) -> str:

@@ -36,21 +36,6 @@ PATIENCE = 2.0
 
 
 @contextmanager
-def exclusive_run(results: Path) -> Iterator[None]:
-    """Exclude other runs on an assignment for the length of a block.
-
-    Args:
-        results: The folder with the results of the assignment; it is made if needed.
-
-    Raises:
-        LabkitError: Another run is under way.
-    """
-    busy = f"another run is grading {results.name}; wait for it to end"
-    with locked(results / ".running", busy):
-        yield
-
-
-@contextmanager
 def locked(file: Path, busy: str) -> Iterator[None]:
     """Hold a lock for the length of a block; the lock ends with its process.
 

@@ -16,7 +16,7 @@ from ..course.authoring.bundle import Bundle
 from ..course.authoring.layout import DEFENCE, Course
 from ..course.notebook import question_of
 from ..errors import LabkitError
-from .clean import clean_text, span
+from .clean import clean_text, how_many
 from .collect import Participant, participants
 from .each import Failure, for_student
 from .gradebook import apply_rules, open_gradebook
@@ -223,7 +223,8 @@ def _marked(row: Mark, submission: Any, one: Result | Failure | None, assignment
         row = replace(row, missing=f"the gradebook has other points for {other}; {how}")
     if row.missing:
         return row
-    row = replace(row, lines=lines, late=span(submission.total_seconds_late))
+    hours = round(submission.total_seconds_late / 3600, 1)
+    row = replace(row, lines=lines, late=how_many(hours, "hour") if hours > 0 else "")
     if none := [line.name for line in lines if line.score is None]:
         return replace(row, missing=f"still to be marked: {', '.join(none)}; use formgrader")
     if row.open:

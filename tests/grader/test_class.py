@@ -27,7 +27,7 @@ from labkit.grader import batch, files
 from labkit.grader.batch import GradedSubmission, GradeOptions, changes, grade_class
 from labkit.grader.class_report import report
 from labkit.grader.feedback import page
-from labkit.grader.files import exclusive_run
+from labkit.grader.files import locked
 from labkit.grader.gradebook import open_gradebook, record
 from labkit.grader.marks import mark_of, marks_of
 from labkit.grader.release import release
@@ -218,12 +218,10 @@ def test_one_writer_and_one_run(graded, monkeypatch, capsys):
     assert not second.is_alive()
     monkeypatch.setattr(files, "PATIENCE", 0.0)
     handed_in(graded, "ada")
-    with exclusive_run(graded.results / NAME):
+    with locked(graded.results / NAME / ".running", ""):
         for words in (["grade"], ["grade", "--diff"]):
             assert main([*words, NAME, "--course", str(graded.root)]) == 2
             assert "another run is grading" in capsys.readouterr().err
-        with exclusive_run(graded.results / "other"):
-            pass
 
 
 def test_an_interrupt_is_a_line(graded, capsys, monkeypatch):

@@ -66,7 +66,7 @@ def test_late_work_loses_its_share_everywhere(late, capsys):
                                     "cleo": "22.0"}  # fmt: skip
     assert verb(late, capsys, "feedback", NAME)[0] == 0
     page = (late.root / "feedback/bob" / NAME / f"{NAME}.html").read_text()
-    assert "17.6 of 24 points." in page and "1 day 1 hour" in page
+    assert "17.6 of 24 points." in page and "25 hours" in page
     with open_gradebook(late) as book:
         assert book.find_submission(NAME, "bob").late_submission_penalty == 4.4
         assert book.find_submission(NAME, "cleo").late_submission_penalty == 0.0
