@@ -98,7 +98,7 @@ def grade(
             {k: budget.take(v) if isinstance(v, str) else v for k, v in cell.items()}
             for cell in failed
         ),
-        seconds={"all": round(time.perf_counter() - began, 4), "student": round(spent, 4)},
+        seconds={"all": time.perf_counter() - began, "student": spent},
         receipt=receipt(cell["source"] for cell in cells),
     )
     cut = f"only {MAX_TEXT // 10**6} MB of text is kept; cut short: {budget.cut}"

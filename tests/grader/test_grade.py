@@ -224,8 +224,9 @@ def test_a_notebook_of_another_assignment_is_rejected(marks, bundle, others, ref
 def test_texts_are_cut_to_what_a_result_may_hold(marks, solved):
     """Answers first, then the rest; the points stay, and a note says so."""
     assert not marks(add(solved, "# " + "x" * 900_000)).notes
+    add(solved, "raise ValueError('z' * 3_000_000)")
     result = marks(add(solved, "# " + "y" * 900_000))
-    assert result.score == FULL and result.notes[0].endswith("cut short: 1")
+    assert result.score == FULL and result.notes[0].endswith("cut short: 2")
     assert len(result.text()) < 2_000_000
     assert "".join(cell_of(solved, "circle")["source"]) in [q.source for q in result.questions]
 
