@@ -34,7 +34,6 @@ HEADS = {
     "id_number": "id number, sis user id, student number, student id, matrikelnummer, id-nummer, "
     "numéro d’identification, número de id",
     "lms_user_id": "lms user id, canvas id",
-    "team": "team",
     "email": "email, e-mail, email address, mail, e-mail-adresse, adresse de courriel, "
     "dirección de correo",
     "first_name": "first name, given name, vorname, prénom, nombre",
@@ -164,14 +163,11 @@ def read_list(file: Path, teams: str = "") -> tuple[list[tuple[int, Student]], l
     heads, table = _read_table(file)
     columns = _columns(heads)
     if teams:
-        if teams.casefold() not in map(str.casefold, heads):
-            raise LabkitError(f"{file} has no column {teams!r}; it has {', '.join(heads)[:300]}")
-        columns["team"] = [*map(str.casefold, heads)].index(teams.casefold())
-    if not columns.keys() & {"login", "name", "last_name"}:
-        raise LabkitError(
-            f"{file} does not say who its students are; call a column 'name' or 'login', not "
-            f"{', '.join(heads)[:300]}"
-        )
+        plain = [head.casefold() for head in heads]
+        columns |= {"team": plain.index(teams.casefold())} if teams.casefold() in plain else {}
+    if not columns.keys() & {"login", "name", "last_name"} or (teams and "team" not in columns):
+        asked = f"column {teams!r}" if teams else "column 'name' or 'login'"
+        raise LabkitError(f"{file} has no {asked}; it has {', '.join(heads)[:300]}")
     rows, others = list[tuple[int, Student]](), list[str]()
     for line, row in table:
         cells = {k: row[at] if at < len(row) else "" for k, at in columns.items()}

@@ -154,7 +154,23 @@ def test_only_one_student_is_meant(tmp_path):
     roster = Roster((Student("a", "Kim", "Lee", login="K1"), Student("b", "Lee", "Kim", "k@x")))
     assert roster.known_as("login", "k1").id == "a" and roster.known_as("email", "K@x").id == "b"
     assert not roster.known_as("name", "Kim Lee") and not roster.known_as("id_number", "")
+    assert roster.get("b").first_name == "Lee" and roster.get("zoe") is None
     path = tmp_path / "x.csv"
     path.write_text("Full name,Identifier,Email address\nAda Lovelace,Participant 4,a@x\n")
     ((line, one),), others = read_list(path)
     assert (line, one.first_name, one.last_name, others) == (2, "Ada", "Lovelace", [])
+
+
+@pytest.mark.parametrize(
+    ("heads", "column"),
+    [
+        *(("Student,ID,Section", "lms_user_id"), ("Name,ID,Section", "login")),
+        *(("Student,ID,Group", "login"), ("Name,Username,ID", "id_number")),
+    ],
+)
+def test_what_an_id_is_depends_on_the_other_columns(tmp_path, heads, column):
+    """Canvas's own number, a login, or a number of the university."""
+    path = tmp_path / "x.csv"
+    path.write_text(f"{heads}\nAda Lovelace,7,9\n")
+    (((_, one),), _) = read_list(path)
+    assert getattr(one, column) == ("9" if column == "id_number" else "7")
