@@ -186,11 +186,6 @@ class Surroundings:
         for i, thing in enumerate(self._arm.world.things):
             if data := drawn_thing(thing):
                 found[f"thing {i}"] = data
-        if camera := getattr(getattr(self._target, "lookups", None), "camera", None):
-            lens = camera.intrinsics
-            field = float(np.degrees(2.0 * np.arctan(lens.height / 2.0 / lens.fy)))
-            about = {"field": field, "ratio": lens.width / lens.height, "fixed": True}
-            found["camera"] = placed("camera", camera.T_wc) | about
         shown: list[Any] = self._arm.world.shown
         for i, board in enumerate(shown):
             if hasattr(board, "T_wm"):
@@ -281,7 +276,7 @@ class LiveSession(Driven):
         self.law, self.around, self.hand = Law(laws, dials), Surroundings(arm, target), Hand(arm)
         self._inbox: SimpleQueue[dict[str, Any]] = SimpleQueue()
         self._thread, self.state, self.note = threading.Thread(), "ready", ""
-        self._again, self._began, self._drawn, self._heard = False, 0.0, 0.0, 0.0
+        self._again, self._began, self._drawn, self._heard, self._late = False, 0.0, 0.0, 0.0, 0.0
 
     def tell(self, message: dict[str, Any]) -> None:
         """Take a message from the page; while the arm moves, its thread reads it."""
@@ -337,15 +332,17 @@ class LiveSession(Driven):
         now = time.monotonic()
         if now - self.hand.heard > STEADY:
             self.hand.let_go()
-        if now - self._heard > ABSENT:
-            self.state, self.note = "ready", "nobody looked for a minute"
         if now - self._drawn > FRAME:
             self._drawn = now
+            slow = f"slower than real time: {self.law.name} or another cell takes too long"
+            self.note = slow if now - self._late < 1.0 else ""
             self._show(self.numbers())
+        if now - self._heard > ABSENT:
+            self.state, self.note = "ready", "nobody looked for a minute"
         ahead = self._began + t - time.monotonic()
         if ahead < -LATE:
             self._began -= ahead
-            self.note = f"slower than real time: {self.law.name} or another cell takes too long"
+            self._late = now
         time.sleep(max(0.0, ahead))
         over = False  # obey after the wait, so that the next tick has the newest messages
         while not self._inbox.empty():

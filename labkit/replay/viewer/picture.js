@@ -96,7 +96,7 @@ export class Picture {
   furnish(given) {
     for (const name of Object.keys(this.things)) if (!given[name]) this.drop(name);
     for (const [name, data] of Object.entries(given)) {
-      const key = JSON.stringify([data.kind, data.size, data.colour, data.field]);
+      const key = JSON.stringify([data.kind, data.size, data.colour]);
       if (this.things[name]?.key !== key) {
         this.drop(name);
         const mark = thing(data);

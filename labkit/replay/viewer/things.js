@@ -1,4 +1,4 @@
-// The things around an arm as three.js objects: faces, bands, tags, cameras and targets.
+// The things around an arm as three.js objects: faces, bands, tags and targets.
 import * as THREE from "three";
 import { axes, board } from "./marks.js";
 
@@ -30,17 +30,6 @@ const KINDS = {
     return axes().add(ball);
   },
   tag: ({ size = 0.12 }) => board(size),
-  /** A camera, drawn as its box and the edges of its field of view. */
-  camera: ({ field = 50, ratio = 4 / 3 }) => {
-    const group = new THREE.Group(), z = 0.2;
-    const y = z * Math.tan(field * Math.PI / 360), x = ratio * y;
-    const box = new THREE.Mesh(new THREE.BoxGeometry(0.05, 0.04, 0.05), look([0.15, 0.15, 0.17]));
-    box.position.z = -0.025;
-    const corners = [[-x, -y, z], [x, -y, z], [x, y, z], [-x, y, z]];
-    const lines = corners.flatMap((c, k) => [[0, 0, 0], c, c, corners[(k + 1) % 4]]).flat();
-    const shape = new THREE.BufferGeometry().setAttribute("position", new THREE.Float32BufferAttribute(lines, 3));
-    return group.add(box, new THREE.LineSegments(shape, new THREE.LineBasicMaterial({ color: 0x57606a })));
-  },
 };
 
 /** Make a thing by its `kind`. */
