@@ -44,6 +44,15 @@ def test_every_joint_obeys_its_law_wherever_the_search_begins(random, where):
         assert ((slowest - 1e-9 <= v) & (v <= fastest + 1e-9)).all()
 
 
+@pytest.mark.parametrize(("state", "way"), [(SLIP_UP, 1.0), (SLIP_DOWN, -1.0)])
+def test_a_joint_that_just_comes_to_its_target_keeps_its_state(state, way):
+    """With all of its bound, neither faster nor slower."""
+    one, far = np.ones(2), np.full(2, np.inf)
+    y, states = joint_torques(np.eye(2), 0.0 * one, way * one, one, -far, far, [state] * 2)
+    assert states == [state] * 2
+    assert y.tolist() == [way] * 2
+
+
 def test_a_search_without_an_end_is_a_sentence(random, monkeypatch):
     """It does not return torques that nobody found."""
     (problem,) = problems(random, 1)

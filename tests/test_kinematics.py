@@ -51,8 +51,8 @@ def test_the_jacobians_rate_is_its_slope(side, model, states):
 
 def test_a_point_of_each_body_moves_by_its_jacobian(side, model, states):
     """On the seven bodies and in the tip's frame."""
+    point = np.array([0.1, -0.2, 0.3])
     for body, (q, dq) in enumerate(states(side, 8)):
-        point = np.array([0.1, -0.2, 0.3])
         slope = slope_along(lambda q, k=body: model.point_on(q, k, point)[0], q, dq)
         assert_allclose(model.point_on(q, body, point)[1] @ dq, slope, rtol=0, atol=1e-7)
 

@@ -165,8 +165,6 @@ def test_a_hold_holds_angles_a_point_or_a_pose(place):
     hold = Hold(place, 2.0)
     assert hold.duration == 2.0
     assert isinstance(hold(0.0), PoseSample if np.ndim(place) == 2 else Sample)
+    assert hold(0.0)[1].shape == (6,) if np.ndim(place) == 2 else np.shape(place)
     for t in (-1.0, 0.0, 5.0):
         assert_at_rest(hold(t), place)
-
-
-skewed = np.diag([1.0, 1.0, 1.1])

@@ -100,5 +100,4 @@ class MuJoCo:
 
     def _tip(self, data: mujoco.MjData) -> Array:
         """Where the tip is, shape (3,)."""
-        p: Array = data.xpos[-1] + data.xmat[-1].reshape(3, 3) @ self._hand_tip[:3, 3]
-        return p
+        return data.xpos[-1] + data.xmat[-1].reshape(3, 3) @ self._hand_tip[:3, 3]

@@ -1,8 +1,6 @@
-"""The equations of motion by Pinocchio."""
+"""The equations of motion by Pinocchio, whose functions return copies."""
 
 from __future__ import annotations
-
-from typing import Any
 
 import numpy as np
 import pinocchio as pin
@@ -32,41 +30,34 @@ class Pinocchio:
     def pose(self, q: Array) -> Array:
         data = self._own.data
         pin.forwardKinematics(self._model, data, q)
-        T: Array = pin.updateFramePlacement(self._model, data, self._tip).homogeneous
-        return T
+        return pin.updateFramePlacement(self._model, data, self._tip).homogeneous
 
     def tip_jacobian(self, q: Array) -> Array:
         axes = pin.LOCAL_WORLD_ALIGNED
-        return _own(pin.computeFrameJacobian(self._model, self._own.data, q, self._tip, axes))
+        return pin.computeFrameJacobian(self._model, self._own.data, q, self._tip, axes)
 
     def tip_jacobian_rate(self, q: Array, dq: Array) -> Array:
         m, data, axes = self._model, self._own.data, pin.LOCAL_WORLD_ALIGNED
         pin.computeJointJacobiansTimeVariation(m, data, q, dq)
         pin.updateFramePlacement(m, data, self._tip)
-        return _own(pin.getFrameJacobianTimeVariation(m, data, self._tip, axes))
+        return pin.getFrameJacobianTimeVariation(m, data, self._tip, axes)
 
     def mass_matrix(self, q: Array) -> Array:
-        return _own(pin.crba(self._model, self._own.data, q))
+        return pin.crba(self._model, self._own.data, q)
 
     def coriolis(self, q: Array, dq: Array) -> Array:
-        return _own(pin.computeCoriolisMatrix(self._model, self._own.data, q, dq))
+        return pin.computeCoriolisMatrix(self._model, self._own.data, q, dq)
 
     def gravity(self, q: Array) -> Array:
-        return _own(pin.computeGeneralizedGravity(self._model, self._own.data, q))
+        return pin.computeGeneralizedGravity(self._model, self._own.data, q)
 
     def bias(self, q: Array, dq: Array) -> Array:
-        return _own(pin.nonLinearEffects(self._model, self._own.data, q, dq))
+        return pin.nonLinearEffects(self._model, self._own.data, q, dq)
 
     def inverse_dynamics(self, q: Array, dq: Array, ddq: Array) -> Array:
-        return _own(pin.rnea(self._model, self._own.data, q, dq, ddq))
+        return pin.rnea(self._model, self._own.data, q, dq, ddq)
 
     def free_motion(self, q: Array, dq: Array, tau: Array) -> tuple[Array, Array]:
         m, data = self._model, self._own.data
         ddq = pin.aba(m, data, q, dq, tau, pin.Convention.WORLD)
         return ddq, pin.computeMinverse(m, data)  # from the same sweep over the arm
-
-
-def _own(result: Any) -> Array:
-    """What Pinocchio returns, which is a copy already."""
-    array: Array = result
-    return array
