@@ -15,7 +15,7 @@ RUN apt-get update && apt-get install -y --no-install-recommends libgomp1 git \
 
 FROM python AS course
 RUN apt-get update && apt-get install -y --no-install-recommends \
-      make bubblewrap chromium nodejs libatomic1 && rm -rf /var/lib/apt/lists/*
+      make bubblewrap libseccomp2 chromium nodejs libatomic1 && rm -rf /var/lib/apt/lists/*
 WORKDIR /lab
 COPY . .
 RUN make .venv/.course && .venv/bin/labkit student-zip && .venv/bin/python -m zipfile -e dist/baxter-lab.zip /handout
@@ -29,7 +29,7 @@ ARG HUB=6.1.1
 COPY --from=course /handout/baxter-lab /lab/.ci/start_container.sh /opt/baxter-lab/
 RUN pip install --quiet --no-cache-dir --disable-pip-version-check --root-user-action=ignore \
       --constraint /opt/baxter-lab/constraints.txt \
-      "$(ls /opt/baxter-lab/labkit-*.whl)[notebook]" "jupyterhub==$HUB" nbgitpuller nbgrader
+      "$(ls /opt/baxter-lab/labkit-*.whl)[notebook]" "jupyterhub==$HUB" nbgitpuller==1.3.0 nbgrader
 # Of nbgrader's extensions, a student has only the list of assignments; a hub mounts its exchange in the
 # folder made here. JupyterLab does not ask for news.
 RUN for part in formgrader course_list validate_assignment; do \

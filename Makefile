@@ -9,7 +9,7 @@ UV = $(BIN)/uv pip
 INSTALL = $(UV) install --quiet --system-certs $(PIN)
 # Things that Debian's packages supply: for students, for graders and for tests.
 FOR_ALL := ensurepip.py:python3.11-venv libgomp.so.1:libgomp1
-FOR_GRADING := $(FOR_ALL) bwrap:bubblewrap
+FOR_GRADING := $(FOR_ALL) bwrap:bubblewrap libseccomp.so.2:libseccomp2
 FOR_TESTS := $(FOR_GRADING) node:nodejs libatomic.so.1:libatomic1
 # Ubuntu's Chromium is a snap, which programs cannot control; there Playwright installs its own.
 FOR_TESTS += $(shell grep -qs '^ID=debian' /etc/os-release && echo chromium,google-chrome:chromium)
@@ -78,6 +78,8 @@ types:
 lock: .venv/.dev ## choose the versions in constraints.txt, and look for wheels of what students need
 	@$(UV) compile --quiet --system-certs --universal --python-version 3.11.2 --all-extras --no-annotate --no-header \
 	  pyproject.toml --output-file constraints.txt
+	@echo uv | $(UV) compile --quiet --system-certs --generate-hashes --python-platform $(firstword $(SYSTEMS)) --python-version 3.11 \
+	  --only-binary :all: --extra notebook --no-annotate --no-header $(PIN) pyproject.toml - --output-file hashes.txt
 	@for system in $(SYSTEMS); do $(UV) compile --quiet --system-certs --only-binary :all: --extra notebook $(PIN) \
 	  --python-platform $$system --python-version 3.12 pyproject.toml >/dev/null || echo "no wheels: $$system"; done
 

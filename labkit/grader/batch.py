@@ -12,14 +12,14 @@ from ..course.authoring.bundle import Bundle
 from ..course.authoring.layout import Course
 from ..course.verdict import Outcome
 from .each import Failure, for_student
+from .executor import executor
 from .files import locked
 from .grade import hashes
-from .grading.executor import executor
-from .grading.worker import Task, grade_submission
 from .results import Result, Results
+from .sandbox.launch import Isolation, NoIsolation
 from .sandbox.limits import Limits, slowness
-from .sandbox.mounts import NoIsolation
 from .submission import Submission
+from .worker import Task, grade_submission
 
 FAILURE_RATE_ALERT = 0.3
 """If a larger share of those who tried fails a test, the run asks whether the test is to blame."""
@@ -35,7 +35,7 @@ class GradeOptions:
 
     Attributes:
         jobs: How many workers run at the same time.
-        isolated: False only if somebody typed ``--unsafe-no-isolation``.
+        isolation: What isolates the submissions.
         dask: The address of a Dask scheduler; None for this machine.
         again: Whether to grade a submission again although its result is up to date.
         lower: Whether the mark of an unchanged submission may fall.
@@ -44,7 +44,7 @@ class GradeOptions:
     """
 
     jobs: int = 1
-    isolated: bool = True
+    isolation: Isolation = Isolation.BUBBLEWRAP
     dask: str | None = None
     again: bool = False
     lower: bool = False
@@ -114,7 +114,7 @@ def grade_class(
         todo: list[Submission] = []
         for submission in (Submission.of(course, assignment, student) for student in who):
             before = results.get(submission.student)
-            if before and not options.again and _is_up_to_date(before, submission, bundle, options):
+            if before and not options.again and _is_up_to_date(before, submission, bundle):
                 yield GradedSubmission(before, before)
             else:
                 todo.append(submission)
@@ -136,7 +136,7 @@ def _graded(
     """Each result as soon as it is finished, or why grading failed."""
     with executor(options.jobs, options.dask) as pool:
         key = bundle.data["hash"]
-        tasks = [Task(course, x, key, options.isolated, options.limits) for x in submissions]
+        tasks = [Task(course, x, key, options.isolation, options.limits) for x in submissions]
         whose = {pool.submit(grade_submission, x): x.submission.student for x in tasks}
         began = said = last = time.monotonic()
         left = set(whose)
@@ -155,13 +155,10 @@ def _graded(
                 options.tell(f"{count} of {len(tasks)} graded, about {minutes} min left")
 
 
-def _is_up_to_date(
-    before: Result, submission: Submission, bundle: Bundle, options: GradeOptions
-) -> bool:
-    """Whether the same submission, release and engine led to a result, and a sandbox if asked."""
+def _is_up_to_date(before: Result, submission: Submission, bundle: Bundle) -> bool:
+    """Whether the same submission, release and engine led to a result."""
     data, _, _ = submission.read()
-    isolated = not (options.isolated and before.isolation.startswith("none"))
-    return isolated and before.hashes == hashes(data, bundle)
+    return before.hashes == hashes(data, bundle)
 
 
 def changes(found: Sequence[GradedSubmission]) -> Iterator[str]:

@@ -7,7 +7,7 @@ import unicodedata
 from collections.abc import Sequence
 from typing import Any
 
-from .sandbox.clean import clean_line, clean_text
+from .sandbox.protocol import clean_line, clean_text
 
 __all__ = ["LONGEST", "clean_data", "clean_line", "clean_text", "few", "from_no_formula",
            "how_many", "no_formula", "safe_name"]  # fmt: skip

@@ -245,11 +245,10 @@ def collect(
 @click.option("--lower", is_flag=True, help="Also record marks that become lower.")
 @click.option("--dask", metavar="ADDRESS", help="A Dask scheduler whose workers see this folder.")
 @click.option(
-    "--unsafe-no-isolation",
-    "isolated",
-    flag_value=False,
-    default=True,
-    help="Without a sandbox: students' code can then read and delete your files.",
+    "--isolation",
+    type=click.Choice(["bubblewrap", "user"]),
+    default="bubblewrap",
+    help="As root, in a container without bubblewrap: a user id and limits alone.",
 )
 @_course
 def grade(
@@ -261,7 +260,7 @@ def grade(
     diff: bool,
     lower: bool,
     dask: str | None,
-    isolated: bool,
+    isolation: str,
 ) -> int:
     """Grade every submission that is not graded yet.
 
@@ -275,10 +274,11 @@ def grade(
     from .gradebook import record
     from .results import Results
     from .rules import read_rules
+    from .sandbox.launch import Isolation
     from .submission import misnamed, none_of, students
 
     jobs, say = jobs or len(os.sched_getaffinity(0)), partial(print, file=sys.stderr, flush=True)
-    options = GradeOptions(jobs, isolated, dask, again, lower, tell=say)
+    options = GradeOptions(jobs, Isolation(isolation), dask, again, lower, tell=say)
     with Failures() as failures:
         read_rules(course)  # an error in them stops here, not after an hour
         found = students(course, assignment)

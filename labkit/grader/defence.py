@@ -33,20 +33,19 @@ from .clean import few
 from .each import Failure
 from .feedback import error_over_time, farthest, measures
 from .files import write
-from .grade import parse
 from .gradebook import open_gradebook
-from .grading.worker import in_sandbox
 from .marks import current_results
 from .pages import file, render_page
 from .plan import imports, plan
 from .results import Answer, Numbers, Run
 from .roster import read_roster
 from .rules import read_rules
-from .sandbox.launch import Sandbox
+from .sandbox.launch import Isolation, Sandbox
 from .sandbox.limits import Limits, slowness
 from .sandbox.session import RemoteFunction, Session
 from .seeds import key_of, rank
 from .submission import Submission, is_name
+from .worker import in_sandbox
 
 ASKED = 3
 """The number of questions in one defence."""
@@ -99,12 +98,14 @@ class Accepted:
         question: The question.
         answer: The answer with its verdict.
         right: The names of all questions in this notebook that earned full marks.
+        how: What isolated the answer when it was graded.
     """
 
     bundle: Bundle
     question: Question
     answer: Answer
     right: tuple[str, ...]
+    how: Isolation
 
     @property
     def assignment(self) -> str:
@@ -160,7 +161,7 @@ def draw(course: Course, student: str) -> tuple[Asked, ...]:
         return tuple(islice(filter(None, found), ASKED))
 
     modules = {name: None for one in answers for name in imports(one.bundle.data["cells"])}
-    return in_sandbox(drawn, course, tuple(modules))
+    return in_sandbox(drawn, course, tuple(modules), answers[0].how)
 
 
 def _accepted(course: Course, student: str) -> Iterator[Accepted]:
@@ -176,7 +177,8 @@ def _accepted(course: Course, student: str) -> Iterator[Accepted]:
             bundle = Bundle.of(course, name)
             for question in bundle.questions:
                 if question.name in right and edits(right[question.name].source):
-                    yield Accepted(bundle, question, right[question.name], tuple(right))
+                    how = Isolation.of(result.isolation)
+                    yield Accepted(bundle, question, right[question.name], tuple(right), how)
     if not worked:
         raise LabkitError(f"{student} has handed in nothing, so there is nothing to ask about")
 
@@ -200,13 +202,14 @@ def _ask(
 ) -> Asked | None:
     """A question about an answer; None if no mistake that is tried changes what the checks say."""
     data, _, _ = Submission.of(course, one.assignment, student).read()
-    todo, question = plan(parse(data, sandbox, limits), one.bundle.data["cells"]), one.question
+    cells, question = Session(sandbox, limits).read(data), one.question
+    todo = plan(cells, one.bundle.data["cells"])
     place = todo.places[question.name]
     mistakes = edits(todo.source(question.name))
     mistakes.sort(key=lambda edit: secret(question.name, str(edit.at), edit.now))
     for edit in mistakes[:TRIES]:
         steps = [replace(x, source=edit.cell) if x.number == place else x for x in todo.steps]
-        with closing(Session(sandbox, steps, limits)) as session:
+        with closing(Session(sandbox, limits, steps)) as session:
             session.right = [name for name in one.right if name != question.name]
             tried = try_public(question, RemoteFunction(question, session))
             session.close_question()

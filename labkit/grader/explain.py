@@ -18,12 +18,13 @@ from ..errors import LabkitError, UnknownName
 from .feedback import page
 from .files import write
 from .grade import grade
-from .grading.worker import in_sandbox
 from .marks import Mark, MarkLine, marks_of
 from .plan import imports
 from .results import Result
+from .sandbox.launch import Isolation
 from .sandbox.limits import Limits, slowness
 from .submission import Submission, none_of
+from .worker import in_sandbox
 
 _PRIVATE = "this page shows hidden cases, so it is for instructors and not for students"
 
@@ -69,7 +70,8 @@ def _explained(
     """What there is to say about an answer, part by part."""
     student = mark.student
     before = next(x for x in result.questions if x.verdict.name == name)
-    again = _grade_again(course, student, _with_cases_public(bundle, name))
+    how = Isolation.of(result.isolation)
+    again = _grade_again(course, student, _with_cases_public(bundle, name), how)
     was, now = before.verdict, again.questions[0].verdict
     (line,) = lines = tuple(line for line in mark.lines if line.name == name) or (
         MarkLine(name, was.points, was.earned),
@@ -109,7 +111,7 @@ def _with_cases_public(bundle: Bundle, name: str) -> Bundle:
     return Bundle({**bundle.data, "questions": [question_data(replace(question, tests=tests))]})
 
 
-def _grade_again(course: Course, student: str, bundle: Bundle) -> Result:
+def _grade_again(course: Course, student: str, bundle: Bundle, how: Isolation) -> Result:
     """Grade the questions of a bundle in a submission, without storing the result."""
     submission = Submission.of(course, bundle.data["assignment"], student)
     data, note, why = submission.read()
@@ -121,4 +123,5 @@ def _grade_again(course: Course, student: str, bundle: Bundle) -> Result:
         lambda sandbox: grade(data, student, bundle, sandbox, limits, note),
         course,
         imports(bundle.data["cells"]),
+        how,
     )

@@ -10,7 +10,7 @@ import time
 from collections.abc import Callable, Sequence
 from contextlib import closing, suppress
 from dataclasses import replace
-from typing import Any, TypeVar
+from typing import TypeVar
 
 from ..course.authoring.bundle import Bundle
 from ..course.handin import receipt
@@ -27,7 +27,7 @@ from .plan import Cell, plan
 from .results import Answer, Result, engine
 from .sandbox.launch import Sandbox
 from .sandbox.limits import MAX_TEXT, Limits, TextBudget
-from .sandbox.protocol import Disconnected, ProtocolError
+from .sandbox.protocol import Disconnected
 from .sandbox.session import RemoteFunction, Session
 from .submission import digest
 
@@ -56,16 +56,17 @@ def grade(
         The result; nothing that a notebook does raises an exception here.
     """
     began = time.perf_counter()
-    try:
-        cells = parse(data, sandbox, limits)
-        todo = plan(cells, bundle.data["cells"])
-        if not todo.places:
-            _refuse_other(cells, bundle)
-    except LabkitError as error:
-        return rejection(str(error), student, bundle, sandbox.level, data)
-    tools = {q.name: withheld_tools(todo.looks, q.name, q.withheld) for q in bundle.questions}
-    unasked = todo.emptied() | {name for name, used in tools.items() if used}
-    with closing(Session(sandbox, todo.steps, limits)) as session:
+    with closing(Session(sandbox, limits)) as session:
+        try:
+            cells = session.read(data)
+            todo = plan(cells, bundle.data["cells"])
+            if not todo.places:
+                _refuse_other(cells, bundle)
+        except LabkitError as error:
+            return rejection(str(error), student, bundle, sandbox.level, data)
+        tools = {q.name: withheld_tools(todo.looks, q.name, q.withheld) for q in bundle.questions}
+        unasked = todo.emptied() | {name for name, used in tools.items() if used}
+        session.steps = todo.steps
         with suppress(Disconnected):
             session.start()
         functions = [RemoteFunction(q, session) for q in bundle.questions if q.name not in unasked]
@@ -126,25 +127,6 @@ def _ungraded(student: str, bundle: Bundle, level: str, data: bytes) -> Result:
 def hashes(data: bytes, bundle: Bundle) -> dict[str, str]:
     """The hashes that identify what a result was made from."""
     return {"submission": digest(data), "bundle": bundle.data["hash"], "engine": engine()}
-
-
-def parse(data: bytes, sandbox: Sandbox, limits: Limits) -> list[dict[str, Any]]:
-    """The cells of a notebook, which a process of its own reads.
-
-    Raises:
-        LabkitError: It cannot be read.
-    """
-    try:
-        with sandbox.spawn("parse", limits, size=len(data)) as process:
-            process.connection.socket.settimeout(limits.parse)
-            with suppress(BrokenPipeError):  # an empty file is answered before it is sent
-                process.connection.socket.sendall(data)
-            found = process.connection.read(limits.parse)
-    except (OSError, ProtocolError):
-        raise LabkitError("the file takes too much time or memory to read") from None
-    if "cells" not in found:
-        raise LabkitError(str(found.get("rejected", "the file cannot be read")))
-    return list(found["cells"])
 
 
 def _refuse_other(cells: Sequence[Cell], bundle: Bundle) -> None:

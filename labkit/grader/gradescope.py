@@ -1,7 +1,7 @@
 """Gradescope: the zip that it takes as an autograder, and what runs in its container.
 
 The container cannot make namespaces, so submissions are isolated by user id; see
-`sandbox.isolation.ByUser`.  The manual at gradescope-autograders.readthedocs.io describes the files
+`sandbox.forkserver.AsUser`.  The manual, gradescope-autograders.readthedocs.io, describes the files
 under "Autograder Specifications" and "Submission Metadata", and under "Troubleshooting" the limits:
 half a processor, 768 MB and 10 minutes, after which nothing counts.
 """
@@ -26,9 +26,8 @@ from .files import write
 from .grade import grade, rejection
 from .plan import imports
 from .results import Result
-from .sandbox.launch import Sandbox
+from .sandbox.launch import Isolation, Sandbox
 from .sandbox.limits import Limits
-from .sandbox.mounts import Isolation
 from .submission import Submission
 
 PLACE = "LABKIT_AUTOGRADER"
@@ -44,7 +43,7 @@ def main() -> None:
     """Grade in another process, and stop that process if it takes too long."""
     place = Path(os.environ.get(PLACE, "/autograder"))
     if "--try" in sys.argv:
-        with Sandbox(isolation=Isolation.USER) as sandbox, sandbox.spawn("student", LIMITS):
+        with Sandbox(isolation=Isolation.USER) as sandbox:
             print(sandbox.level)
         return
     os.chmod(place, 0o700)
@@ -128,7 +127,7 @@ def autograder(course: Course, assignment: str, to: Path) -> None:
         wheel(course.root, Path(folder))
         for path in Path(folder).glob("*.whl"):
             archive.write(path, path.name)
-        archive.write(course.root / "constraints.txt", "constraints.txt")
+        archive.write(course.root / "hashes.txt", "hashes.txt")
         for name, text in files.items():
             archive.writestr(name, text)
         for name, template in (("setup.sh", "setup"), ("run_autograder", "run")):

@@ -21,10 +21,8 @@ from .clean import clean_data, clean_line
 from .files import write
 
 _LABKIT = Path(labkit.__file__).parent
-_OF_A_WORKER = {"grading", "sandbox"} | {
-    f"{name}.py"
-    for name in ("clean", "each", "evidence", "files", "grade", "plan", "results", "submission")
-}
+_OF_A_WORKER = {"sandbox", "clean.py", "each.py", "evidence.py", "files.py", "grade.py",
+                "plan.py", "results.py", "submission.py", "worker.py"}  # fmt: skip
 """The parts of the grader that a worker loads."""
 
 

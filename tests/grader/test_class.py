@@ -12,7 +12,6 @@ import subprocess
 import sys
 import threading
 from dataclasses import replace
-from pathlib import Path
 
 import pytest
 from handmade import FULL, QUICK, ROOT, add, hand_in, timeless
@@ -32,6 +31,7 @@ from labkit.grader.gradebook import open_gradebook, record
 from labkit.grader.marks import mark_of, marks_of
 from labkit.grader.release import release
 from labkit.grader.results import Results
+from labkit.grader.sandbox.launch import Isolation
 from labkit.grader.seeds import pseudonyms
 from labkit.grader.submission import students
 from labkit.grader.term import archive
@@ -235,20 +235,20 @@ def test_an_interrupt_is_a_line(graded, capsys, monkeypatch):
     assert capsys.readouterr().err.strip() == "labkit grade: stopped"
 
 
-def test_refuses_without_bubblewrap(course, solved, capsys, monkeypatch):
-    """No bubblewrap: nothing is graded, the remedy is printed; unsafe must be typed."""
+def test_refuses_without_bubblewrap(course, solved, monkeypatch):
+    """No bubblewrap: nothing is graded; a user id alone must be typed, and each result says it."""
     hand_in(course, NAME, "ada", solved)
-    monkeypatch.setenv("PATH", str(Path(sys.executable).parent))
+    monkeypatch.setenv("PATH", "/nowhere")
     arguments = ["grade", NAME, "--course", str(course.root)]
     for more in ([], ["--diff"]):
         assert main([*arguments, *more]) == 2
-        assert capsys.readouterr().err.count("apt-get install bubblewrap") == 1
     assert not list(Results(course, NAME))
-    assert main([*arguments, "--unsafe-no-isolation"]) == 0
-    assert [r.isolation[:4] for r in Results(course, NAME)] == ["none"]
+    code = main([*arguments, "--isolation", "user"])
+    found = [(Isolation.of(r.isolation), r.score) for r in Results(course, NAME)]
+    assert (code, found) == ((2, []) if os.geteuid() else (0, [(Isolation.USER, FULL)]))
     monkeypatch.undo()
-    assert main(arguments) == 0
-    assert [r.isolation[:10] for r in Results(course, NAME)] == ["bubblewrap"]
+    assert main([*arguments, "--again"]) == 0
+    assert [Isolation.of(r.isolation) for r in Results(course, NAME)] == [Isolation.BUBBLEWRAP]
 
 
 def numbers(data):

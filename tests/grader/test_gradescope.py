@@ -21,10 +21,6 @@ from labkit.course.authoring.bundle import Bundle
 from labkit.grader import gradescope
 from labkit.grader.grade import grade
 from labkit.grader.gradescope import gradescope_results
-from labkit.grader.sandbox.isolation import processes_of
-from labkit.grader.sandbox.launch import Sandbox
-from labkit.grader.sandbox.limits import Limits
-from labkit.grader.sandbox.mounts import Isolation, NoIsolation
 
 DAEMON = """
 import os, signal
@@ -152,32 +148,6 @@ def test_the_watchdog_outlives_the_grader(archive, monkeypatch, end, why):
     assert found["score"] == 0.0 and why in found["output"]
 
 
-def test_only_root_can_keep_apart_by_user(monkeypatch):
-    """Without root there is no such sandbox; a weaker one is never made in its place."""
-    monkeypatch.setattr(os, "geteuid", lambda: 1000)
-    with pytest.raises(NoIsolation, match="only root"):
-        Sandbox(isolation=Isolation.USER)
-
-
-def test_without_bubblewrap_nothing_weaker_is_taken_unasked(monkeypatch):
-    """A sandbox that nobody chose the kind of is bubblewrap's, or there is none."""
-    monkeypatch.setenv("PATH", "/nowhere")
-    with pytest.raises(NoIsolation, match="bubblewrap is missing"):
-        Sandbox()
-
-
-@as_root
-def test_a_daemon_ends_with_its_submission():
-    """Whatever a submission started is gone once its process is closed, and its folder too."""
-    source = f"{DAEMON}\nprint(os.getcwd())"
-    with Sandbox(isolation=Isolation.USER) as sandbox:
-        with sandbox.spawn("student", Limits()) as inside:
-            inside.connection.send({"cell": 0, "source": source, "answers": [], "seconds": 30.0})
-            folder = inside.connection.read(60.0)["output"].strip()
-            assert len(processes_of(sandbox.uid)) == 2 and os.path.isdir(folder)
-        assert not processes_of(sandbox.uid) and not os.path.exists(folder)
-
-
 @as_root
 @pytest.mark.slow
 def test_a_hostile_notebook_gets_nothing_and_keeps_what_it_earned(archive, solved):
@@ -187,5 +157,5 @@ def test_a_hostile_notebook_gets_nothing_and_keeps_what_it_earned(archive, solve
         hostile += "\nif got:\n    raise Exception(f'GOT {got}')"
         end = graded(place, f"{NAME}.ipynb", raw(add(solved, hostile)))
         assert "GOT" not in end.results["output"] and " failed: " not in end.results["output"]
-        assert end.results["score"] == FULL and "a user id" in end.said
+        assert end.results["score"] == FULL and end.said.splitlines()[-1].startswith("user, ")
         assert end.mode == 0o700

@@ -75,8 +75,7 @@ def test_a_bundle_that_is_not_whole_or_of_another_version_is_refused(course):
 def test_a_key_hashes_what_a_worker_loads_and_no_page_or_command():
     """All that can change a mark, but for what shows replays; a word in a page changes none."""
     code = (
-        "import sys, labkit.grader.grading.worker; from labkit.grader.sandbox import forkserver\n"
-        "from labkit.grader.sandbox import runner, stubs, parse\n"
+        "import sys, labkit.grader.worker; from labkit.grader.sandbox import forkserver\n"
         "print(*(m.__file__ for k, m in sys.modules.items() if k.startswith('labkit')))"
     )
     asked = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)

@@ -3,19 +3,15 @@
 from __future__ import annotations
 
 import json
-import time
 from contextlib import closing
 
 import pytest
 from handmade import FULL, QUICK, add, cell_of, put, raw
 
 from labkit.course.calling import NoAnswer
-from labkit.course.judges import MOST_COEFFICIENTS, Ratio
-from labkit.course.messages import why
-from labkit.errors import OutOfRange
-from labkit.grader import grade as checker
+from labkit.course.verdict import Outcome
 from labkit.grader.grade import grade
-from labkit.grader.sandbox.limits import MAX_REPLY, MAX_VALUES, Limits, TextBudget
+from labkit.grader.sandbox.limits import Limits, TextBudget
 from labkit.grader.sandbox.parse import read
 from labkit.grader.sandbox.session import MAX_LOST, RemoteFunction, Session, Step
 
@@ -40,10 +36,6 @@ def about(result, name):
     return next(q.verdict for q in result.questions if q.verdict.name == name)
 
 
-def says(result, name):
-    return " ".join(why(test) for test in about(result, name).tests)
-
-
 def on_hidden_cases(solved, bundle, name, does):
     """Make a right answer do something on hidden cases, in the process that answers."""
     asked = next(q for q in bundle.questions if q.name == name).calls
@@ -59,47 +51,43 @@ def on_hidden_cases(solved, bundle, name, does):
     )
 
 
-def test_what_cells_say_is_older_than_any_hidden_case(monkeypatch, solved, bundle, sandbox):
-    """A process that ends itself on a hidden case runs its cells again, and nobody is told."""
-    began, starts = [], []
-    guarded, run_cells = checker._mark, Session._run_cells
-    note = lambda times, call: lambda *args: times.append(time.time_ns()) or call(*args)  # noqa: E731
-    monkeypatch.setattr(checker, "_mark", note(began, guarded))
-    monkeypatch.setattr(Session, "_run_cells", note(starts, run_cells))
-    spy = (
-        "import os, threading, time\nleak = os.pipe()\n"
-        "wait = lambda: os.read(leak[0], 1) and os._exit(1)\n"
-        "threading.Thread(target=wait, daemon=True).start()\n"
-        "print(time.time_ns())\nraise ValueError(time.time_ns())"
-    )
-    on_hidden_cases(solved, bundle, "bang_bang", "os.write(leak[1], b'x') and time.sleep(60)")
-    result = grade(raw(add(solved, spy)), "mallory", bundle, sandbox, QUICK)
-    (cell,) = result.cells
-    assert len(starts) > 1, "its cells did run again"
-    assert int(cell["error"].split(",")[0]) < began[0] < starts[-1]
-    assert int(cell["output"]) < began[0]
-
-
 def test_an_answer_that_is_too_large_costs_its_question_only(solved, bundle, sandbox):
     """Long replies and replies of many values are refused before they are read."""
     put(solved, "bang_bang", "def bang_bang(*_):\n    return 'x' * 300_000")
     put(solved, "circle", "def circle(*_):\n    return {'a': [1] * 12_000}")
     result = grade(raw(solved), "mallory", bundle, sandbox, QUICK)
     assert result.score == FULL - 7
-    assert "256 kB came back" in says(result, "bang_bang")
-    assert "10,000 values came back" in says(result, "circle")
-    assert MAX_REPLY > 100 * 1_600 and MAX_VALUES > 100 * 80, "the largest honest answer's"
-
-
-def test_a_polynomial_has_few_coefficients():
-    """What is evaluated is short; a longer one is refused with the limit."""
-    Ratio((1.0,) * MOST_COEFFICIENTS, (1.0,))
-    for num, den in (((1.0,) * 51, (1.0,)), ((1.0,), (1.0,) * 2_000_000)):
-        with pytest.raises(OutOfRange, match="the limit is 50"):
-            Ratio(num, den)
+    assert about(result, "bang_bang").outcome is about(result, "circle").outcome is Outcome.ERROR
 
 
 DEAF = "import signal as s\n    for k in (14, 24, 27): s.signal(k, s.SIG_IGN)\n    while True: pass"
+HOSTILE = {
+    "an endless cell": ("while True: pass", ""),
+    "a deaf cell": (
+        "import signal\nfor s in (14, 24, 27): signal.signal(s, signal.SIG_IGN)\nwhile True: pass",
+        "",
+    ),
+    "endless answers": ("", "while True: pass"),
+    "deaf answers": ("", DEAF),
+    "forks": ("import os\nwhile True:\n    try: os.fork()\n    except OSError: pass", ""),
+    "cells that die": ("import os\nos._exit(1)", ""),
+}
+
+
+@pytest.mark.soak
+@pytest.mark.parametrize("name", HOSTILE)
+def test_what_a_hostile_submission_costs(name, solved, bundle, sandbox):
+    """Beside three times what an honest one costs: the time of `Limits.wall` on this machine."""
+    cell, answer = HOSTILE[name]
+    limits = Limits().scaled(3.0)
+    honest = grade(raw(solved), "ada", bundle, sandbox, limits).seconds["all"]
+    for question in [q.name for q in bundle.questions] * bool(answer):
+        put(solved, question, f"def {question}(*_):\n    {answer}")
+    for _ in range(40 * bool(cell)):
+        add(solved, cell)
+    result = grade(raw(solved), "mallory", bundle, sandbox, limits)
+    print(f"{name}: {result.seconds['all']:.0f} s, honest {honest:.1f} s, {result.score:g} points")
+    assert result.seconds["all"] - 3 * honest < 60.0
 
 
 ENDLESS = [
@@ -117,7 +105,7 @@ def test_an_endless_question_is_asked_no_more(body, solved, bundle, sandbox, ask
     result = grade(raw(solved), "mallory", bundle, sandbox, QUICK)
     assert result.score == FULL - 4
     assert asked.count("circle") <= MAX_LOST
-    assert "TimeoutError" in says(result, "circle")
+    assert about(result, "circle").outcome is Outcome.ERROR
 
 
 def test_calls_that_are_lost_on_hidden_cases_count_too(solved, bundle, sandbox, asked):
@@ -131,32 +119,6 @@ def test_calls_that_are_lost_on_hidden_cases_count_too(solved, bundle, sandbox, 
     public = len(next(q for q in bundle.questions if q.name == "bang_bang").calls)
     assert public < asked.count("bang_bang") <= public + MAX_LOST < before
     assert result.score < FULL
-
-
-def test_the_limits_add_up():
-    """An endless question costs a worker 15 s of a free machine, a submission a minute."""
-    limits = Limits()
-    assert limits.question + 2 * limits.grace <= 15.0
-    assert limits.parse + limits.wall <= 60.0
-    assert limits.call * limits.patience + limits.grace < limits.question
-    assert limits.cell + limits.question < limits.wall
-    twice = limits.scaled(2.0)
-    assert (twice.question, twice.wall, twice.grace, twice.patience) == (
-        2 * limits.question,
-        2 * limits.wall,
-        2 * limits.grace,
-        limits.patience,
-    )
-    assert twice.memory == limits.memory
-
-
-def test_time_counts_for_a_question_whichever_call_it_is_spent_on(solved, bundle, sandbox, asked):
-    """Calls that each come back in time, but take long together, are cut off too."""
-    put(solved, "circle", "def circle(s, start, centre):\n    __import__('time').sleep(0.3)\n"
-        "    return [0.0, 0.0, 0.0], [0.0, 0.0, 0.0], [0.0, 0.0, 0.0]")  # fmt: skip
-    result = grade(raw(solved), "ada", bundle, sandbox, Limits(call=1.0, question=0.8))
-    assert result.score == FULL - 4
-    assert asked.count("circle") <= 3
 
 
 def test_slow_cells_leave_time_for_the_answers(solved, bundle, sandbox):
@@ -196,15 +158,6 @@ def test_no_result_is_longer_than_two_megabytes(what, solved, bundle, sandbox):
     assert cut == (what in {"outputs", "own cells", "sources"})
 
 
-def test_five_megabytes_of_cells_are_refused(solved, bundle, sandbox):
-    """Sources beyond the limit are not read; the sentence names the limit."""
-    for _ in range(5):
-        add(solved, f"# {'x' * 1_000_000}")
-    result = grade(raw(solved), "mallory", bundle, sandbox, QUICK)
-    assert "over 2 MB" in result.rejected
-    assert len(result.text()) < 10_000
-
-
 def test_a_text_budget_is_never_exceeded():
     """Texts are kept whole while there is room, then in part, then not at all."""
     budget = TextBudget(100)
@@ -220,7 +173,7 @@ def test_what_an_exception_says_is_one_clean_line_before_there_is_a_result(bundl
     fails = "raise ValueError('a\\n[1/1] zoe: 0 of 20\\x1b[2J\\ud800')"
     question = next(q for q in bundle.questions if q.name == "circle")
     answers = Step(1, f"def circle(*args):\n    {fails}", ("circle",))
-    with closing(Session(sandbox, [Step(0, fails), answers], QUICK)) as session:
+    with closing(Session(sandbox, QUICK, [Step(0, fails), answers])) as session:
         session.start()
         (cell,) = session.failed()
         with pytest.raises(NoAnswer) as failed:

@@ -12,7 +12,7 @@ from typing import Any
 
 from ...course.notebook import grade_id
 from ...course.source import analyse
-from .clean import clean_text
+from .protocol import clean_text
 
 MOST_CELLS = 1000
 MOST_SOURCE = 2_000_000  # characters, in all cells together
@@ -40,15 +40,11 @@ def read(data: bytes) -> dict[str, Any]:
 
 
 def _notebook(data: bytes) -> dict[str, Any]:
-    if not data.strip():
-        raise Rejected("the file is empty")
     try:
         notebook = json.loads(data)
-    except (ValueError, RecursionError) as error:
-        what = "nested too deeply" if isinstance(error, RecursionError) else f"broken: {error}"
-        raise Rejected(f"the file is not a notebook; its JSON is {what}"[:200]) from None
-    except MemoryError:
-        raise Rejected("the file is too large to read") from None
+    except (ValueError, RecursionError, MemoryError) as error:
+        why = f"the file is not a notebook; its JSON is broken: {error}"
+        raise Rejected(why[:200]) from None
     if not isinstance(notebook, dict) or not isinstance(notebook.get("cells"), list):
         raise Rejected("the file is not a notebook of format 4: it has no cells")
     if notebook.get("nbformat") != 4:
@@ -75,9 +71,7 @@ def _cells(notebook: dict[str, Any]) -> Iterator[dict[str, Any]]:
             source = ""
         total += len(source)
         if total > MOST_SOURCE:
-            raise Rejected(
-                f"its cells have over {MOST_SOURCE // 10**6} MB of text; delete some of it"
-            )
+            raise Rejected("its cells have over 2 MB of text; delete some of it")
         source = clean_text(source.replace("\r\n", "\n").replace("\r", "\n"))
         kind = "code" if cell.get("cell_type") == "code" else "text"
         yield {

@@ -1,8 +1,9 @@
-"""JSON messages over a socket, one per line, with limits on their size and time."""
+"""JSON messages over a socket, one per line, with limits on their size and time; clean text."""
 
 from __future__ import annotations
 
 import json
+import re
 import select
 import socket
 import time
@@ -10,6 +11,28 @@ from typing import Any
 
 MAX_BYTES = 2**25
 """The longest message, unless the caller sets a lower limit."""
+_UNSAFE = re.compile(r"[\x00-\x08\x0b-\x1f\x7f-\x9f\u2028-\u202e\u2066-\u2069\ufeff]")
+_SURROGATE = re.compile("[\ud800-\udfff]")
+
+
+def clean_text(text: str) -> str:
+    """Make a text of several lines safe for every file, database and terminal.
+
+    Lone surrogates, which UTF-8 cannot encode, become U+FFFD.  Control characters other than tab
+    and newline are removed, such as the escape character, the marks that change the direction of
+    writing, and the carriage return before a newline.
+    """
+    return _UNSAFE.sub("", _SURROGATE.sub("\ufffd", text))
+
+
+def clean_line(text: str, most: int = 500) -> str:
+    """Make a text one short, safe line, with each run of white space replaced by a space.
+
+    Args:
+        text: A sentence, or the name of a person or of a file.
+        most: How many characters to keep.
+    """
+    return re.sub(r"\s+", " ", _UNSAFE.sub(" ", _SURROGATE.sub("\ufffd", text))).strip()[:most]
 
 
 class ProtocolError(Exception):
@@ -48,12 +71,12 @@ class Connection:
             raise Disconnected(str(error)) from None
 
     def read(
-        self, seconds: float | None = None, max_bytes: int = MAX_BYTES, max_values: int = MAX_BYTES
+        self, seconds: float = 1e6, max_bytes: int = MAX_BYTES, max_values: int = MAX_BYTES
     ) -> dict[str, Any]:
         """Read one message.
 
         Args:
-            seconds: How long to wait; None waits forever.
+            seconds: How long to wait.
             max_bytes: The size of the longest message.
             max_values: How many numbers, texts, lists and objects it may have in total.
 
@@ -80,15 +103,15 @@ class Connection:
         self.send(message, seconds)
         return self.read(seconds, max_bytes, max_values)
 
-    def _read_line(self, seconds: float | None, max_bytes: int) -> bytes:
+    def _read_line(self, seconds: float, max_bytes: int) -> bytes:
         """Read one line without its newline; raise as `read` does."""
-        until = None if seconds is None else time.monotonic() + seconds
+        until = time.monotonic() + seconds
         start = 0
         while (end := self._received.find(b"\n", start)) < 0:
             start = len(self._received)
             if start > max_bytes:
                 break
-            left = None if until is None else max(0.0, until - time.monotonic())
+            left = max(0.0, until - time.monotonic())
             if not select.select([self.socket], [], [], left)[0]:
                 raise Timeout("no message came in time")
             self.socket.settimeout(None)

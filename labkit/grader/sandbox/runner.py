@@ -5,37 +5,35 @@ Everything in this process belongs to the student; nothing they do to it harms a
 
 from __future__ import annotations
 
-import asyncio
-import builtins
-import inspect
 import linecache
-import math
 import os
-import resource
 import signal
 import sys
-import traceback
 import warnings
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from contextlib import contextmanager, suppress
 from typing import Any
 
-from labkit.course.calling import LONGEST, CappedText, TimeUp, kind, reply, sentence
+from labkit.course.calling import CappedText, TimeUp, kind, reply, sentence
 from labkit.course.serialize import decode
 from labkit.course.source import plain
 
-from . import stubs
+from . import parse, stubs
 from .protocol import Connection, Disconnected
 
 
-def serve(connection: Connection, request: dict[str, Any]) -> None:
+def serve(connection: Connection, limits: dict[str, Any], files: Sequence[int] = ()) -> None:
     """Serve the worker until it closes its end of the socket.
 
     Args:
         connection: The connection to the worker.
-        request: The ``limits``, and the ``uid`` of a user that only this submission has.
+        limits: See `labkit.grader.sandbox.limits.Limits`.
+        files: The notebook, an open file, if its cells are asked for; nothing of it runs before.
     """
-    notebook = Notebook(request["limits"], request["uid"])
+    for file in files:
+        with open(file, "rb") as notebook_file:
+            connection.send(parse.read(notebook_file.read()))
+    notebook = Notebook(limits)
     signal.signal(signal.SIGALRM, _time_up)
     signal.signal(signal.SIGPROF, _time_up)
     signal.signal(signal.SIGINT, signal.SIG_IGN)
@@ -53,17 +51,13 @@ def serve(connection: Connection, request: dict[str, Any]) -> None:
 class Notebook:
     """The namespace of the notebook, and the functions in it that answer questions."""
 
-    def __init__(self, limits: dict[str, Any], uid: int) -> None:
+    def __init__(self, limits: dict[str, Any]) -> None:
         module = type(sys)("__main__")
         sys.modules["__main__"] = module
         self.names: dict[str, Any] = vars(module)
         self.names.update(__builtins__=__builtins__, In=[""], Out={})
         self.functions: dict[str, Any] = {}
         self.limits, self.output = limits, limits["output"]
-        self.isolated = os.getpid() == 1 or os.getuid() == uid  # so kill(-1) reaches nobody else
-        shell = getattr(builtins, "get_ipython", None)
-        if shell is not None:
-            shell().user_ns = self.names
 
     def run(self, cell: int, source: str, answers: list[str], seconds: float) -> dict[str, Any]:
         """Run one cell, and keep the functions that answer questions."""
@@ -76,7 +70,7 @@ class Notebook:
             except TimeUp:
                 raised, error = "TimeUp", f"it was stopped after {seconds:g} s"
             except BaseException as why:
-                raised, error = kind(why), _sentence(why)
+                raised, error = kind(why), sentence(why)
         for name in answers:
             if name in self.names:
                 self.functions[name] = self.names[name]
@@ -86,22 +80,14 @@ class Notebook:
     def _execute(self, name: str, source: str) -> None:
         text = plain(source)
         linecache.cache[name] = (len(text), None, text.splitlines(True), name)
-        code = compile(text, name, "exec", flags=0x2000)  # allow await at the top level
-        found = eval(code, self.names)
-        if inspect.iscoroutine(found):
-            asyncio.run(found)
+        exec(compile(text, name, "exec"), self.names)
 
     def fork(self, connection: Connection, question: str, right: list[str]) -> int:
         """Answer one question in a fork of this process; return the exit code of the fork."""
-        if self.isolated:
-            _kill_all_others()
         child = os.fork()
         if child:
             return os.waitstatus_to_exitcode(os.waitpid(child, 0)[1])
         with suppress(BaseException):
-            limit = int(_cpu() + self.limits["question"]) + 1
-            with suppress(ValueError, OSError):
-                resource.setrlimit(resource.RLIMIT_CPU, (limit, limit))
             stubs.right.update(right)
             self._answer(connection, question)
         os._exit(0)
@@ -135,51 +121,20 @@ class Notebook:
     def _alarm(self, seconds: float) -> Iterator[None]:
         """Raise `TimeUp` after a number of seconds of computing, and again if it is caught.
 
-        Code that only waits is stopped after ``patience`` times as long.  Code that computes where
-        no exception can reach it is ended by the kernel soon after.
+        Code that only waits is stopped after ``patience`` times as long.  Where no exception can
+        reach it, the worker kills this process.
         """
         signal.setitimer(signal.ITIMER_PROF, seconds, 0.5)
         signal.setitimer(signal.ITIMER_REAL, seconds * self.limits["patience"], 0.5)
-        _limit_cpu(seconds + 1.0)
         try:
             yield
         finally:
             signal.setitimer(signal.ITIMER_PROF, 0.0)
             signal.setitimer(signal.ITIMER_REAL, 0.0)
-            _limit_cpu(None)
-
-
-def _kill_all_others() -> None:
-    """Kill what the cells left running, so that a fork stays within the limit on processes."""
-    with suppress(ProcessLookupError):
-        os.kill(-1, signal.SIGKILL)
-    with suppress(ChildProcessError):
-        while True:
-            os.waitpid(-1, 0)
-
-
-def _sentence(error: BaseException) -> str:
-    if isinstance(error, SyntaxError):
-        with suppress(BaseException):
-            return traceback.format_exception_only(error)[-1].partition(": ")[2].strip()[:LONGEST]
-    return sentence(error)
 
 
 def _time_up(number: int, frame: Any) -> None:
     raise TimeUp
-
-
-def _limit_cpu(seconds: float | None) -> None:
-    """Let the kernel end this process after so much more processor time; None lifts the limit."""
-    _, hard = resource.getrlimit(resource.RLIMIT_CPU)
-    soft = hard if seconds is None else min(hard, math.ceil(_cpu() + seconds))
-    with suppress(ValueError, OSError):
-        resource.setrlimit(resource.RLIMIT_CPU, (soft, hard))
-
-
-def _cpu() -> float:
-    used = resource.getrusage(resource.RUSAGE_SELF)
-    return used.ru_utime + used.ru_stime
 
 
 @contextmanager

@@ -1,16 +1,12 @@
 """A seccomp filter: the system calls that a student's process may make.
 
-The filter is a list of allowed calls (`syscalls`): those that Python, NumPy with its threads,
-Pinocchio, PyBullet, OpenCV, Matplotlib, `multiprocessing` and `subprocess` use.  Every other call,
-such as one that a later kernel adds, is refused.  It fails with ENOSYS, as on a kernel without it,
-so that the C library falls back to an older call (`clone3` to `clone`), and a program that probes
-for a feature does without it.
+Allowed are those that Python, NumPy with its threads, the engines, OpenCV, Matplotlib,
+`multiprocessing` and `subprocess` use.  Every other call, such as one that a later kernel adds,
+fails with ENOSYS, as on a kernel without it, so that the C library falls back to an older call
+(`clone3` to `clone`), and a program that probes for a feature does without it.
 
-Five calls are allowed with some arguments only, and fail with EPERM otherwise: `clone` makes
-processes and threads but not namespaces; `socket` and `socketpair` make sockets of AF_UNIX; `fcntl`
-does not take locks or leases; `ioctl` only asks about terminals and descriptors.  Locks and leases
-belong to files, which all sandboxes share, so one submission could send signals to another with
-them.  `flock` is refused for the same reason.
+What asks or moves the page cache (preadv2, fadvise64, sendfile) and locks on files, which all
+sandboxes share, are not allowed: one submission could tell another by them.
 """
 
 from __future__ import annotations
@@ -18,100 +14,91 @@ from __future__ import annotations
 import ctypes
 import errno
 import fcntl
-import platform
+import os
 import socket
-import struct
 import termios
-from collections.abc import Iterable, Iterator
-from functools import cache
+from ctypes import c_int, c_uint, c_uint64
 
-from .syscalls import ALLOWED, CONDITIONAL
+ALLOWED = """
+exit exit_group fork vfork execve wait4 waitid kill tkill tgkill getpid getppid gettid getuid
+geteuid getgid getegid getresuid getresgid getgroups getpgrp getpgid setpgid getsid setsid prctl
+arch_prctl set_tid_address rseq set_robust_list futex membarrier
+brk mmap munmap mremap mprotect madvise msync
+rt_sigaction rt_sigprocmask rt_sigreturn rt_sigpending rt_sigsuspend rt_sigtimedwait sigaltstack
+restart_syscall pause alarm getitimer setitimer nanosleep clock_nanosleep clock_gettime
+clock_getres gettimeofday time times
+getrusage getrlimit setrlimit prlimit64 getpriority setpriority getcpu sched_yield
+sched_getaffinity sched_setaffinity sched_getparam sched_getscheduler sched_get_priority_max
+sched_get_priority_min
+read write readv writev pread64 pwrite64 preadv pwritev lseek fsync fdatasync ftruncate truncate
+fallocate dup dup2 dup3 close close_range pipe pipe2 select pselect6 poll ppoll epoll_create
+epoll_create1 epoll_ctl epoll_wait epoll_pwait eventfd2
+open openat stat lstat fstat newfstatat statx access faccessat faccessat2 readlink readlinkat
+getdents64 getcwd chdir fchdir mkdir mkdirat rmdir unlink unlinkat rename renameat renameat2
+link linkat symlink symlinkat chmod fchmod fchmodat umask utimensat statfs fstatfs
+getxattr lgetxattr fgetxattr setxattr lsetxattr fsetxattr listxattr llistxattr flistxattr
+bind connect listen accept accept4 getsockname getpeername getsockopt setsockopt sendto recvfrom
+sendmsg recvmsg shutdown
+uname getrandom
+"""
+"""Calls with any arguments, by name: processes, memory, signals and time, limits, reading and
+writing, files by name, local sockets."""
 
-_NAMESPACES = 0x7E020080  # every CLONE_NEW... flag, time included
-_PIPE_SIZES = (1031, 1032)  # F_SETPIPE_SZ, F_GETPIPE_SZ
-_ARGUMENTS: dict[str, tuple[int, tuple[int, ...]]] = {
+_DESCRIPTORS = (termios.FIONBIO, termios.FIOCLEX, termios.FIONCLEX)
+WITH_ARGUMENT = {
     "socket": (0, (socket.AF_UNIX,)),
     "socketpair": (0, (socket.AF_UNIX,)),
-    "fcntl": (
-        1,
-        (fcntl.F_DUPFD, fcntl.F_GETFD, fcntl.F_SETFD, fcntl.F_GETFL, fcntl.F_SETFL)
-        + (fcntl.F_DUPFD_CLOEXEC, *_PIPE_SIZES),
-    ),
-    "ioctl": (
-        1,
-        (termios.TCGETS, termios.TIOCGWINSZ, termios.FIONREAD, termios.FIONBIO)
-        + (termios.FIOCLEX, termios.FIONCLEX),
-    ),
+    "fcntl": (1, (*range(5), fcntl.F_DUPFD_CLOEXEC, 1031, 1032)),  # descriptors and pipes
+    "ioctl": (1, (termios.TCGETS, termios.TIOCGWINSZ, termios.FIONREAD, *_DESCRIPTORS)),
 }
-"""The argument of each call that the filter checks, and the values that it may have."""
+"""Which argument of a call has to have one of which values: no network, locks, leases, typing."""
+_NAMESPACES = 0x7E020080
+"""Every CLONE_NEW... flag, time included: `clone` makes processes and threads alone."""
 
-_MACHINES = {"x86_64": (0, 0xC000003E), "aarch64": (1, 0xC00000B7)}
-"""The column of a processor in `syscalls`, and its number in the kernel."""
-
-_ALLOW, _KILL, _ERRNO = 0x7FFF0000, 0x80000000, 0x00050000
-_LOAD, _EQUAL, _ANY_BIT, _RETURN = 0x20, 0x15, 0x45, 0x06
-_NUMBER, _ARCH, _FIRST_ARGUMENT = 0, 4, 16  # offsets in the kernel's data; an argument has 8 bytes
+_ALLOW, _ERRNO = 0x7FFF0000, 0x00050000
+_EQUAL, _MASKED = 4, 7
 
 
-def supported() -> bool:
-    """Whether a filter can be made for this machine's processor."""
-    return platform.machine() in _MACHINES
+class _Compare(ctypes.Structure):
+    """A condition on an argument, as libseccomp's ``struct scmp_arg_cmp``."""
+
+    _fields_ = (("place", c_uint), ("how", c_int), ("first", c_uint64), ("second", c_uint64))
 
 
-@cache
-def program(machine: str) -> bytes:
-    """The filter as instructions for the kernel, compiled once, before the first fork.
-
-    Args:
-        machine: "x86_64" or "aarch64".
-    """
-    return b"".join(struct.pack("HBBI", *step) for step in _steps(*_MACHINES[machine]))
-
-
-def _steps(column: int, arch: int) -> Iterator[tuple[int, int, int, int]]:
-    """The instructions: code, number to skip if true, number to skip if false, value."""
-    allow = (_RETURN, 0, 0, _ALLOW)
-    yield _LOAD, 0, 0, _ARCH
-    yield _EQUAL, 1, 0, arch
-    yield _RETURN, 0, 0, _KILL
-    yield _LOAD, 0, 0, _NUMBER
-    for numbers in ALLOWED.values():
-        number = numbers[column]
-        if number is not None:
-            yield _EQUAL, 0, 1, number
-            yield allow
-    yield from _if_called(CONDITIONAL["clone"][column], 0, [(_ANY_BIT, 1, 0, _NAMESPACES), allow])
-    for name, (place, values) in _ARGUMENTS.items():
-        tests = [step for value in values for step in ((_EQUAL, 0, 1, value), allow)]
-        yield from _if_called(CONDITIONAL[name][column], place, tests)
-    yield _RETURN, 0, 0, _ERRNO | errno.ENOSYS
-
-
-def _if_called(
-    number: int, place: int, tests: Iterable[tuple[int, int, int, int]]
-) -> Iterator[tuple[int, int, int, int]]:
-    """Tests of an argument of one call; if it passes none of them, the call is refused."""
-    steps = [
-        (_LOAD, 0, 0, _FIRST_ARGUMENT + 8 * place),
-        *tests,
-        (_RETURN, 0, 0, _ERRNO | errno.EPERM),
-    ]
-    yield _EQUAL, 0, len(steps), number
-    yield from steps
-
-
-def install(libc: ctypes.CDLL) -> None:
-    """Install the filter in this process and all its children, irrevocably.
+class Filter:
+    """The filter, made by libseccomp for this machine's processor.
 
     Raises:
-        OSError: The kernel refused the filter.
+        OSError: libseccomp is missing, or refuses.
     """
-    code = program(platform.machine())
-    buffer = ctypes.create_string_buffer(code, len(code))
 
-    class Program(ctypes.Structure):
-        _fields_ = (("length", ctypes.c_ushort), ("steps", ctypes.c_void_p))
+    def __init__(self) -> None:
+        self._library = ctypes.CDLL("libseccomp.so.2")
+        self._library.seccomp_init.restype = ctypes.c_void_p
+        self._filter = ctypes.c_void_p(self._library.seccomp_init(_ERRNO | errno.ENOSYS))
+        for name in ALLOWED.split():
+            self._allow(name)
+        self._allow("clone", _Compare(0, _MASKED, _NAMESPACES, 0))
+        for name, (place, values) in WITH_ARGUMENT.items():
+            for value in values:
+                self._allow(name, _Compare(place, _EQUAL, value, 0))
 
-    whole = Program(len(code) // 8, ctypes.cast(buffer, ctypes.c_void_p))
-    if libc.prctl(22, 2, ctypes.byref(whole), 0, 0):  # PR_SET_SECCOMP, SECCOMP_MODE_FILTER
-        raise OSError(ctypes.get_errno(), "the system call filter was refused")
+    def install(self) -> None:
+        """Install the filter in this process and all its children, irrevocably.
+
+        No program gives them new privileges from then on.
+        """
+        _check(self._library.seccomp_load(self._filter))
+
+    def _allow(self, name: str, *only: _Compare) -> None:
+        """Allow a call, perhaps with some arguments only, if this processor has it."""
+        number = self._library.seccomp_syscall_resolve_name(name.encode())
+        if number >= 0:
+            some = (_Compare * len(only))(*only)
+            add = self._library.seccomp_rule_add_array
+            _check(add(self._filter, c_uint(_ALLOW), number, len(only), some))
+
+
+def _check(result: int) -> None:
+    if result:
+        raise OSError(-result, f"the system call filter was refused: {os.strerror(-result)}")

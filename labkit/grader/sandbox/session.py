@@ -6,33 +6,28 @@ before there is a result.  What cells print is only shown with a result, and is 
 
 from __future__ import annotations
 
-import builtins
 import time
 from collections.abc import Mapping, Sequence
 from contextlib import suppress
 from dataclasses import dataclass
 from typing import Any
 
-from ... import errors
 from ...course.calling import NoAnswer, answer
 from ...course.question import Question
 from ...course.serialize import encode
-from .clean import clean_line
-from .launch import Sandbox, SandboxProcess
+from ...errors import LabkitError
+from .launch import Sandbox
 from .limits import MAX_REPLY, MAX_VALUES, Limits
-from .protocol import BadMessage, Disconnected, ProtocolError, Timeout
+from .protocol import BadMessage, Connection, Disconnected, ProtocolError, Timeout, clean_line
 
-MAX_STARTS = 6
+MAX_STARTS = 12
 MAX_LOST = 3
-"""After this number of calls that died or hung, a question is no longer tried."""
+"""After this number of calls that died or hung, a question is no longer tried.
+
+After one that had to be killed with the whole process, it is not tried either.
+"""
 LEAST_SHARE = 0.05
 """The share of the time for all cells that a cell has once the others have spent it."""
-_EXCEPTIONS = {"ArgumentChanged", "LinAlgError"} | {
-    name
-    for module in (builtins, errors)
-    for name, thing in vars(module).items()
-    if isinstance(thing, type) and issubclass(thing, BaseException)
-}
 
 
 @dataclass(frozen=True)
@@ -57,44 +52,62 @@ class Session:
 
     Args:
         sandbox: The sandbox that makes the process.
-        steps: The cells.
         limits: What the process may use.
+        steps: The cells to run, which may be set later.
 
     Attributes:
         spent: How many seconds the cells and the answers took.
         right: The questions whose public cases the submission passed; `stubs.use` reads them.
     """
 
-    def __init__(self, sandbox: Sandbox, steps: Sequence[Step], limits: Limits) -> None:
-        self.sandbox, self.steps, self.limits = sandbox, steps, limits
+    def __init__(self, sandbox: Sandbox, limits: Limits, steps: Sequence[Step] = ()) -> None:
+        self.sandbox, self.limits, self.steps = sandbox, limits, steps
         self.spent = 0.0
         self.right: list[str] = []
-        self._deadline = time.monotonic() + limits.wall
-        self._cells, self._output = limits.cells, limits.output
+        self._left, self._cells, self._output = limits.wall, limits.cells, limits.output
         self._reports: dict[int, dict[str, Any]] = {}
         self._fatal: set[int] = set()
-        self._process: SandboxProcess | None = None
+        self._process: Connection | None = None
+        self._ran = False
         self._asked = ""
         self._starts = 0
 
     @property
     def exhausted(self) -> bool:
         """Whether the time is used up, or the process may not be started again."""
-        dead = self._process is None and self._starts >= MAX_STARTS
-        return dead or time.monotonic() > self._deadline
+        return self._left <= 0.0 or (self._process is None and self._starts >= MAX_STARTS)
 
-    def start(self) -> SandboxProcess:
+    def read(self, data: bytes) -> list[dict[str, Any]]:
+        """The cells of a notebook, before any of them runs.
+
+        Raises:
+            LabkitError: It cannot be read.
+        """
+        began = time.monotonic()
+        self._process = self.sandbox.start(self.limits, data)
+        try:
+            found = self._process.read(self.limits.parse)
+        except ProtocolError:
+            raise LabkitError("the file takes too much time or memory to read") from None
+        finally:
+            self._left -= time.monotonic() - began
+        if "cells" not in found:
+            raise LabkitError(str(found.get("rejected")))
+        return list(found["cells"])
+
+    def start(self) -> Connection:
         """Return the process, in which all cells have run; start it if necessary.
 
         Raises:
             Disconnected: The process died too often.
         """
-        while self._process is None:
+        while self._process is None or not self._ran:
             if self.exhausted:
                 raise Disconnected("it died too often")
             self._starts += 1
-            self._process = self.sandbox.spawn("student", self.limits)
-            died = self._run_cells()
+            self._process = self._process or self.sandbox.start(self.limits)
+            self._ran = True
+            died = self._run_cells(self._process)
             if died is not None:
                 self._fatal.add(died)
                 self.close()
@@ -111,10 +124,9 @@ class Session:
         """
         if self._asked == question.name:
             return False
-        connection = self.start().connection
         message = {"question": question.name, "right": self.right}
         try:
-            if "ready" not in connection.request(message, 2 * self.limits.grace, MAX_REPLY):
+            if "ready" not in self.start().request(message, 2 * self.limits.grace, MAX_REPLY):
                 raise Disconnected("it did not get ready")
         except ProtocolError as error:
             self.close()
@@ -130,24 +142,21 @@ class Session:
             seconds: The longest time to wait.
 
         Raises:
-            Timeout: No reply came in time; the fork that answers was killed.
-            BadMessage: What came back is not a reply; the fork that answers was killed.
-            Disconnected: The fork or the whole process died.
+            Timeout: No reply came in time; the process was killed.
+            BadMessage: What came back is not a reply; the process was killed.
+            Disconnected: The fork that answers, or the whole process, died.
         """
         assert self._process is not None
         began = time.monotonic()
         longest = self.limits.call * self.limits.patience + self.limits.grace
-        wait = max(0.0, min(seconds, longest, self._deadline - began))
+        wait = max(0.0, min(seconds, longest, self._left))
         try:
-            reply = self._process.connection.request(message, wait, MAX_REPLY, MAX_VALUES)
-        except Disconnected:
+            reply = self._process.request(message, wait, MAX_REPLY, MAX_VALUES)
+        except ProtocolError:
             self.close()
             raise
-        except ProtocolError:
-            self._kill_question()
-            raise
         finally:
-            self.spent += time.monotonic() - began
+            self._spend(time.monotonic() - began)
         if "over" in reply:
             self._asked = ""
             raise Disconnected("it died")
@@ -156,12 +165,11 @@ class Session:
     def close_question(self) -> None:
         """End the question that is open, if there is one."""
         if self._asked and self._process is not None:
+            self._asked = ""
             with suppress(ProtocolError):
-                connection = self._process.connection
-                if "over" in connection.request({"end": True}, self.limits.grace, MAX_REPLY):
-                    self._asked = ""
+                if "over" in self._process.request({"end": True}, self.limits.grace, MAX_REPLY):
                     return
-            self._kill_question()
+            self.close()
 
     def failed(self) -> tuple[dict[str, Any], ...]:
         """A report on each cell that failed when it last ran, in order."""
@@ -173,34 +181,38 @@ class Session:
 
     def close(self) -> None:
         """Kill the process and all that it started."""
-        self._asked = ""
+        self._asked, self._ran = "", False
         process, self._process = self._process, None
         if process is not None:
             process.close()
+            self.sandbox.end()
 
-    def _run_cells(self) -> int | None:
+    def _spend(self, seconds: float) -> None:
+        self.spent += seconds
+        self._left -= seconds
+
+    def _run_cells(self, process: Connection) -> int | None:
         """Run all cells; return the number of the one that ended the process, if any."""
         again = []  # cells with a NameError, which may be in the wrong order
         for step in self.steps:
             if step.number not in self._fatal:
-                kind = self._run(step)
+                kind = self._run(process, step)
                 if kind == "died":
                     return step.number
                 if kind == "NameError":
                     again.append(step)
-        return next((step.number for step in again if self._run(step) == "died"), None)
+        return next((step.number for step in again if self._run(process, step) == "died"), None)
 
-    def _run(self, step: Step) -> str:
+    def _run(self, process: Connection, step: Step) -> str:
         """Run one cell and report on it; return the kind of its exception, "" or "died"."""
-        assert self._process is not None
         began = time.monotonic()
         seconds = min(self.limits.cell, max(LEAST_SHARE * self.limits.cells, self._cells))
         wait = seconds * self.limits.patience + self.limits.grace
-        wait = max(0.1, min(wait, self._deadline - began))
+        wait = max(0.1, min(wait, self._left))
         cell = {"cell": step.number, "source": step.source, "answers": step.answers}
         kind, error, output = "died", "", ""
         try:
-            said = self._process.connection.request(cell | {"seconds": seconds}, wait, MAX_REPLY)
+            said = process.request(cell | {"seconds": seconds}, wait, MAX_REPLY)
             if said.get("ran") == step.number:
                 kind = clean_line(str(said.get("kind", "")), 60)
                 error = clean_line(str(said.get("error", "")), 400)
@@ -212,25 +224,12 @@ class Session:
         except ProtocolError:
             error = "it ended the process"
         spent = time.monotonic() - began
-        self.spent += spent
+        self._spend(spent)
         self._cells -= spent
         self._output -= len(output)
         report = {"kind": kind, "error": error, "output": output, "seconds": round(spent, 4)}
         self._reports[step.number] = report
         return kind
-
-    def _kill_question(self) -> None:
-        """Kill the fork that answers; if the process then does not reply, kill it, too."""
-        self._asked = ""
-        if self._process is None:
-            return
-        self._process.kill_children()
-        with suppress(ProtocolError):
-            until = time.monotonic() + self.limits.grace
-            while (left := until - time.monotonic()) > 0:
-                if "over" in self._process.connection.read(left, MAX_REPLY):
-                    return
-        self.close()
 
 
 class RemoteFunction:
@@ -261,9 +260,11 @@ class RemoteFunction:
             data = [encode(x) for x in args]
             return self._answer({"args": data, "kwargs": self._changed_kwargs(kwargs)})
         except Timeout:
+            self.lost = MAX_LOST
             limit = self.session.limits.call
             failed = "TimeoutError", f"TimeoutError: it did not return within {limit:g} s"
         except BadMessage as error:
+            self.lost = MAX_LOST
             failed = "TypeMismatch", str(error)
         except Disconnected:
             failed = "SystemExit", "SystemExit: its process ended before it answered"
@@ -289,10 +290,8 @@ class RemoteFunction:
                 return answer(reply)
         finally:
             self.left -= time.monotonic() - began
-        kind, says = str(reply["raised"]), clean_line(str(reply.get("says", "")))
+        kind, says = clean_line(str(reply["raised"]), 60), clean_line(str(reply.get("says", "")))
         if kind == "TimeUp":
             self.lost += 1
             kind = "TimeoutError"
-        if kind not in _EXCEPTIONS:
-            kind = "Exception"  # a name that the student chose could carry a secret out
         return answer({"raised": kind, "says": says})

@@ -1,4 +1,4 @@
-"""Stubs for what a notebook expects: checks that check nothing, and a shell that does little.
+"""Stubs for what a notebook expects: checks that check nothing, and a shell that does nothing.
 
 A submission is marked outside the sandbox, so `check` only has to exist.
 """
@@ -6,18 +6,19 @@ A submission is marked outside the sandbox, so `check` only has to exist.
 from __future__ import annotations
 
 import builtins
-import contextlib
 import sys
 from collections.abc import Callable
 from types import ModuleType
 from typing import Any
 
+import IPython
+
+import labkit
+from labkit.course.own_arm import commanded, my_arm, my_bug
+
 
 def install() -> None:
     """Put the stubs where a notebook looks for the originals."""
-    import labkit
-    from labkit.course.own_arm import commanded, my_arm, my_bug
-
     checks = ModuleType("labkit.course")
     for function in (check, predict, use):
         setattr(checks, function.__name__, function)
@@ -25,14 +26,9 @@ def install() -> None:
     sys.modules["labkit.course"] = vars(labkit)["course"] = checks
     vars(labkit).update(ready=ready, hand_in=nothing, progress=nothing, restore=nothing)
     vars(labkit).update(my_arm=my_arm, my_bug=my_bug)
-    shell = Shell()
-    vars(builtins).update(get_ipython=lambda: shell, display=display)
-    with contextlib.suppress(ImportError):
-        import IPython
-        from IPython import display as displays
-
-        vars(IPython).update(get_ipython=lambda: shell, display=display)
-        vars(displays)["display"] = display
+    vars(builtins).update(get_ipython=Shell, display=display)
+    vars(IPython).update(get_ipython=Shell, display=display)
+    vars(IPython.display)["display"] = display
 
 
 def ready() -> None:
@@ -79,27 +75,11 @@ def display(*things: Any, **options: Any) -> None:
     """Show nothing."""
 
 
-class NullObject:
-    """An object with every attribute and every method, such as ``events.register``."""
+class Shell:
+    """An object with every attribute and every method, none of which does anything."""
 
-    def __getattr__(self, name: str) -> NullObject:
-        return NullObject()
+    def __getattr__(self, name: str) -> Shell:
+        return Shell()
 
     def __call__(self, *args: Any, **options: Any) -> None:
         """Do nothing."""
-
-
-class Shell(NullObject):
-    """The part of IPython's shell that cells may use; it does not run commands."""
-
-    def __init__(self) -> None:
-        self.user_ns: dict[str, Any] = {}
-
-    def run_line_magic(self, name: str, line: str, *rest: Any, **options: Any) -> None:
-        """Run x for ``%time x``; ignore all other magics."""
-        if name == "time":
-            exec(compile(line, "<magic>", "exec"), self.user_ns)
-
-    def getoutput(self, command: str) -> list[str]:
-        """Return no output."""
-        return []

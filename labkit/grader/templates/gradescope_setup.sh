@@ -5,11 +5,13 @@ set -e
 cd "$(dirname "$0")"
 chmod 700 .
 apt-get update
-apt-get install -y --no-install-recommends python3-venv libgomp1
+apt-get install -y --no-install-recommends python3-venv libgomp1 libseccomp2
 python3 -m venv /opt/uv
-/opt/uv/bin/pip install --quiet uv
+sed -n '/^uv==/,/[^\\]$/p' hashes.txt > uv.txt
+/opt/uv/bin/pip install --quiet --require-hashes --requirement uv.txt
 export UV_PYTHON_INSTALL_DIR=/opt/python
 /opt/uv/bin/uv venv --quiet --python 3.11 /opt/labkit
-/opt/uv/bin/uv pip install --quiet --compile-bytecode --python /opt/labkit/bin/python \
-  --constraint constraints.txt "$(ls ./labkit-*.whl)[notebook]"
+install="/opt/uv/bin/uv pip install --quiet --compile-bytecode --python /opt/labkit/bin/python"
+$install --require-hashes --requirement hashes.txt
+$install --no-deps ./labkit-*.whl
 ./run_autograder --try

@@ -175,23 +175,6 @@ def wins(name: str, attack: Attack, made: Class) -> Iterator[str]:
         yield from spoken(made.results[who], made.sizes[who], made.pages.get(who))
 
 
-def wins_of(course: Course, student: str, attack: Attack) -> Iterator[str]:
-    """The gains of an attack by one student of a graded course."""
-    made = Class()
-    read(course, [student], made)
-    if student not in made.results:
-        yield "no result"
-        return
-    if made.results[student]["score"] > attack.earns:
-        yield f"{made.results[student]['score']:g} points, deserved {attack.earns:g}"
-    yield from spoken(made.results[student], made.sizes[student], made.pages.get(student))
-
-
-def started(text: str) -> set[str]:
-    """The times in a text at which the cells ran."""
-    return set(re.findall(r"started (\d+\.\d+)", text))
-
-
 def spoken(result: Any, size: int, page: str | None) -> Iterator[str]:
     """The forbidden texts in a result and in a page."""
     words = [*said(result), page or ""]
@@ -199,8 +182,6 @@ def spoken(result: Any, size: int, page: str | None) -> Iterator[str]:
     for secret in ("GOT", CANARY):
         if secret in text:
             yield f"it says {text[max(0, text.find(secret) - 20) :][:80]!r}"
-    if len(started(text)) > 1:
-        yield "what the cells said is not of their first run"
     if size > MOST:
         yield f"a result of {size:,} bytes"
     if found := next((word for word in words if COMMANDS.search(word)), None):

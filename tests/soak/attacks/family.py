@@ -88,11 +88,3 @@ def words(pid: int) -> str:
             Path(f"/proc/{pid}/cmdline").read_bytes().replace(b"\0", b" ").decode(errors="replace")
         )
     return ""
-
-
-def parent(pid: int) -> int:
-    """The parent of a process; 0 if the process has ended."""
-    with suppress(OSError, ValueError):
-        text = Path(f"/proc/{pid}/stat").read_text(errors="replace")
-        return int(text.rpartition(")")[2].split()[1])
-    return 0

@@ -2,38 +2,29 @@
 
 from __future__ import annotations
 
-from soak.attacks.attack import Attack, answers, cells, code_cell, function, markdown_cell
+from soak.attacks.attack import Attack, answers, cells, code_cell, function
 
 MEMORY = cells(
     "reads",
     much_memory="x = bytearray(1_600 * 2**20)\nraise Exception('GOT memory')",
     a_large_file="open('full', 'wb').write(b'x' * 100 * 2**20)\nraise Exception('GOT 100 MB')",
-    a_file_with_a_hole="open('hole', 'wb').truncate(2**40)\nraise Exception('GOT 1 TB')",
     many_files="import os\nos.makedirs('many')\nfor k in range(6_000): open(f'many/{k}', 'w')\nraise Exception('GOT files')",
     files_in_memory="import os\nkept = []\nfor _ in range(60):\n    f = os.memfd_create('x')\n    kept.append(f)\n"
     "    os.posix_fallocate(f, 0, 60 * 2**20)\nraise Exception('GOT 3.6 GB')",
-    many_open_files="import os\nkept = [os.pipe() for _ in range(100)]\nraise Exception('GOT 200 ends')",
     a_device="import os, stat\nos.mknod('d', stat.S_IFBLK | 0o666, os.makedev(8, 0))\nraise Exception('GOT')",
-    a_program_with_rights="import os\nopen('s', 'w')\nos.chown('s', 1, 1)\nos.chmod('s', 0o4777)\nraise Exception('GOT')",
     two_hundred_processes="import os, time\nfor _ in range(200):\n    if not os.fork():\n        time.sleep(20)\n        os._exit(0)\n"
     "raise Exception('GOT 200')",
     a_file_outside="open('{loot}/x', 'w').write('x')\nraise Exception('GOT write')",
-    a_folder_outside="import os\nos.makedirs('{loot}/y')\n"  # a folder in its own /tmp is not outside
-    "if os.path.exists('{loot}/socket'): raise Exception('GOT write')",
 )  # fmt: skip
 
 PROCESSES = cells(
     "leaves",
-    a_daemon="import os, time\nif not os.fork():\n    os.setsid()\n    if not os.fork():\n        time.sleep(600)\n    os._exit(0)",
-    a_daemon_with_another_name="import ctypes, os, time\nif not os.fork():\n    os.setsid()\n"
-    "    ctypes.CDLL(None).prctl(15, b') R 0 0 (x')\n    time.sleep(600)",
     a_daemon_that_is_deaf="import os, signal, time\nif not os.fork():\n    os.setsid()\n"
     "    for s in range(1, 32):\n        if s not in (9, 19, 32): signal.signal(s, signal.SIG_IGN)\n    time.sleep(600)",
     a_process_that_stands_still="import os, signal\nif not os.fork():\n    os.setsid()\n    os.kill(os.getpid(), signal.SIGSTOP)",
     a_chain_of_processes="import os, time\nfor _ in range(20):\n    if os.fork(): break\n    os.setsid()\nelse:\n    time.sleep(600)\n"
     "if os.getppid() == 1 or os.getsid(0) == os.getpid(): time.sleep(600)",
     another_program="import subprocess\nsubprocess.Popen(['/usr/bin/sleep', '600'], start_new_session=True)",
-    a_daemon_of_the_answer="import threading",
     pipes_full_in_twenty_processes="import os, time\nfor _ in range(20):\n    if not os.fork():\n"
     "        for _ in range(50):\n            end = os.pipe()[1]\n            os.set_blocking(end, False)\n"
     "            try:\n                while True: os.write(end, b'x' * 65536)\n            except OSError: pass\n        time.sleep(600)",
@@ -49,37 +40,28 @@ ENDS = cells(
     "dies",
     hard_exit="import os\nos._exit(0)",
     segmentation_fault="import ctypes\nctypes.string_at(0)",
-    abort="import os\nos.abort()",
-    kills_itself="import os\nos.kill(os.getpid(), 9)",
     another_program_in_its_place="import os\nos.execv('/usr/bin/true', ['true'])",
-    stack_overflow="x = ()\nfor _ in range(3 * 10**6): x = (x,)\nhash(x)",
     lines_closed="import os\nos.closerange(0, 1024)\nos._exit(0)",
 ) | answers(
     "dies",
     the_answer_exits="import os\nos._exit(0)",
     alarms_for_process_1="import os, signal\nfor s in (signal.SIGALRM, signal.SIGPROF): os.kill(1, s)\n"
     "os.kill(os.getppid(), signal.SIGALRM)\nos.kill(os.getpid(), signal.SIGALRM)",
-    the_answer_crashes="import ctypes\nctypes.string_at(0)",
     an_exception_that_cannot_be_said="class E(BaseException):\n    def __str__(self):\n        import os\n        os._exit(1)\nraise E",
 )  # fmt: skip
 
 ENDLESS = cells(
     "hangs",
-    loop="while True: pass",
     sleep="import time\ntime.sleep(1000)",
     deaf="import signal\nfor s in (signal.SIGALRM, signal.SIGPROF, signal.SIGXCPU, signal.SIGINT): signal.signal(s, signal.SIG_IGN)\n"
     "while True: pass",
-    catches_all="while True:\n    try:\n        while True: pass\n    except BaseException: pass",
     in_c="sum(range(10**13))",
     regular_expression="import re\nre.match('(a+)+b', 'a' * 60)",
     timers_off="import signal\nsignal.setitimer(signal.ITIMER_PROF, 0)\nsignal.setitimer(signal.ITIMER_REAL, 0)\nwhile True: pass",
-    waits_for_input="import os\nos.read(os.pipe()[0], 1)",
     stands_still="import os, signal\nos.kill(os.getpid(), signal.SIGSTOP)",
-    a_lock_for_ever="import threading\nthreading.Lock().acquire()\nx = threading.Lock()\nx.acquire()\nx.acquire()",
 ) | answers(
     "hangs",
     the_answer_never_ends="while True: pass",
-    the_answer_sleeps="import time\ntime.sleep(1000)",
     an_answer_without_end="import itertools\nreturn itertools.count()",
     an_object_without_end="class All:\n    def __iter__(self):\n        while True: yield 0.0\nreturn All()",
     forks_that_answer_late="import os, time\nif os.fork(): time.sleep(1000)\nwhile True: pass",
@@ -88,13 +70,9 @@ ENDLESS = cells(
 REPLIES = answers(
     "heavy",
     empty_lists="return [[]] * 2_700_000",
-    numbers="return [0] * 4_000_000",
-    nothings="return [None] * 1_000_000",
     not_numbers="return [float('nan')] * 200_000",
     tables="return [{'a': {}}] * 500_000",
-    long_text="return 'x' * 7_000_000",
     wide_text="return '\\U0001f600' * 1_000_000",
-    an_array="import numpy as np\nreturn np.zeros(1_500_000)",
     an_array_of_much_space="import numpy as np\nreturn np.zeros((500, 3000))",
     a_deep_list="x = []\nfor _ in range(900): x = [x] * 2 if _ < 18 else [x]\nreturn x",
     a_long_number="return [10**4000] * 500",
@@ -138,11 +116,6 @@ def _emoji(notebook):
     return notebook
 
 
-def _own_text(notebook):
-    notebook["cells"].append(markdown_cell("\U0001f600" * 1_900_000))
-    return notebook
-
-
 def _failing(notebook):
     """Cells that take long and all fail because of an unknown name."""
     source = "x = sum(range(10**6))\nnobody_knows"
@@ -160,30 +133,10 @@ def _chained(notebook):
     return notebook
 
 
-def _magics(notebook):
-    """Lines for which IPython's own parser needs long."""
-    notebook["cells"].append(code_cell("\n".join(["%x"] * 20_000), "own-0"))
-    return notebook
-
-
 def _statements(notebook):
     notebook["cells"].append(
         code_cell("x=1\n" * 480_000 + "def bang_bang(t, T): return 0, 0, 0", "own-0")
     )
-    return notebook
-
-
-def _pictures(notebook):
-    for cell in notebook["cells"]:
-        if cell["cell_type"] == "code":
-            cell["outputs"] = [
-                {"output_type": "display_data", "metadata": {}, "data": {"image/png": "A" * 10**6}}
-            ]
-    return notebook
-
-
-def _metadata(notebook):
-    notebook["cells"][0]["metadata"] |= {f"key-{k}": {} for k in range(200_000)}
     return notebook
 
 
@@ -198,17 +151,12 @@ def _names(notebook):
 FILES = {
     "900 cells that print": Attack("fills", shape=_printing),
     "a comment of a million emoji": Attack("fills", shape=_emoji, earns=1.0),
-    "a text of two million emoji": Attack("fills", shape=_own_text),
     "900 cells that fail": Attack("hangs", shape=_failing),
     "900 cells that lean on one another": Attack("fills", shape=_chained),
     "a line that is long to read": Attack("hangs", ("%lsmagic\n" + "x." * 30_000 + "a ?",)),
-    "20,000 lines of magic": Attack("hangs", shape=_magics),
     "480,000 statements": Attack("fills", shape=_statements),
-    "pictures": Attack("fills", shape=_pictures),
-    "200,000 keys": Attack("fills", shape=_metadata),
     "names as long as books": Attack("fills", shape=_names),
     "prints without end": Attack("fills", ("while True: print('x' * 10_000)",)),
-    "one line of 20 MB": Attack("fills", ("print('x' * 20_000_000)",)),
     "writes past Python's streams": Attack(
         "fills",
         (

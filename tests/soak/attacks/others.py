@@ -32,19 +32,10 @@ def _version(number):
 BATCH = {
     "a cell's name twice": Attack("stops", shape=_twice),
     "metadata from the future": Attack("stops", shape=_version(99)),
-    "metadata of version 0": Attack("stops", shape=_version(0)),
-    "kills its parent": Attack("stops", ("import os\nos.kill(os.getppid(), 9)",)),
     "kills everybody": Attack("stops", ("import os\nos.kill(-1, 9)",)),
     "terminates everybody from the answer": Attack(
         "stops", answer=function("import os\nos.kill(-1, 15)\nos.kill(os.getppid(), 15)")
     ),
-    "a start-up file for the next kernel": Attack(
-        "stops",
-        ("import os\nfolder = os.path.expanduser('~/.ipython/profile_default/startup')\n"
-         "os.makedirs(folder, exist_ok=True)\n"
-         "open(folder + '/00.py', 'w').write('import os\\nos._exit(1)\\n')",),
-    ),
-    "the gradebook deleted": Attack("stops", ("import os\nos.remove('{root}/gradebook.db')",)),
     "the gradebook locked": Attack(
         "stops",
         ("import os, sqlite3, time\nif not os.fork():\n    os.setsid()\n"
@@ -82,74 +73,20 @@ _GOT = "raise Exception('GOT ' + str(found))"
 _LIBC = "import ctypes\nlibc = ctypes.CDLL(None, use_errno=True)\n"
 LEFT = {
     "a file in /tmp": left("open('/tmp/left', 'w').write('x')", f"found = open('/tmp/left').read()\n{_GOT}"),
-    "a file in /var/tmp": left("open('/var/tmp/left', 'w').write('x')", f"found = open('/var/tmp/left').read()\n{_GOT}"),
-    "a file in /dev/shm": left("open('/dev/shm/left', 'w').write('x')", f"found = open('/dev/shm/left').read()\n{_GOT}"),
-    "a file at home": left("import os\nopen(os.path.expanduser('~/left'), 'w').write('x')",
-                           f"import os\nfound = open(os.path.expanduser('~/left')).read()\n{_GOT}"),
     "a segment of shared memory": left(
         _LIBC + "assert libc.shmget(5816, 4096, 0o1666) >= 0",
         _LIBC + f"found = libc.shmget(5816, 4096, 0)\nif found >= 0: {_GOT}"),
-    "a queue of messages": left(
-        _LIBC + "assert libc.msgget(5816, 0o1666) >= 0",
-        _LIBC + f"found = libc.msgget(5816, 0)\nif found >= 0: {_GOT}"),
-    "a semaphore": left(
-        _LIBC + "assert libc.semget(5816, 1, 0o1666) >= 0",
-        _LIBC + f"found = libc.semget(5816, 1, 0)\nif found >= 0: {_GOT}"),
-    "a queue of POSIX's": left(
-        _LIBC + "assert libc.mq_open(b'/left', 0o102, 0o666, None) >= 0",
-        _LIBC + f"found = libc.mq_open(b'/left', 0, 0, None)\nif found >= 0: {_GOT}"),
     "a process that listens": left(
         "import os, socket, time\nif not os.fork():\n    os.setsid()\n"
         "    s = socket.socket(socket.AF_UNIX)\n    s.bind('\\0left')\n    s.listen()\n    time.sleep(60)",
         f"import socket\ns = socket.socket(socket.AF_UNIX)\ns.connect('\\0left')\nfound = 'it'\n{_GOT}"),
-    "times of devices": left(
-        "import os\nfor name in ('null', 'zero', 'full', 'random', 'urandom', 'tty'):\n"
-        "    os.utime('/dev/' + name)",
-        "import os, time\nfound = [x for x in ('null', 'zero', 'full', 'random', 'urandom', 'tty')\n"
-        "    if os.path.exists('/dev/' + x)\n"
-        f"    and abs(os.stat('/dev/' + x).st_mtime - time.time()) < 20]\nif found: {_GOT}"),
-    "the time of the terminal's master": left(
-        "import os\nos.utime('/dev/pts/ptmx')",
-        "import os, time\nfound = os.stat('/dev/pts/ptmx').st_mtime\n"
-        f"if abs(found - time.time()) < 20: {_GOT}"),
-    "times of whatever can be written": left(
-        "import os\nfor top in ('/dev', '/etc', '/lab', '/run', '/var', '/srv', '/opt'):\n"
-        "    for folder, names, files in os.walk(top):\n        for name in (*names, *files):\n"
-        "            try: os.utime(os.path.join(folder, name), None)\n            except OSError: pass\n"
-        "open('{loot}/touched', 'w')",
-        # Folders around what the sandbox shows are as new as the sandbox, and its root, too.
-        "import os, time\nfound, start = [], os.stat('/').st_mtime\n"
-        "for top in ('/dev', '/etc', '/lab', '/run', '/var', '/srv', '/opt', '{loot}'):\n"
-        "    for folder, names, files in os.walk(top):\n        for name in (*names, *files):\n"
-        "            path = os.path.join(folder, name)\n            try: touched = os.lstat(path).st_mtime\n"
-        "            except OSError: continue\n"
-        "            if touched > max(start + 1, time.time() - 20) and not path.startswith(('/dev/shm', '/dev/pts/')) and path != '/dev/pts': found.append(path)\n"
-        f"if found: {_GOT}"),
-    "an attribute of a device": left(
-        "import os\nos.chmod('/dev/full', 0o664)\nos.setxattr('{loot}', 'user.left', b'x')",
-        f"import os\nfound = oct(os.stat('/dev/full').st_mode)\nif found.endswith('664'): {_GOT}\n"
-        f"found = os.getxattr('{{loot}}', 'user.left')\n{_GOT}"),
     "a lock that a daemon holds": left(
         "import fcntl, os, time\nif not os.fork():\n    os.setsid()\n    file = open('{marker}')\n"
         "    fcntl.flock(file, fcntl.LOCK_EX)\n    time.sleep(60)\ntime.sleep(0.3)",
         "import fcntl\nfile = open('{marker}')\ntry: fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)\n"
         f"except BlockingIOError as found: {_GOT}"),
-    "a host's name": left(
-        "import socket\nsocket.sethostname('left-here')",
-        f"import socket\nfound = socket.gethostname()\nif found == 'left-here': {_GOT}"),
-    "a key in the kernel's ring": left(
-        _LIBC + "key = libc.syscall(248, b'user', b'left', b'x', 1, -4)\nassert key > 0\n"
-        "libc.syscall(250, 15, key, 60)",
-        _LIBC + f"found = libc.syscall(249, b'user', b'left', None, 0)\nif found > 0: {_GOT}"),
     "labkit changed in memory": left(
         "import labkit\nlabkit.left = 'x'", f"import labkit\nfound = labkit.left\n{_GOT}"),
-    "numpy changed in memory": left(
-        "import numpy\nnumpy.left = 'x'", f"import numpy\nfound = numpy.left\n{_GOT}"),
-    "words left in memory": left(
-        "import ctypes\nwords = ctypes.create_string_buffer(b'lef' + b't-here-' * 9)",
-        "import gc\nfound = []\n"
-        "for x in gc.get_objects():\n    if isinstance(x, dict) and 'words' in x and 'ctypes' in x: found.append(sorted(x)[:5])\n"
-        f"if found: {_GOT}"),
 }  # fmt: skip
 
 

@@ -4,24 +4,21 @@ from __future__ import annotations
 
 import atexit
 import signal
-import threading
 import warnings
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from functools import cache, lru_cache
 from typing import TypeVar
 
-from ...course.authoring.bundle import Bundle
-from ...course.authoring.layout import Course
-from ...errors import LabkitError
-from ..grade import grade, rejection
-from ..plan import imports
-from ..results import Result
-from ..sandbox.cgroup import MEMORY, limit_memory
-from ..sandbox.launch import Sandbox, SandboxLost
-from ..sandbox.limits import Limits, slowness
-from ..sandbox.mounts import Isolation, NoIsolation
-from ..submission import Submission
+from ..course.authoring.bundle import Bundle
+from ..course.authoring.layout import Course
+from ..errors import LabkitError
+from .grade import grade, rejection
+from .plan import imports
+from .results import Result
+from .sandbox.launch import Isolation, NoIsolation, Sandbox, SandboxLost
+from .sandbox.limits import Limits, limit_memory, slowness
+from .submission import Submission
 
 T = TypeVar("T")
 TRIES = 2
@@ -40,19 +37,18 @@ class Task:
         course: The course, which the sandbox hides.
         submission: The student's files.
         bundle_hash: The hash of the release that the submission is compared with.
-        isolated: Whether its code runs in a sandbox.
+        isolation: What isolates its code.
         limits: What it may use on a fast machine.
     """
 
     course: Course
     submission: Submission
     bundle_hash: str
-    isolated: bool
+    isolation: Isolation
     limits: Limits
 
 
-_busy = threading.Lock()
-_sandboxes: dict[tuple[Course, bool], Sandbox] = {}
+_sandboxes: dict[tuple[Course, Isolation], Sandbox] = {}
 """The sandbox of this process, if it has one."""
 
 
@@ -65,7 +61,7 @@ def grade_submission(task: Task) -> Result:
         NoIsolation: No sandbox can be made on this machine.
         LabkitError: The sandbox was lost in every attempt, memory ran out, or the grader failed.
     """
-    with _busy, warnings.catch_warnings():
+    with warnings.catch_warnings():
         _limit_once()
         warnings.simplefilter("ignore")  # the verdict reports numbers that overflow
         limits = task.limits.scaled(slowness())
@@ -75,7 +71,7 @@ def grade_submission(task: Task) -> Result:
         except NoIsolation:
             raise
         except MemoryError:
-            why = f"judging it takes more than {MEMORY >> 20} MB of memory; look at it yourself"
+            why = "judging it takes too much memory; look at it yourself"
         except LabkitError as error:
             why = str(error)
         except Exception as error:
@@ -95,11 +91,11 @@ def _grade(task: Task, limits: Limits) -> Result:
             return rejection(why, student, bundle, sandbox.level)
         return grade(data, student, bundle, sandbox, limits, note)
 
-    return in_sandbox(once, task.course, imports(bundle.data["cells"]), isolated=task.isolated)
+    return in_sandbox(once, task.course, imports(bundle.data["cells"]), task.isolation)
 
 
 def in_sandbox(
-    do: Callable[[Sandbox], T], course: Course, loads: Sequence[str], *, isolated: bool = True
+    do: Callable[[Sandbox], T], course: Course, loads: Sequence[str], isolation: Isolation
 ) -> T:
     """Call a function with this process's sandbox, and once more with a new one if it is lost.
 
@@ -107,33 +103,23 @@ def in_sandbox(
         do: The function.
         course: The course that the sandbox hides; each course needs a sandbox of its own.
         loads: Modules that the sandbox loads once, for all submissions.
-        isolated: Whether the sandbox isolates the code in it.
+        isolation: What isolates the code in it.
 
     Raises:
         NoIsolation: No sandbox can be made on this machine.
         LabkitError: The sandbox was lost in every attempt.
     """
-    lost = ""
+    key, lost = (course, isolation), ""
     for _ in range(TRIES):
         try:
-            return do(_sandbox(course, loads, isolated))
+            if key not in _sandboxes:
+                close_sandbox()
+                _sandboxes[key] = Sandbox(loads, [course.root], isolation)
+            return do(_sandboxes[key])
         except SandboxLost as error:
             lost = str(error)
             close_sandbox()
-    raise LabkitError(
-        f"its sandbox was lost {TRIES} times ({lost}); is there enough memory? Try again, "
-        "or look at the submission yourself"
-    )
-
-
-def _sandbox(course: Course, loads: Sequence[str], isolated: bool) -> Sandbox:
-    """The sandbox of this process, or a new one if that one hides another course."""
-    key = course, isolated
-    if key not in _sandboxes:
-        close_sandbox()
-        how = Isolation.BUBBLEWRAP if isolated else Isolation.NONE
-        _sandboxes[key] = Sandbox(loads, [course.root], how)
-    return _sandboxes[key]
+    raise LabkitError(f"its sandbox was lost {TRIES} times ({lost}); is there enough memory?")
 
 
 @atexit.register

@@ -20,8 +20,7 @@ from multiprocessing.connection import Connection
 from queue import SimpleQueue
 from typing import Any
 
-from ...errors import LabkitError
-from ..sandbox.cgroup import remove_stale_groups
+from ..errors import LabkitError
 
 TRIES = 2
 """How often a call is tried if its worker dies; in each worker `worker.TRIES` counts anew."""
@@ -41,9 +40,7 @@ def executor(workers: int, dask: str | None = None) -> Iterator[Executor]:
     with ExitStack() as stack:
         if dask is None:
             pool: Executor = LocalExecutor(workers)
-            if "PYTHONSAFEPATH" not in os.environ:  # workers import nothing from the
-                os.environ["PYTHONSAFEPATH"] = "1"  # working folder, perhaps a submission's
-                stack.callback(os.environ.pop, "PYTHONSAFEPATH", None)
+            os.environ["PYTHONSAFEPATH"] = "1"  # workers import nothing from where this runs
         else:
             try:
                 from distributed import Client
@@ -96,10 +93,7 @@ class LocalExecutor(Executor):
                 pool = None
             finally:
                 self._idle.put(pool)
-        raise LabkitError(
-            f"its worker died {TRIES} times, or had to be ended because it took too long; "
-            "look at the submission yourself"
-        )
+        raise LabkitError(f"its worker died {TRIES} times, or took too long; look at it yourself")
 
     def _start(self) -> ProcessPoolExecutor:
         if self._open.closed:
@@ -114,7 +108,6 @@ class LocalExecutor(Executor):
             if pool is not None:
                 pool.shutdown()
         self._open.close()
-        remove_stale_groups()
 
 
 def _block_interrupts() -> None:
