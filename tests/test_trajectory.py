@@ -23,6 +23,7 @@ from labkit import (
     Trapezoid,
     se3,
 )
+from labkit.errors import OutOfRange
 
 A, B, C = [0.6, 0.2, 0.1], [0.5, -0.2, 0.3], [0.4, 0.0, 0.0]
 
@@ -100,6 +101,12 @@ def test_a_chains_velocity_and_acceleration_are_its_slopes(t):
     assert_slopes(chain(), t)
 
 
+def test_a_part_that_begins_elsewhere_is_numbered():
+    """The second of two, from 1 on."""
+    with pytest.raises(OutOfRange, match="^part 2 .* part 1 "):
+        Chain([Hold(A, 1.0), Hold(B, 1.0)])
+
+
 def test_a_chain_is_continuous_in_position_and_velocity_at_its_joints():
     """Neither jumps between 1 ns before a part's start and the start itself."""
     c = chain()
@@ -165,6 +172,6 @@ def test_a_hold_holds_angles_a_point_or_a_pose(place):
     hold = Hold(place, 2.0)
     assert hold.duration == 2.0
     assert isinstance(hold(0.0), PoseSample if np.ndim(place) == 2 else Sample)
-    assert hold(0.0)[1].shape == (6,) if np.ndim(place) == 2 else np.shape(place)
+    assert hold(0.0)[1].shape == ((6,) if np.ndim(place) == 2 else np.shape(place))
     for t in (-1.0, 0.0, 5.0):
         assert_at_rest(hold(t), place)
