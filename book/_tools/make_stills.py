@@ -25,6 +25,7 @@ WIDE, HIGH = 680, 360
 FRAME = f""".lk-live .lk-player {{ border: 0 !important; border-radius: 0 !important }}
     .lk-live .lk-canvas {{ width: {WIDE}px !important; height: {HIGH}px !important;
         max-height: none !important; aspect-ratio: auto !important }}
+    .lk-live .lk-beside {{ display: block !important }}
     .bd-header, .bd-header-article, .header-article {{ display: none !important }}"""
 """Style sheet for the picture: the canvas has a fixed size, and nothing covers it."""
 AFTER = 0.9
@@ -38,7 +39,7 @@ def photograph(page: Page, address: str, to: Path) -> None:
     page.wait_for_selector(".lk-live [data-ready]")
     page.add_style_tag(content=FRAME)
     page.evaluate(f"{LIVE}.pause(true)")
-    page.evaluate(f"{LIVE}.sessions.forEach((session) => session.restart())")
+    page.evaluate(f"{LIVE}.session.restart()")
     page.evaluate(f"{LIVE}.live({AFTER})")
     page.wait_for_timeout(1000)  # the stage is drawn again after its size has changed
     stage = page.locator(".lk-live .lk-canvas")
