@@ -103,7 +103,7 @@ def test_a_chains_velocity_and_acceleration_are_its_slopes(t):
 
 def test_a_part_that_begins_elsewhere_is_numbered():
     """The second of two, from 1 on."""
-    with pytest.raises(OutOfRange, match="^part 2 .* part 1 "):
+    with pytest.raises(OutOfRange, match=r"^part 2 .* part 1 "):
         Chain([Hold(A, 1.0), Hold(B, 1.0)])
 
 
