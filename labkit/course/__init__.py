@@ -5,7 +5,6 @@ A notebook uses `check` and `use`; the graders apply `mark` to the same question
 
 from __future__ import annotations
 
-from .calling import NoAnswer
 from .handin import hand_in, progress
 from .judges import (
     AtMost,
@@ -25,7 +24,7 @@ from .predictions import Prediction, predict
 from .question import Call, Chase, Choice, Loop, Mistake, Question, Raised, Test, Tuned
 from .serialize import question_data, read_question
 from .student import case, check, restore, use
-from .verdict import Outcome, TestResult, Verdict
+from .verdict import Outcome, TestResult
 
 __all__ = [
     "PUBLIC_ARMS",
@@ -43,7 +42,6 @@ __all__ = [
     "Letter",
     "Loop",
     "Mistake",
-    "NoAnswer",
     "Number",
     "Outcome",
     "OwnArm",
@@ -55,7 +53,6 @@ __all__ = [
     "TestResult",
     "TipTorque",
     "Tuned",
-    "Verdict",
     "case",
     "check",
     "commanded",

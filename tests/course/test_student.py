@@ -67,22 +67,6 @@ def test_streams_and_warnings_are_caught(capfd):
     assert "your code printed" in out and "to stderr" in out
 
 
-def test_a_line_of_the_stub_that_is_left_in_an_answer_is_told(capsys):
-    """Own lines beside `raise NotImplementedError` need one more step; a mere stub needs them.
-
-    If a library raises it, there is no such line.
-    """
-
-    def left(x):
-        y = 2 * x
-        raise NotImplementedError(y)
-
-    for answer, told in ((stub, False), (left, True), (lambda x: stub.__call__(x), False)):
-        check("double", answer)
-        said = " ".join(capsys.readouterr().out.split())
-        assert ("delete this line once your own lines return the answer" in said) == told
-
-
 def test_an_answer_that_leans_on_a_wrong_one_is_told(capsys):
     """Where a function calls another answer that is not right, that one is to be mended first.
 
@@ -100,24 +84,6 @@ def test_an_answer_that_leans_on_a_wrong_one_is_told(capsys):
     assert notebook.desk().wrong_dependencies("again", answers["method"]) == ()
     answers["double"] = double  # corrected, and not checked again: its old verdict is not quoted
     assert notebook.desk().wrong_dependencies("again", answers["again"]) == ()
-
-
-def test_an_answer_that_uses_a_withheld_tool_is_not_counted(desk, capsys):
-    """Its text tells; the stand-in takes its place."""
-    circle = replace(DOUBLE, name="double", withheld=("labkit.Circle",))
-    data = {**stamp(), "assignment": "sample", "questions": [question_data(circle)]}
-    (desk / FILE).write_text(json.dumps(data))
-    notebook._desks.clear()
-    file = desk / "answers.py"
-    file.write_text(
-        "import labkit as lk\ndef double(x):\n    return 2 * x if x < 5 else lk.Circle\n"
-    )  # the branch is for a hidden case
-    names = {"__name__": "answers"}
-    exec(compile(file.read_text(), str(file), "exec"), names)
-    assert check("double", names["double"]) == 0.0
-    assert capsys.readouterr().out.startswith("double: not counted: uses lk.Circle")
-    assert use("double", names["double"], None) is None
-    assert check("double", double) == 4.0
 
 
 KERNEL = """
@@ -154,24 +120,6 @@ def test_in_a_notebook_the_cells_tell_and_the_output_keeps_the_verdict(desk):
     assert verdict == not_counted(circle, ("labkit.Circle",))
     assert second == "double: right on all cases here; 4 points if the instructor's cases agree."
     assert then == stamp() | {"verdict": record_data(mark(circle, lambda x: 2 * x))}
-
-
-@pytest.mark.parametrize("nbgrader", [False, True])
-def test_nbgrader_reads_the_points_and_a_student_sees_no_number(desk, nbgrader):
-    """The number is an output where nbgrader runs the cell; elsewhere there is no output."""
-    program = KERNEL.format(folder=str(desk)) + (
-        "from labkit.course.student import Points\n"
-        "print(shell.display_formatter.format(Points(2.0))[0])\n"
-    )
-    done = subprocess.run(
-        [sys.executable, "-c", program],
-        capture_output=True,
-        text=True,
-        check=True,
-        cwd=desk,
-        env=os.environ | ({"NBGRADER_EXECUTION": "validate"} if nbgrader else {}),
-    )
-    assert ast.literal_eval(done.stdout) == ({"text/plain": "2.0"} if nbgrader else {})
 
 
 def test_a_loop_without_end_is_told_when_it_is_stopped(capfd):
