@@ -1,20 +1,15 @@
 # %% [markdown]
 # # 04 · Torque control
 #
-# Until now you commanded how fast the motors turn, and they found the torque themselves. In torque control
-# you compute the torque. That is more work, but it gives you a choice: you decide how the arm reacts, joint
-# by joint, when it is off its target.
+# Until now you commanded how fast the motors turn, and they found the torque. Here you compute the torque. That
+# is more work, but you decide how the arm reacts, joint by joint, when it is off its target.
 #
 # | | |
 # |---|---|
-# | **You need** | matrices; a damped spring, ë + kd ė + kp e = 0; what an eigenvalue is |
-# | **Given** | the arm's model: M, C and g (notebook 02 builds them, here you only use them) |
-# | **You write** | two torque laws, a sampled joint, gains for a real arm, a function that finds a fault |
-# | **Time** | about 3.5 hours; 21 points |
-#
-# Every cell below runs from the start, solved or not. If your part is missing, a stand-in replaces it and
-# says so. After each stub a check tells you in words what it found. The functions, your predictions and the
-# text at the end are marked; play with everything else as you like.
+# | **You need** | matrices; a damped spring, ë + kd ė + kp e = 0 |
+# | **Given** | the arm's model: M, C and g (02 builds them, here you only use them) |
+# | **You write** | a mended torque law, another one, gains for a real arm, a finder of bugs |
+# | **Time** | core 3 hours, 18 points; with the extension 22 points. Stop after 3 hours; what is left is read, not written. |
 
 # %% setup=true
 from dataclasses import replace
@@ -31,14 +26,8 @@ import numpy as np
 # %% [markdown]
 # ## The equation behind it all
 #
-# For the arm's seven joint angles $q$ Newton's law reads
-#
-# $$ M(q)\,\ddot q + C(q, \dot q)\,\dot q + g(q) = \tau . $$
-#
-# $M$ is the inertia: a matrix, because turning one joint shakes the others, and a function of $q$, because a
-# stretched arm is harder to turn than a folded one. $C\,\dot q$ are the Coriolis and centrifugal torques, and
-# $g$ is the torque that the motors need to hold the arm still. `lk.Model` computes all three. Here they are
-# at the pose where the exercises start:
+# For the seven joint angles $q$ Newton's law reads $M(q)\,\ddot q + C(q, \dot q)\,\dot q + g(q) = \tau$: inertia, a matrix,
+# because turning one joint shakes the others; Coriolis torques; and the torque that holds the arm still.
 
 # %%
 model = lk.Model("left", lk.BAXTER)
@@ -51,14 +40,13 @@ print("weight, [N m]      ", "  ".join(f"{x:6.2f}" for x in model.gravity(ready)
 print("torque limit, [N m]", "  ".join(f"{x:6.0f}" for x in model.robot.effort))
 
 # %% [markdown]
-# Keep two things in mind. The shoulder's `s1` needs 36 of its 100 N m only to hold the arm up. And the last
-# joint, `w2`, has a fortieth of the shoulder's inertia: the same torque is a nudge here and a kick there.
+# `s1` needs 36 of its 100 N m only to hold the arm up, and `w2` has a fortieth of the shoulder's inertia: the same
+# torque is a nudge here and a kick there.
 #
 # ## Who carries the weight?
 #
-# On an ideal arm, as in a textbook, your torques must carry the weight. Baxter carries itself: a separate channel adds $g(q)$ to every
-# command, in every mode, all the time. The simulated arm has a switch for this in its *plant*. Release both
-# arms, with no torque at all, and see.
+# A textbook's arm leaves its weight to your torques. Baxter carries itself: a separate channel adds $g(q)$ to every
+# command. Release both with no torque at all.
 
 # %%
 textbook = lk.Plant(name="textbook", armature=0.05)
@@ -81,59 +69,37 @@ for name, log in loose.items():
     print(f"{name}: the tip drops {z[0] - min(z):.0f} mm in {log.t[-1]:.1f} s")
 
 # %% [markdown]
-# So a torque law must know which arm it runs on. Your functions have the argument `arm_compensates` for this.
-# If it is true, the arm carries its own weight, and the law must not add gravity.
+# So a law must know which arm it runs on: that is `arm_compensates`.
 #
-# ## Springs, dampers, and the torque of the motion
+# ## Find and mend: equation 18
 #
-# Throughout this course the error is *target minus actual*:
-#
-# $$ e = q_d - q, \qquad \dot e = \dot q_d - \dot q . $$
-#
-# Fasten a spring $K_p$ and a damper $K_d$ between each joint and its target, and add the torque that the
-# target's motion needs: put the target's motion into the equation above, at the angles of the arm. This is
-# the *augmented PD* law (Murray, Li and Sastry, equation 4.53; there $e$ has the other sign). Note which
-# speed multiplies $C$: with the target's speed, the energy of the springs and of the error's motion never
-# grows. That alone does not prove that the arm arrives, because this energy is also constant while the error
-# does not change; Murray, Li and Sastry close the gap (proposition 4.10). The report that this lab grew out
-# of printed the arm's own speed instead. Then their proof does not apply: this energy may grow, unless there is enough
-# damping, $K_d > \dot M / 2$.
+# The *augmented PD* law has a spring and a damper at each joint, and the torque that the target's motion takes.
+# This is *our reading* of the report's equation 18, with our sign, $e = q_d - q$, and with the gravity that the team
+# wrote. **Some terms are right. Change what is wrong, nothing else.**
 
-# %% question="augmented_pd"
-def augmented_pd(state, target, model, *, kp, kd, arm_compensates):
-    """Augmented PD: the torque that the motion takes, a spring and a damper at each joint.
-
-    Args:
-        state: lk.State(t, q, dq), angles in [rad] and speeds in [rad/s], shape (7,) each.
-        target: lk.Sample(position, velocity, acceleration) of the joints, shape (7,) each.
-        model: lk.Model, with mass_matrix(q), coriolis(q, dq) of shape (7, 7), and gravity(q).
-        kp: Springs, shape (7,) or one number, in [N m/rad].
-        kd: Dampers, shape (7,) or one number, in [N m s/rad].
-        arm_compensates: Whether the arm carries its own weight.
-
-    Returns:
-        lk.JointTorque of shape (7,) in [N m].
-    """
-    ### BEGIN SOLUTION
-    from solutions.torque_control.answers import augmented_pd as answer
-
-    return answer(state, target, model, kp=kp, kd=kd, arm_compensates=arm_compensates)
-    ### END SOLUTION
+# %%
+def equation_18(state, target, model, *, kp, kd, arm_compensates):
+    """The report's joint torque controller."""
+    M, J = model.mass_matrix(state.q), model.tip_jacobian(state.q)
+    a = M @ target.acceleration
+    b = model.coriolis(state.q, state.dq) @ state.dq
+    c = kp * (target.position - state.q) + kd * (target.velocity - state.dq)
+    d = M @ J.T @ [0.0, 0.0, 0.981, 0.0, 0.0, 0.0]
+    return lk.JointTorque(a + b + c + d)
 
 
 # %% [markdown]
-# Let your law hold both arms, with `arm_compensates` true and false. Two of these four runs agree with the
-# arm. What happens in the other two? (If your law is not ready, Baxter's position mode stands in: it holds
-# the place whatever happens, so all four will look alike.)
+# Three runs on each arm: **H**, held, started beside the target; **P**, on a path; **F**, a quick dash, from beside.
 
 # %%
-def position_mode(state, target, model, *, kp, kd, arm_compensates):
-    return lk.JointPosition(target.position)
-
-
-my_augmented_pd = use("augmented_pd", augmented_pd, position_mode)
-
 KP, KD = 80.0, 12.0  # the same in every joint: enough to see what a law does, and no more
+beside = 0.05 * np.array([1, -1, 1, 1, -1, 1, -1])
+reach = lk.Line(ready, ready + [0.5, 0.2, 0.0, -0.4, 0.3, 0.2, 0.4])
+THREE = {
+    "H": (lk.Hold(ready, 2.0), ready + beside),
+    "P": (lk.Trajectory(reach, lk.Quintic(2.0)), ready),
+    "F": (lk.Trajectory(reach, lk.Quintic(0.7)), ready + beside),
+}
 
 
 def with_gains(law, plant, kp, kd, arm_compensates):
@@ -143,83 +109,89 @@ def with_gains(law, plant, kp, kd, arm_compensates):
     def controller(state, target):
         return law(state, target, known, kp=kp, kd=kd, arm_compensates=arm_compensates)
 
-    controller.__name__ = "a stand-in, position mode" if law is position_mode else law.__name__
+    controller.__name__ = law.__name__
     return controller
 
 
-logs = {}
-for plant in (textbook, carries_itself):
-    for flag in (False, True):
-        law = with_gains(my_augmented_pd, plant, KP, KD, flag)
-        logs[f"{plant.name}, arm_compensates={flag}"] = stay(plant, law)
+def three_runs(law):
+    """The tip's height above its target in six runs."""
+    figure, axes = plt.subplots(1, 3, figsize=(9, 2.8), sharey=True, layout="constrained")
+    says = []
+    for ax, (name, (target, q0)) in zip(axes, THREE.items()):
+        for plant, style in ((textbook, "-"), (carries_itself, "--")):
+            flag = plant.gravity_compensation
+            with lk.Arm("left", plant, q0=q0) as arm:
+                log = lk.run(arm, target, with_gains(law, plant, KP, KD, flag))
+            z = -1e3 * lk.metrics.tip_error(log)[:, 2]
+            ax.plot(log.t, z, style, label=plant.name)
+            says.append(f"{name}, {plant.name}: {z[-1]:+.0f} mm")
+        ax.set_title(name, loc="left", fontsize="medium")
+        ax.set_xlabel("time [s]")
+    axes[0].set_ylabel("height above the target [mm]")
+    axes[0].legend(frameon=False)
+    lk.plotting.show(f"{law.__name__}: the tip's height at the end. {'; '.join(says)}.")
 
-plt.figure(figsize=(8, 3.4), layout="constrained")
-heights = {}
-for (name, log), style in zip(logs.items(), ("-", "--", "-.", ":")):
-    z = 1e3 * lk.metrics.tip_poses(log)[:, 2, 3]
-    z = (z - z[0]).round(3) + 0.0
-    heights[name] = z[-1]
-    plt.plot(log.t, z, style, label=name)
-plt.xlabel("time [s]")
-plt.ylabel("height of the tip [mm]")
-plt.gcf().legend(loc="outside lower center", ncols=2, frameon=False)
-lk.plotting.show(
-    "The tip's height after 1.5 s: "
-    + "; ".join(f"{name}: {z:+.0f} mm" for name, z in heights.items())
-    + "."
-)
+
+three_runs(equation_18)
 
 # %% [markdown]
-# Here are the runs as arms. Move the slider, turn the view.
+# A run cannot find every error. If one hides, take paper: with the energy $V = \tfrac12\dot e^T M\dot e + \tfrac12 e^T K_p e$
+# and $\dot M = C + C^T$, what must vanish in $\dot V$? (Murray, Li and Sastry, proposition 4.10.)
+
+# %% question="augmented_pd"
+def augmented_pd(state, target, model, *, kp, kd, arm_compensates):
+    """Equation 18, mended: an lk.JointTorque.
+
+    Args:
+        state, target: lk.State(t, q, dq); lk.Sample(position, velocity, acceleration).
+        model: lk.Model, with mass_matrix(q), coriolis(q, dq) of shape (7, 7), and gravity(q).
+        kp, kd: In [N m/rad] and [N m s/rad], shape (7,) or one number.
+        arm_compensates: Whether the arm carries its own weight.
+    """
+    ### BEGIN SOLUTION
+    from solutions.torque_control.answers import augmented_pd as answer
+
+    return answer(state, target, model, kp=kp, kd=kd, arm_compensates=arm_compensates)
+    ### END SOLUTION
+
+
+# %% question="what_shows"
+def what_shows(term):
+    """Replace the question marks in this line and use it:"""
+    # return {"a": "-", "b": "?", "c": "?", "d": "?"}[term]
+    ### BEGIN SOLUTION
+    from solutions.torque_control.answers import what_shows as answer
+
+    return answer(term)
+    ### END SOLUTION
+
 
 # %%
-right, *others = logs.items()
-carried = lk.replay.motion_of(
-    right[1],
-    f"Who carries the weight? Held by {right[1].controller}",
-    label=right[0],
-    ghosts=dict(others[:2]),
-    reference=False,
-)
-lk.replay.show(carried)
+def position_mode(state, target, model, *, kp, kd, arm_compensates):
+    """The stand-in: Baxter's position mode, which holds any place."""
+    return lk.JointPosition(target.position)
+
+
+my_augmented_pd = use("augmented_pd", augmented_pd, position_mode)
+three_runs(my_augmented_pd)
 
 # %% [markdown]
 # ## Every joint the same
 #
-# With springs at the joints, each joint swings at its own frequency, and the joints shake each other through
-# $M$. *Computed torque* first asks which acceleration would be good. If the joints had
-#
-# $$ \ddot q = \ddot q_d + K_d\,\dot e + K_p\,e , $$
-#
-# then the error would obey $\ddot e + K_d\,\dot e + K_p\,e = 0$: a damped spring in each joint, free of all
-# the others, whatever the pose. So this is the acceleration to ask for, and the equation of motion gives the
-# torque. The gains are now multiplied by $M$; their units are 1/s² and 1/s.
+# With springs at the joints each joint swings at its own frequency, and they shake each other through $M$.
+# *Computed torque* first asks for an acceleration: $\ddot q = \ddot q_d + K_d\,\dot e + K_p\,e$ would give $\ddot e + K_d\,\dot e +
+# K_p\,e = 0$, a damped spring in each joint, free of the others, whatever the pose. The equation of motion then
+# gives the torque. The gains are inside $M$ now: their units are 1/s² and 1/s.
 
 # %% question="computed_torque"
 def computed_torque(state, target, model, *, kp, kd, arm_compensates):
-    """Computed torque: the error of every joint decays like that of a damped spring.
-
-    Args:
-        state: lk.State(t, q, dq), angles in [rad] and speeds in [rad/s], shape (7,) each.
-        target: lk.Sample(position, velocity, acceleration) of the joints, shape (7,) each.
-        model: lk.Model, with mass_matrix(q), coriolis(q, dq) of shape (7, 7), gravity(q) and
-            inverse_dynamics(q, dq, ddq) = M ddq + C dq + g.
-        kp: Gains, shape (7,) or one number, in [1/s^2].
-        kd: Gains, shape (7,) or one number, in [1/s].
-        arm_compensates: Whether the arm carries its own weight.
-
-    Returns:
-        lk.JointTorque of shape (7,) in [N m].
-    """
+    """Computed torque: an lk.JointTorque; kp in [1/s^2], kd in [1/s], the rest as above."""
     ### BEGIN SOLUTION
     from solutions.torque_control.answers import computed_torque as answer
 
     return answer(state, target, model, kp=kp, kd=kd, arm_compensates=arm_compensates)
     ### END SOLUTION
 
-
-# %% [markdown]
-# Start both laws 0.1 rad off in every joint, and look at the error that is left in each joint.
 
 # %%
 my_computed_torque = use("computed_torque", computed_torque, position_mode)
@@ -247,8 +219,8 @@ lk.plotting.show(
 )
 
 # %% [markdown]
-# All seven curves are the same: that is what the model gives you. But this result depends on the model. On an
-# arm with friction, or with something in its gripper, the curves come apart again.
+# What you should have seen: seven equal curves. That is what the model gives you, and it lasts as long as the
+# model is right.
 
 # %% predict="unknown_load"
 
@@ -262,51 +234,231 @@ else:
     print("The stand-in holds any load: the truth is shown here once your law is ready.")
 
 # %% [markdown]
-# ## Gains with a meaning
+# ## Find the bug
 #
-# Nobody knows what "kp = 40" feels like. A frequency and a damping ratio are easier to imagine: how often the
-# error would swing in a second if nothing damped it, and how strongly it is damped. A ratio of 1 is *critical* damping, the
-# quickest response without overshoot. Compare with the standard form of a damped spring,
+# Three runs of computed torque. The law is right at first; then, while the arm moves, a version with one mistake
+# replaces it. (Use the name that your instructor gave you; `"demo"` is public.) The suspects:
 #
-# $$ \ddot e + 2\,\zeta\,\omega\,\dot e + \omega^2\,e = 0 . $$
-#
-# Turn the dials: this is the error of one joint, started at 1. Which setting settles soonest?
+# | | |
+# |---|---|
+# | a | the error of the speed has the wrong sign |
+# | b | gravity is left out |
+# | c | gravity is added twice |
+# | d | the state is 60 ms old |
+# | e | the target is always the last one (index -1) |
+# | f | the target's acceleration is left out |
+# | g | the errors of the joints w0 and w2 are exchanged |
+# | h | the joints' own speed is damped, not the error of the speed |
 
 # %%
-def error_of_one_joint(frequency, damping):
-    omega = 2.0 * np.pi * frequency
-    kp, kd = omega**2, 2.0 * damping * omega
-    t = np.linspace(0.0, 2.0, 401)
-    fast, slow = np.roots([1.0, kd, kp]) + [0.0, 1e-9]  # apart, so that one formula serves
-    e = np.real((fast * np.exp(slow * t) - slow * np.exp(fast * t)) / (fast - slow))
-    outside = np.flatnonzero(np.abs(e) > 0.02)
-    figure, ax = plt.subplots(figsize=(7, 2.6), layout="constrained")
-    ax.plot(t, e)
-    ax.axhspan(-0.02, 0.02, color="0.85")
+HANDLE = "demo"  # in a course: the name that your instructor gave you
+_, axes = plt.subplots(1, 3, figsize=(9, 3), sharex=True, layout="constrained")
+for number, ax in enumerate(axes, start=1):
+    log = lk.my_bug(number, HANDLE)
+    off = log.target.position[: len(log)] - log.q
+    for k, column in enumerate(off.T):
+        ax.plot(log.t, column, ("-", "--", "-.", ":")[k % 4], label=names[k])
+    ax.set_title(f"run {number}", loc="left", fontsize="medium")
     ax.set_xlabel("time [s]")
-    ax.set_ylabel("error left")
-    return figure, (
-        f"kp = {kp:.1f} 1/s², kd = {kd:.2f} 1/s: the error stays within 2 % after "
-        f"{t[outside[-1]]:.2f} s and overshoots by {100 * max(0.0, -e.min()):.0f} %."
-    )
-
-
-dials = lk.plotting.dials(error_of_one_joint, frequency=(0.5, 6.0, 2.0, "Hz"), damping=(0.1, 2.0, 0.7))
+axes[0].set_ylabel("error [rad]")
+axes[2].legend(frameon=False, ncols=2, fontsize="small")
+lk.plotting.show(f"The errors of the seven joints in three misbehaving runs for the name {HANDLE}.")
 
 # %% [markdown]
-# ## The torque is constant between two ticks
+# Write the finder: it is tried on runs that you have never seen. The trap is the time before the mistake enters.
+
+# %% question="find_bug"
+def find_bug(log):
+    """The letter of the mistake.
+
+    Args:
+        log: The run, with t of shape (N,), q, dq and command of shape (N, 7).
+    """
+    ### BEGIN SOLUTION
+    from solutions.torque_control.answers import find_bug as answer
+
+    return answer(log)
+    ### END SOLUTION
+
+
+# %%
+my_find_bug = use("find_bug", find_bug, lambda log: "?")
+print("My three runs:", ", ".join(my_find_bug(lk.my_bug(number, HANDLE)) for number in (1, 2, 3)))
+
+# %% [markdown]
+# ## Gravity on the real robot, and why nobody could tell
 #
-# A computer reads the state and computes a torque, and the motor keeps that torque until the next reading: 5
-# ms at 200 Hz. For a heavy joint that is very short. For a light joint it can be too long: the torque that
-# should stop the joint drives it past the target and away. The *eigenvalues* of the step from one sample to
-# the next tell you whether the joint settles or runs away. If all of them are inside the unit circle, the
-# error decays in the end, although it may grow at first.
+# For years teams of this lab fought with gravity: one had 3 % of the weight, one minus 10 %, one minus 96 %; the
+# staff multiplied it by 0.075, "because it seems quite wrong". On Baxter the right factor is 0. Here are some factors
+# on a circle, with Baxter's friction.
+
+# %%
+holding = np.diag(model.mass_matrix(ready))
+holding = lk.control.springs(50.0 * holding, 14.0 * holding)
+tip = model.pose(ready)[:3, 3]
+sixteen_centimetres = lk.Circle(tip, tip + [0.0, -0.08, -0.2])
+circle = model.joint_trajectory(lk.Trajectory(sixteen_centimetres, lk.Quintic(4.0)), ready)
+
+
+def drive(plant, controller, target=circle, seed=1):
+    with lk.Arm("left", plant, seed, q0=ready) as arm:
+        return lk.run(arm, target, controller)
+
+
+def adds_gravity(factor):
+    def controller(state, target):
+        return lk.JointTorque(holding(state, target).value + factor * model.gravity(state.q))
+
+    return controller
+
+
+print("factor   RMS error of the tip")
+for factor in (-0.03, 0.0, 0.01, 0.03, 0.075, 0.3, 1.0):
+    log = drive(lk.BAXTER, adds_gravity(factor))
+    print(f"{factor:6.3f}   {lk.metrics.summary(log).rms_mm:6.1f} mm")
+
+# %% [markdown]
+# What you should have seen: from -0.03 to 0.03 little changes, because 1 N m of friction hides 1 N m of error. Nobody
+# plotted a torque against a model, so wrong and right looked alike.
 #
-# During one step the torque is constant. So the acceleration of a single joint is constant too, and you can
-# compute exactly where the joint will be. Take the target as zero:
+# ## Gains for a real arm
+#
+# This arm publishes its state 100 times a second, up to 14 ms late, with noise; it has friction, and there may be a
+# load. Play first, with the same gains in all joints: does any pair follow well and not buzz?
+
+# %%
+slow_line = model.joint_trajectory(
+    lk.Trajectory(lk.Line(tip, tip + [0.08, -0.12, 0.08]), lk.Quintic(3.0)), ready
+)
+
+
+def same_gains_everywhere(kp, kd):
+    figure, ax = plt.subplots(figsize=(7, 2.6), layout="constrained")
+    try:
+        log = drive(lk.BAXTER, lk.control.springs(kp, kd), slow_line)
+    except lk.errors.Diverged as error:
+        log = error.log
+    error = 1e3 * np.linalg.norm(lk.metrics.tip_error(log)[:, :3], axis=1)
+    ax.plot(log.t, error)
+    ax.set_xlabel("time [s]")
+    ax.set_ylabel("error [mm]")
+    return figure, f"kp = {kp:g} N m/rad, kd = {kd:g} N m s/rad everywhere: {lk.metrics.summary(log)}."
+
+
+dials = lk.plotting.dials(same_gains_everywhere, kp=(0.0, 200.0, 50.0, "N m/rad"), kd=(0.0, 40.0, 8.0, "N m s/rad"))
+
+# %% [markdown]
+# The shoulder needs higher gains, and the wrist cannot bear them. A frequency means more than a gain: compare $m\,\ddot e
+# + k_d\,\dot e + k_p\,e = 0$ with $\ddot e + 2\zeta\omega\,\dot e + \omega^2 e = 0$. Too low, and friction and load win; too high, and
+# the arm reacts to an old state.
+
+# %% question="choose_gains"
+def choose_gains(model):
+    """(kp, kd), shape (7,) each, in [N m/rad] and [N m s/rad], for an lk.Model of any rotors."""
+    ### BEGIN SOLUTION
+    from solutions.torque_control.answers import choose_gains as answer
+
+    return answer(model)
+    ### END SOLUTION
+
+
+# %% [markdown]
+# Your gains, made softer and stiffer by a factor on the frequency, in three cases:
+
+# %%
+def rethinks_example(model):
+    """The joint springs of Rethink's own example."""
+    return np.array([10.0, 15.0, 5.0, 5.0, 3.0, 2.0, 1.5]), 0.1 * np.ones(7)
+
+
+my_choose_gains = use("choose_gains", choose_gains, rethinks_example)
+spring_law = "your springs" if my_choose_gains is choose_gains else "a stand-in, the springs of Rethink's example"
+
+loaded = replace(lk.BAXTER, name="with 1 kg", payload=1.0)
+occasions = (
+    ("slow line", lk.BAXTER, slow_line),
+    ("circle", lk.BAXTER, circle),
+    ("circle, 1 kg", loaded, circle),
+)
+steps = np.array([0.5, 1.0, 1.5, 2.0])
+kp, kd = (np.asarray(gain) for gain in my_choose_gains(model))
+plt.figure(figsize=(7, 3.2), layout="constrained")
+middle = []
+shown = lk.plotting.progress("twelve runs", len(occasions) * len(steps))
+for (name, plant, target), style in zip(occasions, ("-", "--", "-.")):
+    errors = []
+    for x in steps:
+        try:
+            log = drive(plant, lk.control.springs(x**2 * kp, x * kd), target)
+        except lk.errors.Diverged as error:
+            log = error.log
+        errors.append(lk.metrics.summary(log).rms_mm)
+        shown(len(middle) * len(steps) + len(errors))
+    plt.plot(steps, errors, style, marker="o", mfc="none", label=name)
+    middle.append(f"{name} {errors[1]:.1f} mm")
+plt.axvline(1.0, color="0.5", linewidth=1)
+plt.yscale("log")
+plt.yticks([3, 5, 10, 20, 50, 100], ["3", "5", "10", "20", "50", "100"])
+plt.minorticks_off()
+plt.xlabel(f"factor on the frequency of {spring_law}")
+plt.ylabel("RMS error [mm]")
+plt.legend(frameon=False)
+lk.plotting.show(f"The error over the stiffness. With {spring_law}, at factor 1: {', '.join(middle)}.")
+
+# %% [markdown]
+# To the left of the lowest point friction and load cause the error, to its right the old state. The lowest point is
+# close to an edge: on a quicker path the edge comes sooner. Now watch: your springs with a kilogram in the gripper,
+# and computed torque, which does not know of it either.
+
+# %%
+ct = with_gains(my_computed_torque, lk.BAXTER, 120.0, 22.0, True)
+sprung, computed = drive(loaded, lk.control.springs(kp, kd)), drive(loaded, ct)
+print(f"{spring_law}: {lk.metrics.summary(sprung)}")
+print(f"{ct.__name__}: {lk.metrics.summary(computed)}")
+lk.replay.show(
+    lk.replay.motion_of(
+        sprung, "A circle with 1 kg in the gripper", label=spring_law, ghosts={ct.__name__: computed}
+    )
+)
+
+# %% [markdown] why="why_unknown_load"
+# How far did you see computed torque sag under half a kilogram, and why? The load pulls with 5 N: say which
+# matrix converts it to accelerations, and why "stiff" means something else for kp in 1/s² than for kp in N
+# m/rad.
+#
+# ### BEGIN SOLUTION
+# It sagged by 21 mm. The load's torques are J^T F, and computed torque answers with M kp e, so M^-1
+# converts torques to accelerations. The stiffness is M kp: with kp = 40 1/s² about 80 N m/rad at the shoulder, only
+# 2 to 4 at the wrist. So kp fixes a frequency, not a stiffness. Springs of 40 N m/rad in every joint are
+# half as stiff at the shoulder and sag more: 38 mm.
+# ### END SOLUTION
+
+# %% [markdown]
+# Pull the arm while it circles: press *Start*. Make the springs softer and stiffer, hang the kilogram on, take the
+# friction away. Then choose computed torque.
+
+# %%
+def pulled(state, target, factor):
+    return lk.control.springs(factor**2 * kp, factor * kd)(state, target)
+
+
+view = lk.live(
+    lk.Arm("left", lk.BAXTER, q0=circle(0.0).position), circle, {spring_law: pulled, ct.__name__: ct},
+    title="Torque control", factor=(0.3, 2.0, 1.0), payload=(0.0, 1.0), stiction=(0.0, 1.0),
+)
+view
+
+# %% [markdown]
+# ## Appendix: the torque is constant between two ticks
+#
+# A computer reads the state and computes a torque, and the motor keeps it until the next reading, 5 ms at 200 Hz. For
+# a light joint that can be too long: the torque that should stop it drives it past the target. During one step the
+# acceleration of a single joint is constant, so you can compute exactly where it will be (target zero):
 #
 # $$ \begin{pmatrix} q \\ \dot q \end{pmatrix}_{k+1} = A \begin{pmatrix} q \\ \dot q \end{pmatrix}_{k},
 # \qquad \tau_k = -k_p\,q_k - k_d\,\dot q_k . $$
+#
+# If all eigenvalues of $A$ are inside the unit circle, the error decays in the end.
 
 # %% question="sampled_joint"
 def sampled_joint(inertia, kp, kd, dt):
@@ -329,11 +481,8 @@ def sampled_joint(inertia, kp, kd, dt):
 
 
 # %% [markdown]
-# The report's team had 8 N m/rad and 1.5 N m s/rad at the last wrist joint `w2`. In Baxter's published data
-# this joint has 0.001 kg m², the inertia of a little disc, because the motor's rotor is left out. Behind its
-# gears the rotor turns many times faster than the joint, so to the joint it feels far heavier than it is
-# (people call this the *armature*). Nobody has published its value; here we assume 0.05 kg m². Which of the
-# two inertias must the team's joint have had?
+# The report had 8 N m/rad and 1.5 N m s/rad at `w2`. In Baxter's published data this joint has 0.001 kg m²: the motor's
+# rotor is left out, which turns many times faster than the joint. We assume 0.05 kg m². Which of the two must it be?
 
 # %%
 def never_sampled(inertia, kp, kd, dt):
@@ -365,10 +514,6 @@ lk.plotting.show(
     + "."
 )
 
-# %% [markdown]
-# Does the arm agree? Springs and dampers at every joint, at 200 Hz, on the arm without rotors and on the
-# one with them. `lk.run` notices when an arm runs away and says where it began.
-
 # %%
 kp_report = 8.0 * np.array([1.0, 1.0, 1.5, 1.5, 1.0, 1.0, 1.0])
 springs = lk.control.springs(kp_report, [10.0, 10.0, 5.0, 5.0, 4.0, 1.5, 1.5])
@@ -381,303 +526,12 @@ for armature in (0.0, 0.05):
         print(f"{plant.name}: {error}".replace("; ", ";\n  "))
 
 # %% [markdown]
-# This is why a simulated Baxter needs rotors in its data if springs and dampers like those of the real arm are to
-# drive it, although the data sheet has none.
-
-# %% [markdown]
-# ## Find the bug
-#
-# Here are three runs of computed torque that nobody else has: put the name that your instructor gave
-# you in place of `"demo"` (notebook 03 introduces it; `"demo"` is public). The arm in these runs is the textbook's, with
-# rotors, a little friction and noisy speeds, and the law carries its weight. In each run the law is right at first; then,
-# while the arm moves, a version with one mistake replaces it. You know how the right law behaves, because you
-# have written it. The suspects:
-#
-# | | |
-# |---|---|
-# | a | the error of the speed has the wrong sign |
-# | b | gravity is left out |
-# | c | gravity is added twice |
-# | d | the state is 60 ms old |
-# | e | the target is always the last one (index -1) |
-# | f | the target's acceleration is left out |
-# | g | the errors of the joints w0 and w2 are exchanged |
-# | h | the joints' own speed is damped, not the error of the speed |
-
-# %%
-HANDLE = "demo"  # in a course: the name that your instructor gave you
-_, axes = plt.subplots(1, 3, figsize=(9, 3), sharex=True, layout="constrained")
-for number, ax in enumerate(axes, start=1):
-    log = lk.my_bug(number, HANDLE)
-    off = log.target.position[: len(log)] - log.q
-    for k, column in enumerate(off.T):
-        ax.plot(log.t, column, ("-", "--", "-.", ":")[k % 4], label=names[k])
-    ax.set_title(f"run {number}", loc="left", fontsize="medium")
-    ax.set_xlabel("time [s]")
-axes[0].set_ylabel("error [rad]")
-axes[2].legend(frameon=False, ncols=2, fontsize="small")
-lk.plotting.show(f"The errors of the seven joints in three misbehaving runs for the name {HANDLE}.")
-
-# %% [markdown]
-# Name what you see. A function does it for any run: `lk.course.commanded(log, "b")` gives, for the states that the run saw, the
-# torques of the law with mistake b, shape (N, 7), and `log.command` what was really commanded.
-
-# %% question="diagnose"
-def diagnose(log):
-    """The letter of the mistake in the law of a run, which enters at some time before 0.8 s."""
-    ### BEGIN SOLUTION
-    from solutions.torque_control.answers import diagnose as answer
-
-    return answer(log)
-    ### END SOLUTION
-
-
-# %%
-my_diagnose = use("diagnose", diagnose, lambda log: "?")
-for number in (1, 2, 3):
-    print(f"run {number}: {my_diagnose(lk.my_bug(number, HANDLE))}")
-
-# %% [markdown]
-# ## Gravity on the real robot, and why nobody could tell
-#
-# For years teams of this lab fought with gravity. One wrote a formula that came to 3 % of the true weight,
-# one to minus 10 %, a third to minus 96 %. The staff multiplied the model's gravity by 0.075, in another year
-# by 0.01, "because it seems quite wrong". How could such different answers pass?
-#
-# Measure gravity. Hold the arm at several poses with springs and dampers, and write down the torques that
-# *you* command once it rests. If you have to carry the weight, these torques are $g(q)$, and the factor
-# between the two is 1. By least squares it is $\sum \tau g / \sum g^2$, over all joints and poses.
-
-# %% [markdown]
-# Here are the same eight poses twice: once with the arm's own compensation suppressed, as Rethink's manual
-# explains, and once as Baxter comes out of the box. Both arms have Baxter's friction and noise.
-
-# %%
-holding = np.diag(model.mass_matrix(ready))
-holding = lk.control.springs(50.0 * holding, 14.0 * holding)
-
-
-def rest_torques(plant, poses=8, seed=1):
-    """What the springs command at rest, and the model's gravity there, shape (poses, 7) each."""
-    random = np.random.default_rng(seed)
-    tau, g = [], []
-    shown = lk.plotting.progress(f"holding {poses} poses, plant {plant.name}", poses)
-    with lk.Arm("left", plant, seed) as arm:
-        for k, q in enumerate(ready + random.uniform(-0.4, 0.4, (poses, 7))):
-            arm.reset(q)
-            log = lk.run(arm, lk.Hold(q, 1.2), holding)
-            tau.append(log.command[-20:].mean(axis=0))
-            g.append(model.gravity(log.q[-1]))
-            shown(k + 1)
-    return np.array(tau), np.array(g)
-
-
-suppressed = replace(lk.BAXTER, name="suppressed", gravity_compensation=False)
-plt.figure(figsize=(5, 3.6), layout="constrained")
-factors = {}
-for plant, mark in ((suppressed, "o"), (lk.BAXTER, "x")):
-    tau, g = rest_torques(plant)
-    factors[plant.name] = np.sum(tau * g) / np.sum(g * g)
-    label = f"{plant.name}: factor {factors[plant.name]:+.3f}"
-    plt.plot(g.ravel(), tau.ravel(), mark, mfc="none", label=label)
-plt.xlabel("the model's gravity [N m]")
-plt.ylabel("torque commanded at rest [N m]")
-plt.legend(frameon=False)
-lk.plotting.show(
-    "Torques commanded at rest over the model's gravity, seven joints in eight poses. The factor is "
-    + " and ".join(f"{x:+.3f} ({name})" for name, x in factors.items())
-    + "."
-)
-
-# %% [markdown]
-# The right factor on Baxter is 0. It is not 0.075, not 0.01, and not 1, because the arm already carries its
-# own weight. Now try the factors that people used, on a circle, on an arm with Baxter's friction.
-
-# %%
-tip = model.pose(ready)[:3, 3]
-sixteen_centimetres = lk.Circle(tip, tip + [0.0, -0.08, -0.2])
-circle = model.joint_trajectory(lk.Trajectory(sixteen_centimetres, lk.Quintic(4.0)), ready)
-
-
-def drive(plant, controller, target=circle, seed=1):
-    with lk.Arm("left", plant, seed, q0=ready) as arm:
-        return lk.run(arm, target, controller)
-
-
-def adds_gravity(factor):
-    def controller(state, target):
-        return lk.JointTorque(holding(state, target).value + factor * model.gravity(state.q))
-
-    return controller
-
-
-print("factor   RMS error of the tip")
-for factor in (-0.03, 0.0, 0.01, 0.03, 0.075, 0.3, 1.0):
-    log = drive(lk.BAXTER, adds_gravity(factor))
-    print(f"{factor:6.3f}   {lk.metrics.summary(log).rms_mm:6.1f} mm")
-
-# %% [markdown]
-# From -0.03 to 0.03 little changes, because about 1 N m of friction hides an error of about 1 N m at the
-# shoulder. Nobody plotted a torque against a model, so wrong and right looked alike. The one factor whose
-# effect nobody could overlook, the model's own factor 1, looked worst of all.
-#
-# ## Gains for a real arm
-#
-# Now choose gains for a real arm. This one publishes its state 100 times a second, up to 14 ms late, with
-# noise; it has friction; and there may be a load in its gripper. It carries its own weight, but not that of
-# the load.
-#
-# Play first. Here both gains are the same for all seven joints, on a slow line. Can you find any pair that
-# follows well and does not buzz? Watch the error of the *speed*, because buzzing shows there first.
-
-# %%
-slow_line = model.joint_trajectory(
-    lk.Trajectory(lk.Line(tip, tip + [0.08, -0.12, 0.08]), lk.Quintic(3.0)), ready
-)
-
-
-def same_gains_everywhere(kp, kd):
-    figure, ax = plt.subplots(figsize=(7, 2.6), layout="constrained")
-    try:
-        log = drive(lk.BAXTER, lk.control.springs(kp, kd), slow_line)
-    except lk.errors.Diverged as error:
-        log = error.log
-    error = 1e3 * np.linalg.norm(lk.metrics.tip_error(log)[:, :3], axis=1)
-    ax.plot(log.t, error)
-    ax.set_xlabel("time [s]")
-    ax.set_ylabel("error [mm]")
-    return figure, f"kp = {kp:g} N m/rad, kd = {kd:g} N m s/rad everywhere: {lk.metrics.summary(log)}."
-
-
-dials = lk.plotting.dials(same_gains_everywhere, kp=(0.0, 200.0, 50.0, "N m/rad"), kd=(0.0, 40.0, 8.0, "N m s/rad"))
-
-# %% [markdown]
-# The shoulder needs higher gains, but the wrist cannot bear them. Your gains may differ from joint to joint,
-# and the model can tell you how. Then one number remains to be chosen, a frequency. If the frequency is
-# too low, friction and load win; if it is too high, the arm reacts to an old state.
-#
-# The law is the simplest there is, `lk.control.springs(kp, kd)`: springs and dampers, no model. Only the
-# gains matter here. They are tried on the slow line, then on quicker paths, with a load, and on an arm that
-# is released a tenth of a radian off in every joint: it must come to rest.
-
-# %% question="choose_gains"
-def choose_gains(model):
-    """Springs and dampers for any path, at any speed, with up to 1 kg in the gripper.
-
-    Args:
-        model: lk.Model of a Baxter arm, left or right, with an empty gripper.
-
-    Returns:
-        (kp, kd), each shape (7,) or one number, in [N m/rad] and [N m s/rad].
-    """
-    ### BEGIN SOLUTION
-    from solutions.torque_control.answers import choose_gains as answer
-
-    return answer(model)
-    ### END SOLUTION
-
-
-# %% [markdown]
-# How good are your gains? The figure shows them, made softer and stiffer by a factor, in the three cases. The
-# factor multiplies the frequency: the springs change with its square, the dampers with the factor itself. (If
-# your gains are not ready, those of Rethink's own example stand in; they were made to be soft.)
-
-# %%
-def rethinks_example(model):
-    """The joint springs of Rethink's own example."""
-    return np.array([10.0, 15.0, 5.0, 5.0, 3.0, 2.0, 1.5]), 0.1 * np.ones(7)
-
-
-my_choose_gains = use("choose_gains", choose_gains, rethinks_example)
-spring_law = "your springs" if my_choose_gains is choose_gains else "a stand-in, the springs of Rethink's example"
-
-loaded = replace(lk.BAXTER, name="with 1 kg", payload=1.0)
-occasions = (
-    ("slow line", lk.BAXTER, slow_line),
-    ("circle", lk.BAXTER, circle),
-    ("circle, 1 kg", loaded, circle),
-)
-steps = np.array([0.5, 0.75, 1.0, 1.25, 1.6, 2.0])
-kp, kd = (np.asarray(gain) for gain in my_choose_gains(model))
-plt.figure(figsize=(7, 3.2), layout="constrained")
-middle = []
-shown = lk.plotting.progress("eighteen runs", len(occasions) * len(steps))
-for (name, plant, target), style in zip(occasions, ("-", "--", "-.")):
-    errors = []
-    for x in steps:
-        try:
-            log = drive(plant, lk.control.springs(x**2 * kp, x * kd), target)
-        except lk.errors.Diverged as error:
-            log = error.log
-        errors.append(lk.metrics.summary(log).rms_mm)
-        shown(len(middle) * len(steps) + len(errors))
-    plt.plot(steps, errors, style, marker="o", mfc="none", label=name)
-    middle.append(f"{name} {errors[2]:.1f} mm")
-plt.axvline(1.0, color="0.5", linewidth=1)
-plt.yscale("log")
-plt.yticks([3, 5, 10, 20, 50, 100], ["3", "5", "10", "20", "50", "100"])
-plt.minorticks_off()
-plt.xlabel(f"factor on the frequency of {spring_law}")
-plt.ylabel("RMS error [mm]")
-plt.legend(frameon=False)
-lk.plotting.show(f"The error over the stiffness. With {spring_law}, at factor 1: {', '.join(middle)}.")
-
-# %% [markdown]
-# To the left of the lowest point friction and load cause the error; to its right, the old state does. The
-# lowest point is not the best choice, because it is close to an edge, and on a quicker path, or with more
-# noise, the edge comes sooner. Your gains are marked on such paths. Stay well to the left of the lowest
-# point.
-#
-# Finally, watch the arm move: your springs with a kilogram in the gripper, and beside them computed torque,
-# which does not know of that kilogram either.
-
-# %%
-ct = with_gains(my_computed_torque, lk.BAXTER, 120.0, 22.0, True)
-sprung, computed = drive(loaded, lk.control.springs(kp, kd)), drive(loaded, ct)
-print(f"{spring_law}: {lk.metrics.summary(sprung)}")
-print(f"{ct.__name__}: {lk.metrics.summary(computed)}")
-lk.replay.show(
-    lk.replay.motion_of(
-        sprung, "A circle with 1 kg in the gripper", label=spring_law, ghosts={ct.__name__: computed}
-    )
-)
-
-# %% [markdown] why="why_unknown_load"
-# How far did you see computed torque sag under half a kilogram, and why? The load pulls with 5 N: say which
-# matrix converts it to accelerations, and why "stiff" means something else for kp in 1/s² than for kp in N
-# m/rad.
-#
-# ### BEGIN SOLUTION
-# It sagged by 21 mm. The load's torques are J^T F, and computed torque answers with M kp e, so M^-1
-# converts torques to accelerations. The stiffness is M kp: with kp = 40 1/s² about 80 N m/rad at the shoulder, only
-# 2 to 4 at the wrist. So kp fixes a frequency, not a stiffness. Springs of 40 N m/rad in every joint are
-# half as stiff at the shoulder and sag more: 38 mm.
-# ### END SOLUTION
-
-# %% [markdown]
-# Now pull the arm yourself. Press *Start*, and pull at the arm while it circles: the springs give way. Make
-# them softer and stiffer with the dial, which is the factor on their frequency as above; hang the kilogram
-# on; take the friction away. Then choose computed torque. (The line of numbers beside or below the picture
-# begins with what moves the arm, and says so if it is a stand-in.)
-
-# %%
-def pulled(state, target, factor):
-    return lk.control.springs(factor**2 * kp, factor * kd)(state, target)
-
-
-view = lk.live(
-    lk.Arm("left", lk.BAXTER, q0=circle(0.0).position), circle, {spring_law: pulled, ct.__name__: ct},
-    title="Torque control", factor=(0.3, 2.0, 1.0), payload=(0.0, 1.0), stiction=(0.0, 1.0),
-)
-view
+# So a simulated Baxter needs rotors in its data, although the data sheet has none.
 
 # %% [markdown]
 # ## Hand in
 #
-# Run everything once more from the top (*Kernel, Restart Kernel and Run All Cells*) and save the file. Then
-# run only the last cell once more: it prints a receipt for the saved file; keep it. `!labkit submit-check 04_torque_control.ipynb`
-# in a new cell runs a copy of that file and says what is missing. Hand in the file without renaming it, in the way your course asks. The grader runs your
-# functions on further cases; the text above each stub says what kind of cases.
+# *Kernel, Restart Kernel and Run All Cells*, save, then run only the last cell once more: it prints a receipt.
 
 # %% setup=true
 lk.hand_in("04_torque_control")

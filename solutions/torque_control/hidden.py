@@ -111,12 +111,6 @@ def computed_runs(random: Random) -> Iterator[Case]:
     yield Loop(tour, given, side, model.plant, q0=q0, settle=1.0, expected={"rms_mm": 0.3})
 
 
-def faulty_runs(random: Random) -> Iterator[Call]:
-    """Runs with any mistake, move, moment and noise."""
-    for _ in range(4):
-        yield call(Bug.drawn(random))
-
-
 def joints(random: Random) -> Iterator[Call]:
     """Other joints, heavy and light."""
     for _ in range(4):
@@ -177,3 +171,26 @@ def quick_tours(random: Random) -> Iterator[Case]:
 def loaded_tours(random: Random) -> Iterator[Case]:
     """Tours with a payload in the gripper."""
     yield tuned(random, random.choice(["left", "right"]), random.uniform(0.7, 1.0))
+
+
+def terms_of_18(random: Random) -> Iterator[Call]:
+    """The terms whose verdict is not told."""
+    yield from map(call, "bcd")
+
+
+def rotors(factor: float, side: Any = "left") -> lk.Model:
+    """A Baxter arm with other rotors."""
+    scaled = tuple(factor * x for x in lk.BAXTER.armature)
+    return lk.Model(side, replace(lk.BAXTER, name="other rotors", armature=scaled))
+
+
+def other_rotors(random: Random) -> Iterator[Call]:
+    """Arms with lighter and heavier rotors."""
+    for least, most in ((0.2, 0.4), (2.5, 4.0)):
+        side = random.choice(["left", "right"])
+        yield call(rotors(float(random.uniform(least, most)), side))
+
+
+def bugs(random: Random) -> Iterator[Call]:
+    """Runs with any mistake."""
+    yield from (call(Bug.drawn(random)) for _ in range(4))

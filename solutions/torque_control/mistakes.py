@@ -206,12 +206,6 @@ def _with_weight(
     return law, others
 
 
-def compares_the_whole_run(log: lk.Log) -> str:
-    """The largest difference anywhere, also before the mistake enters."""
-    off = {x: np.abs(log.command - lk.course.commanded(log, x)).max() for x in "abcdefgh"}
-    return min(off, key=lambda x: off[x])
-
-
 def not_a_step(inertia: float, kp: float, kd: float, dt: float) -> Any:
     """The matrix of the differential equation."""
     return np.array([[0.0, 1.0], [-kp / inertia, -kd / inertia]])
@@ -377,3 +371,20 @@ class Stepped:
     def __call__(self, inertia: float, kp: float, kd: float, dt: float) -> Any:
         """The matrix."""
         return np.asarray(self.free(dt)) - np.outer([dt**2 / 2.0 / inertia, dt / inertia], [kp, kd])
+
+
+def as_printed(
+    state: lk.State, target: lk.Sample, model: lk.Model, *, kp: Any, kd: Any, arm_compensates: bool
+) -> lk.JointTorque:
+    """Equation 18 as it is printed, with the report's gravity."""
+    q, dq = state.q, state.dq
+    M, J = model.mass_matrix(q), model.tip_jacobian(q)
+    tau = right.augmented_pd(state, target, model, kp=kp, kd=kd, arm_compensates=True).value
+    tau = tau + model.coriolis(q, dq) @ (dq - target.velocity)
+    return lk.JointTorque(tau + M @ J.T @ [0.0, 0.0, 0.981, 0.0, 0.0, 0.0])
+
+
+def least_error(log: lk.Log) -> str:
+    """The law that fits the whole run, also before the mistake entered."""
+    off = {x: np.abs(log.command - lk.course.commanded(log, x)).mean() for x in "abcdefgh"}
+    return min(off, key=lambda x: off[x])

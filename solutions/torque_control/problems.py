@@ -7,7 +7,7 @@ from dataclasses import replace
 import numpy as np
 
 import labkit as lk
-from labkit.course import Bug, Call, Close, Gains, Loop, Tuned
+from labkit.course import Bug, Call, Close, Loop, Tuned
 from labkit.course.authoring.problem import Problem, Trial, Wrong, call
 
 from . import answers, hidden, mistakes, variants
@@ -81,12 +81,10 @@ TERMS = (
 
 AUGMENTED_PD = Problem(
     name="augmented_pd",
-    points=4,
+    points=3,
     outcomes=("control",),
-    asks="Give the `lk.JointTorque` of the augmented PD law: the torque that the target's motion "
-    "takes (M times the target's acceleration, C times the target's speed, and the weight if the "
-    "arm does not carry it itself), plus a spring `kp` and a damper `kd` at each joint. Evaluate "
-    "M, C and g at the arm's own state, not at the target's.",
+    asks="Mend `equation_18`. Change what is wrong, nothing else. Where `arm_compensates` is true the "
+    "arm carries its own weight, and the law must not add it.",
     answer=answers.augmented_pd,
     judge=TORQUE,
     trials=(
@@ -107,117 +105,53 @@ AUGMENTED_PD = Problem(
     ),
     withheld=("labkit.control.springs",),
     hints=(
-        "Write the error first, e = target.position - state.q, and its rate in the same way from "
-        "the speeds. Then the torque is a sum of four parts: inertia, Coriolis, weight, and the "
-        "springs and dampers.",
-        HINTS_SWITCH + " M is model.mass_matrix(state.q), C is model.coriolis(state.q, state.dq).",
-        "The law has five terms. Two are for the motion, and both use the target's motion. One is "
-        "the weight, which is added under a condition. Two are the springs and the dampers, which "
-        "M does not multiply.",
+        "Ask of each term: is it a torque? does it belong to the arm's motion, to the target's, or to "
+        "the error?",
+        HINTS_SWITCH + " Its formula in the report has the unit kg m⁴/s².",
+        "With V = ėᵀMė/2 + eᵀKe/2 the Coriolis term must cancel ėᵀṀė/2: write out the rate of V and see "
+        "which speed C has to multiply.",
     ),
     terms=mistakes.augmented_terms,
     wrong=(
         Wrong(
-            "the error reversed",
-            "The springs push the arm away from its target. With e as target minus actual, every "
-            "gain has a plus.",
-            mistakes.actual_minus_target,
-            "Choose the sign of e once, and say it aloud.",
-        ),
-        Wrong(
-            "the weight carried twice",
-            "The weight is added although the arm carries it already, so the arm would rise. "
-            "Where arm_compensates is True, add none.",
-            mistakes.always_carries,
-            "On Baxter the right factor for gravity is 0.",
-        ),
-        Wrong(
-            "C times the arm's own speed",
-            "Multiply C by the target's speed: for this law stability is proven. With the arm's "
-            "own speed, as in the report's equation 18, stability takes more damping. At low "
-            "speed the difference is hard to see.",
-            mistakes.own_speed_in_coriolis,
-            "MLS 4.53 has C(q, dq) dq_d, because the proof uses the skew symmetry of dM - 2C.",
-        ),
-        Wrong(
-            "damping of the motion, not of the error",
-            "The damper brakes the arm's own speed, so it holds the arm back whenever the target "
-            "moves. It should brake the difference: target.velocity - state.dq.",
-            mistakes.damps_the_motion,
-            "The damper sits between the arm and the target, not between the arm and the wall.",
+            "as printed",
+            "Terms b and d are still the report's: a speed that the proof of stability does not allow, and "
+            "a gravity with the wrong unit.",
+            mistakes.as_printed,
+            "A run cannot find every error: term b shows in none.",
         ),
         Wrong(
             "the model evaluated at the target",
-            "M, C and g are evaluated at the target's angles. The arm's inertia and weight are "
-            "those of the pose where the arm is: use state.q.",
+            "M, C and g are evaluated at the target's angles, but the arm is not there.",
             mistakes.model_at_the_target,
             "The physics happens at q, not at q_d.",
-        ),
-        Wrong(
-            "the springs reversed",
-            "The error of the angles has the wrong sign, so the springs push the arm away. Take "
-            "target minus actual.",
-            mistakes.AugmentedLaw(e=-1.0),
-            "One sign for every error.",
+            "Use state.q.",
         ),
         Wrong(
             "the switch reversed",
-            "arm_compensates is True where the arm carries its own weight; add g(q) only where it "
-            "is False.",
+            "arm_compensates is true where the arm carries its own weight: you add it there.",
             mistakes.AugmentedLaw(switch=True),
             "Say who carries the weight: the arm or the law.",
         ),
         Wrong(
-            "the weight subtracted",
-            "g(q) is what the motors must give to hold the arm: add it.",
-            mistakes.AugmentedLaw(weight=-1.0),
-            "In the equation of motion g is on the left and the motors are on the right.",
-        ),
-        Wrong(
-            "no Coriolis torques",
-            "C times the target's speed is missing. Add it, although at low speed its effect is "
-            "hard to see.",
-            mistakes.AugmentedLaw(coriolis=0.0),
-            "A small effect is not zero: try a fast motion.",
+            "the weight carried twice",
+            "The weight is added although the arm carries it already, so the arm would rise.",
+            mistakes.always_carries,
+            "On Baxter the right factor for gravity is 0.",
+            "Add it only where arm_compensates is false.",
         ),
         Wrong(
             "C of the target's speed",
-            "C must be evaluated at the arm's own state, C(q, q̇). Only the speed that you "
-            "multiply by C is the target's.",
+            "C itself is evaluated at the target's speed.",
             mistakes.AugmentedLaw(at_target=True),
             "C(q, q̇) q̇_d has two speeds: one inside C, one that C multiplies.",
-        ),
-        Wrong(
-            "no inertia",
-            "M times the target's acceleration is missing. Add it.",
-            mistakes.AugmentedLaw(beside=0.0, diagonal=0.0),
-            "A target that speeds up needs torque.",
+            "Inside C is the arm's speed; the speed that C multiplies is the target's.",
         ),
         Wrong(
             "kp and kd swapped",
-            "kp multiplies the error of the angles, and kd that of the speeds.",
+            "kp multiplies the error of the speeds, and kd that of the angles.",
             mistakes.AugmentedLaw(swapped=True),
             "The units tell which is which: kp is in N m/rad, kd in N m s/rad.",
-        ),
-        Wrong(
-            "springs and dampers inside M",
-            "In this law M multiplies only the target's acceleration: kp e and kd ė are torques "
-            "already. Keep them outside M.",
-            mistakes.TorqueBy(lambda x: x.motion + x.M @ x.pull + x.g),
-            "Units: say whether kp e is a torque or an acceleration.",
-        ),
-        Wrong(
-            "the mass matrix where the target is",
-            "Evaluate M where the arm is: model.mass_matrix(state.q).",
-            mistakes.TorqueBy(
-                lambda x: (
-                    x.motion
-                    + (x.model.mass_matrix(x.target.position) - x.M) @ x.target.acceleration
-                    + x.pull
-                    + x.g
-                )
-            ),
-            "Evaluate the model at the arm's own angles.",
         ),
     ),
     variants=(variants.augmented_by_newton_euler, variants.augmented_in_a_list),
@@ -260,20 +194,22 @@ COMPUTED_TORQUE = Problem(
         Wrong(
             "the gains outside M",
             "With the gains outside M every joint responds differently, because each has another "
-            "inertia. Put kp e and kd ė into the acceleration, before you multiply by M.",
+            "inertia.",
             mistakes.gains_outside,
             "In computed torque kp is in 1/s², so it belongs inside M.",
+            "Put kp e and kd ė into the acceleration, before you multiply by M.",
         ),
         Wrong(
             "the model evaluated at the target",
-            "M, C and g are evaluated at the target's angles and speeds. They cancel the arm's "
-            "own torques only if they are evaluated where the arm is: use state.q and state.dq.",
+            "M, C and g are evaluated at the target's angles and speeds, so they do not cancel the "
+            "arm's own torques.",
             mistakes.everything_at_the_target,
             "What is to cancel must be evaluated at the same place.",
+            "Use state.q and state.dq.",
         ),
         Wrong(
             "the inverse of M",
-            "M itself turns an acceleration into a torque. Do not invert it.",
+            "You inverted M: that turns a torque into an acceleration.",
             mistakes.ComputedLaw(power=-1),
             "Check the units: N m or rad/s²?",
         ),
@@ -285,7 +221,7 @@ COMPUTED_TORQUE = Problem(
         ),
         Wrong(
             "the mass matrix where the target is",
-            "Evaluate M where the arm is: model.mass_matrix(state.q).",
+            "M is evaluated at the target's angles, but the arm is not there.",
             mistakes.TorqueBy(
                 lambda x: x.model.mass_matrix(x.target.position) @ x.wish + x.drift + x.g
             ),
@@ -293,8 +229,7 @@ COMPUTED_TORQUE = Problem(
         ),
         Wrong(
             "only the diagonal of M",
-            "The joints accelerate each other, so the numbers off the diagonal of M belong to the "
-            "law. Use the whole matrix.",
+            "You use the diagonal of M alone, but the joints accelerate each other.",
             mistakes.TorqueBy(lambda x: np.diag(x.M) * x.wish + x.drift + x.g),
             "A mass matrix couples the joints.",
         ),
@@ -304,9 +239,65 @@ COMPUTED_TORQUE = Problem(
 )
 
 
+WHAT_SHOWS = Problem(
+    name="what_shows",
+    points=1,
+    outcomes=("control", "experiment"),
+    asks='Return for each term of equation 18 "-" if it is right; else the runs of the figure that show its '
+    'mistake, such as "HF", or "none". Term a is done for you.',
+    answer=answers.what_shows,
+    trials=(
+        Trial("a, which is done for you", (call("a"),), weight=0.0),
+        Trial("b, c and d", (), hidden.terms_of_18),
+    ),
+    hints=(
+        "Which runs end where they should not? Which term could do that?",
+        "Mend one term alone and run the figure again: what changes?",
+        "A wrong term may be too small to see in any run. Then only paper finds it.",
+    ),
+)
+
+FIND_BUG = Problem(
+    name="find_bug",
+    points=3,
+    outcomes=("experiment", "control"),
+    asks="Give the letter of the mistake in a run of computed torque. The law is right at first; at some "
+    "time between 0.3 and 0.8 s its mistake enters. `lk.course.commanded(log, letter)` says what a law with "
+    "that mistake from the start commands in the states of the run, shape (N, 7). Your function is "
+    "tried on runs that you have not seen.",
+    answer=answers.find_bug,
+    expected=lambda bug: bug.cause,
+    judge=Close(),
+    trials=(
+        Trial("gravity left out", (call(Bug("b", 0, 0.5, 1)),), hidden.bugs, "other runs", 0.0),
+        Trial(
+            "two other runs",
+            (call(Bug("h", 1, 0.7, 2)), call(Bug("f", 2, 0.6, 3))),
+            hidden.bugs,
+            "any mistake",
+        ),
+    ),
+    hints=(
+        "Each suspect says what it would have commanded; the run says what was commanded.",
+        "Before the mistake enters, the right law commands. Which part of the run should you compare?",
+        "Take the last third of the run, and the suspect whose commands are nearest to `log.command`.",
+    ),
+    wrong=(
+        Wrong(
+            "always the first",
+            "You give the same letter for every run.",
+            lambda log: "a",
+            "A function of a log should look at the log.",
+        ),
+    ),
+    variants=(variants.bug_by_median,),
+)
+
+
 SAMPLED_JOINT = Problem(
     name="sampled_joint",
     points=4,
+    core=False,
     outcomes=("control",),
     asks="A joint of some `inertia` has angle q and speed q̇; its torque -kp q - kd q̇ is computed once "
     "every `dt` seconds and held in between. Give the matrix of shape (2, 2) that takes (q, q̇) from one "
@@ -339,37 +330,37 @@ SAMPLED_JOINT = Problem(
     wrong=(
         Wrong(
             "an Euler step, I + A dt",
-            "The angle moves on with the old speed for the whole period. That is an approximation; "
-            "with a held torque the exact step is as easy: the angle also gets dt²/2 times the "
-            "acceleration.",
+            "The angle moves on with the old speed for the whole period: an approximation.",
             mistakes.euler_step,
             "A held torque makes the exact solution a parabola.",
+            cure="The exact step is as easy: the angle also gets dt²/2 times the acceleration.",
         ),
         Wrong(
             "a torque that is not held",
             "Your matrix belongs to a loop in which the torque changes all the time. Such a loop "
-            "is stable for all positive gains, and a sampled one is not: hold the torque during "
-            "the period.",
+            "is stable for all positive gains, and a sampled one is not.",
             mistakes.torque_never_held,
             "exp(A_closed dt) samples a continuous loop; the loop itself is not sampled.",
+            cure="Hold the torque during the period.",
         ),
         Wrong(
             "the new speed moves the angle",
-            "The angle moves with the speed at the end of the period: use the mean of the old and "
-            "the new speed. Or the ½ of ½ a dt² is missing: add it.",
+            "The angle moves with the speed at the end of the period, or the ½ of ½ a dt² is missing.",
             mistakes.new_speed_first,
             "Many simulators use this step, semi-implicit Euler. The question asks for the exact "
             "one.",
+            cure="Use the mean of the old and the new speed.",
         ),
         Wrong(
             "the torque with the wrong sign",
-            "Your torque pushes the joint away from zero. It should be -kp q - kd q̇.",
+            "Your torque pushes the joint away from zero.",
             mistakes.pushes_away,
             "Feedback acts against the error.",
+            cure="It is -kp q - kd q̇.",
         ),
         Wrong(
             "torque taken for acceleration",
-            "The inertia is missing. Divide the torque by it to get the acceleration.",
+            "The inertia is missing: you took a torque for an acceleration.",
             mistakes.without_inertia,
             "A wrist is difficult because its inertia is so small.",
         ),
@@ -382,7 +373,7 @@ SAMPLED_JOINT = Problem(
         ),
         Wrong(
             "multiplied by the inertia",
-            "Divide the torque by the inertia to get the acceleration.",
+            "You multiplied by the inertia, so a heavy joint is the quicker one.",
             mistakes.times_inertia,
             "The heavier the joint, the smaller its acceleration.",
         ),
@@ -394,22 +385,23 @@ SAMPLED_JOINT = Problem(
         ),
         Wrong(
             "a damper that does not move the angle",
-            "The torque of the damper accelerates the joint from the first moment on: -kd dt²/(2 "
-            "inertia) belongs to the angle too.",
+            "The damper's torque accelerates the joint from the first moment on, but your angle does "
+            "not feel it.",
             mistakes.half_forgotten,
             "The spring and the damper each move both angle and speed.",
+            cure="-kd dt²/(2 inertia) belongs to the angle, too.",
         ),
         Wrong(
             "an implicit step",
-            "This uses the torque at the end of the step, which the computer cannot know yet. "
-            "Hold the torque of the beginning. The real loop can become unstable, and with an "
-            "implicit step it never would.",
+            "This uses the torque at the end of the step, which the computer cannot know yet: with "
+            "it the loop would never become unstable.",
             mistakes.implicit_step,
             "A stable formula does not make a stable arm.",
+            cure="Hold the torque of the beginning.",
         ),
         Wrong(
             "the speed does not last",
-            "The lower right number begins with 1: a joint without torque keeps its speed.",
+            "Without any torque your joint stops at once.",
             mistakes.Stepped(lambda dt: [[1.0, dt], [0.0, 0.0]]),
             "A joint without torque keeps its speed.",
         ),
@@ -430,22 +422,21 @@ _circle, _quick_circle = (
 
 CHOOSE_GAINS = Problem(
     name="choose_gains",
-    points=3,
+    points=4,
     outcomes=("control",),
-    asks="Choose `(kp, kd)` in N m/rad and N m s/rad, each one number or seven, for springs and "
-    "dampers at the joints of the `lk.BAXTER` arm (`lk.control.springs`, 200 Hz). The same gains "
-    "must work on a slow line, on quicker paths, and with up to a kilogram in the gripper that "
-    "the model does not know of. An arm that is released beside its target must come to rest "
-    "there.",
+    asks="Choose `(kp, kd)`, seven numbers each, for springs and dampers at the joints of the arm of `model`: "
+    "every joint should swing at about 1.9 Hz (1.2 to 2.4) and be damped about critically. They "
+    "must also follow paths on Baxter, with up to a kilogram that the model does not know of.",
     answer=answers.choose_gains,
-    expected=lambda model: None,
-    judge=Gains(),
+    judge=Close(rtol=0.6, atol=0.0, parts=("kp", "kd")),
     trials=(
-        Trial("two sets of gains", (call(MODEL),), weight=0.0),
+        Trial("Baxter's joints", (call(MODEL),), hidden.other_rotors, "other arms", 0.0),
         Trial(
-            "they hold the arm on a slow line",
-            (Tuned((MODEL,), Loop(_line, plant=lk.BAXTER), {"rms_mm": 25.0}),),
-            weight=0.0,
+            "arms with lighter and with heavier rotors",
+            (call(hidden.rotors(0.3)), call(hidden.rotors(3.0, "right"))),
+            hidden.other_rotors,
+            "other rotors",
+            weight=2.0,
         ),
         Trial(
             "a quicker circle",
@@ -465,7 +456,7 @@ CHOOSE_GAINS = Problem(
             (Tuned((MODEL,), hidden.back(MODEL, OFF), hidden.AT_REST),),
             hidden.returns,
             "other places, both arms",
-            weight=2.0,
+            weight=1.0,
         ),
         Trial(
             "a kilogram in the gripper",
@@ -482,83 +473,48 @@ CHOOSE_GAINS = Problem(
         ),
     ),
     hints=(
-        "Let every joint swing alike: choose one frequency and one damping ratio, and multiply "
-        "the gains by each joint's inertia, which is on the diagonal of M.",
-        "If the springs are too soft, friction and the load win. If they are too stiff, the "
-        "state, which is up to 14 ms old, comes too late: stay well below one tenth of the 100 Hz "
-        "at which the state is published. Draw the error over the frequency, between 0.5 and 5 Hz.",
-        "Multiply the square of the frequency, in rad/s, by the inertia that each joint feels. "
-        "Critical damping follows from the two. The frequency is for you to find: it is between "
-        "one and three hertz.",
+        "Let every joint swing alike: one frequency and one damping ratio, times each joint's inertia.",
+        "The inertia of joint i is entry (i, i) of model.mass_matrix(model.robot.ready). Compare m ë + kd ė + "
+        "kp e = 0 with ë + 2 ζ ω ė + ω² e = 0.",
+        "ω is in rad/s, not in Hz. Multiply its square by the inertia; critical damping follows.",
     ),
     wrong=(
         Wrong(
             "the same gains in every joint",
             "The last wrist joint has a fortieth of the shoulder's inertia, so gains that are "
-            "mild at the shoulder are fierce at the wrist. Scale the gains by each joint's own "
-            "inertia.",
+            "mild at the shoulder are fierce at the wrist.",
             mistakes.same_for_every_joint,
             "Whether a stiffness in N m/rad is large depends on the inertia in kg m².",
+            "Scale the gains by each joint's own inertia, seven numbers each.",
         ),
         Wrong(
             "kd before kp",
-            "In this order the spring is very weak, and the damper shakes the arm. Return kp "
-            "first, then kd.",
+            "In this order the spring is very weak, and the damper shakes the arm.",
             mistakes.pair_turned_round,
             "Table 1 of the report has the same slip.",
+            "Return kp first.",
         ),
         Wrong(
             "no damping",
-            "A spring without a damper swings for ever, and with an old state the swing grows. "
-            "Choose kd above zero.",
+            "A spring without a damper swings for ever, and with an old state the swing grows.",
             mistakes.Swings(zeta=0.0),
             "Test a damper with a sudden start, not with a smooth motion.",
         ),
-    ),
-    variants=(variants.ByFrequency(11.0, 0.8), variants.ByFrequency(13.0, 0.7), variants.by_hand),
-)
-
-DIAGNOSE = Problem(
-    name="diagnose",
-    points=3,
-    outcomes=("experiment", "control"),
-    asks="Given the log of a misbehaving run, return the letter of the mistake in its law.",
-    answer=answers.diagnose,
-    expected=lambda bug: bug.cause,
-    trials=(
-        Trial("a run with gravity twice", (call(Bug("c", 2, 0.74, 577)),), weight=0.0),
-        Trial(
-            "two more runs",
-            (call(Bug("h", 0, 0.53, 291)), call(Bug("f", 1, 0.78, 875))),
-            hidden.faulty_runs,
-            "other mistakes, moves and moments",
-        ),
-    ),
-    hints=(
-        "Plot the error of each joint. At first it is smooth and small; at some time between 0.3 "
-        "and 1.0 s it no longer is. Does it follow gravity or the speed, grow by itself, or appear "
-        "only while the target accelerates?",
-        "The log holds what the law commanded, and `lk.course.commanded(log, letter)` what each "
-        "suspect would have commanded in the same states. How far are the two apart?",
-        "Until the mistake enters, the right law commands. Compare in the second half of the run "
-        "alone, and return the letter with the smallest difference.",
-    ),
-    wrong=(
         Wrong(
-            "the whole run compared",
-            "At first the law is right, so no suspect fits the whole run.",
-            mistakes.compares_the_whole_run,
-            "Look where the fault is, and nowhere else.",
-            cure="Compare where the mistake is in the law: late in the run.",
+            "hertz for radians",
+            "Your frequency is in Hz where rad/s belongs: springs forty times too weak.",
+            mistakes.Swings(w=1.9),
+            "A factor 2π, squared.",
+        ),
+        Wrong(
+            "gains of one arm",
+            "You return the same numbers for every arm, but these have other rotors.",
+            variants.by_hand,
+            "Numbers that suit one arm are no rule.",
+            "Compute them from model.mass_matrix.",
         ),
     ),
-    variants=(variants.diagnosed_by_squares,),
+    variants=(variants.ByFrequency(11.0, 0.8), variants.ByFrequency(10.0, 0.9)),
 )
 
-PROBLEMS = (
-    AUGMENTED_PD,
-    COMPUTED_TORQUE,
-    SAMPLED_JOINT,
-    CHOOSE_GAINS,
-    DIAGNOSE,
-)
+PROBLEMS = (AUGMENTED_PD, WHAT_SHOWS, COMPUTED_TORQUE, CHOOSE_GAINS, FIND_BUG, SAMPLED_JOINT)

@@ -95,8 +95,12 @@ def by_hand(model: lk.Model) -> Any:
     )
 
 
-def diagnosed_by_squares(log: lk.Log) -> str:
-    """By least squares over the last third."""
-    late = slice(-(len(log) // 3), None)
-    off = [log.command - lk.course.commanded(log, x) for x in "abcdefgh"]
-    return "abcdefgh"[int(np.argmin([np.sum(x[late] ** 2) for x in off]))]
+def bug_by_median(log: lk.Log) -> str:
+    """By the median of the second half, from the last letter on."""
+    half = slice(len(log) // 2 + 100, None)
+
+    def off(letter: str) -> float:
+        wrong = np.abs(log.command[half] - lk.course.commanded(log, letter)[half])
+        return float(np.median(wrong.sum(axis=1)))
+
+    return min("hgfedcba", key=off)

@@ -106,7 +106,7 @@ ONLY_ON_THE_LINE = lowest((0,), np.geomspace(8.0, 80.0, 18))
 REJECTED = [
     ("04 choose_gains", springs(0.1), None),
     ("04 choose_gains", springs(0.0), "no damping"),
-    ("04 choose_gains", from_the_notebook, None),
+    ("04 choose_gains", from_the_notebook, "the same gains in every joint"),
     ("04 choose_gains", from_the_notebooks_other_cell, None),
     ("06 blend", three_coordinates, None),
     ("07 open_loop", plain_function, None),
