@@ -1,8 +1,8 @@
-"""Answers of notebook 07: what an error is, the loop on paper, gains and verdicts."""
+"""Answers of notebook 07: the loop on paper, a recipe for gains, and a verdict."""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable
 from typing import Any
 
 import control
@@ -10,7 +10,7 @@ import numpy as np
 from scipy.stats import t as student
 
 from labkit.errors import OutOfRange
-from labkit.shapes import Array, as_array
+from labkit.shapes import as_array
 
 
 def open_loop(kp: float, lag: float, delay: float) -> Any:
@@ -19,7 +19,7 @@ def open_loop(kp: float, lag: float, delay: float) -> Any:
     return loop * control.tf(*control.pade(delay, 4)) if delay else loop
 
 
-def choose_gains(runner: Callable[..., float]) -> tuple[float, float]:
+def recipe(runner: Callable[..., float]) -> tuple[float, float]:
     """Raise Kp until some seed's arm is about to be lost, then take a third of it."""
     stable, error = 4.0, runner(4.0, 0.0, 0)
     for Kp in (8.0, 14.0, 22.0, 34.0, 50.0, 70.0, 100.0):
@@ -44,24 +44,16 @@ def paired_difference(a: Any, b: Any) -> tuple[float, float]:
         OutOfRange: There are fewer than two pairs, so nothing is known of the spread.
     """
     a = as_array(a, (len(a),), "a")
-    return _interval(a - as_array(b, (len(a),), "b"))
-
-
-def _interval(d: Array) -> tuple[float, float]:
-    """Mean of the differences, and half of its 95 % interval."""
+    d = a - as_array(b, (len(a),), "b")
     n = len(d)
     if n < 2:
         raise OutOfRange(f"{n} pair cannot show a spread; take at least two seeds or tasks")
     return float(d.mean()), float(student.ppf(0.975, n - 1) * d.std(ddof=1) / np.sqrt(n))
 
 
-def verdicts(table: Mapping[str, Any]) -> dict[str, str]:
-    """For each claim: does the first error exceed the second, beyond the seeds' spread?"""
-    found = {}
-    for claim, (errors_a, errors_b) in table.items():
-        mean, half = _interval(np.subtract(errors_a, errors_b))
-        if abs(mean) <= half:
-            found[claim] = "undecided"
-        else:
-            found[claim] = "holds" if mean > 0.0 else "does not hold"
-    return found
+def verdict(a: Any, b: Any) -> tuple[float, float, str]:
+    """Is a's error the larger one?  The tasks are the units, each with the mean over its seeds."""
+    mean, half = paired_difference(np.mean(a, axis=1), np.mean(b, axis=1))
+    if abs(mean) <= half:
+        return mean, half, "undecided"
+    return mean, half, "holds" if mean > 0.0 else "does not hold"

@@ -93,37 +93,25 @@ def _unseen(random: Random, reserve: float) -> Iterator[Choice]:
         yield Choice(line, {"worst_mm": UNSEEN_LIMIT}, unseen)
 
 
-def _pairs(random: Random, n: int, shift: float) -> tuple[list[float], list[float]]:
-    seeds = random.uniform(1.0, 9.0, n)
-    noise = random.normal(0.0, 0.2, (2, n))
-    return (seeds + noise[0]).tolist(), (seeds + shift + noise[1]).tolist()
-
-
-def pairs(random: Random) -> Iterator[Call]:
-    """Other numbers of seeds."""
-    for n in (2, 3, 5, 10):
-        yield call(*_pairs(random, n, random.uniform(-1.0, 1.0)))
-
-
 def tables(random: Random) -> Iterator[Call]:
-    """Tables with claims of every kind."""
-    for _ in range(3):
-        table = {}
-        for k, shift in enumerate(random.permutation([-1.5, 0.0, 1.5, 0.0, 0.8])):
-            a, b = _pairs(random, 5, 0.0)
-            noise = random.normal(0.0, 0.6, 5)
-            table[f"claim {k}"] = [
-                [x + float(shift) for x in a],
-                [y + z for y, z in zip(b, noise, strict=True)],
-            ]
-        yield call(table)
-    for n, edge in ((5, 2.78), (3, 4.30), (10, 2.26)):  # this number of standard errors decides
-        errors = (-1.3 * edge, -0.93 * edge, 0.93 * edge, 1.3 * edge)
-        yield call({f"claim {k}": _apart(random, n, t) for k, t in enumerate(errors)})
+    """Three to six tasks with five seeds each, differences on both sides of the edge."""
+    for n, edge in ((3, 4.30), (4, 3.18), (6, 2.57)):  # this number of standard errors decides
+        for errors in (-1.4 * edge, 0.7 * edge, 1.4 * edge):
+            yield call(*table(random, n, errors))
 
 
-def _apart(random: Random, n: int, t: float) -> list[list[float]]:
-    """Two rows of n whose difference is t standard errors."""
-    seeds, noise = random.uniform(1.0, 9.0, n), random.normal(0.0, 0.5, n)
-    shift = t * noise.std(ddof=1) / np.sqrt(n) - noise.mean()
-    return [(seeds + noise + shift).tolist(), seeds.tolist()]
+def table(
+    random: Random, tasks: int, t: float, seeds: int = 5
+) -> tuple[list[list[float]], list[list[float]]]:
+    """The errors of two controllers whose difference over tasks is t standard errors."""
+    level, noise = random.uniform(2.0, 15.0, (tasks, 1)), random.normal(0.0, 0.3, (2, tasks, seeds))
+    d = random.normal(0.0, 1.0, (tasks, 1))
+    d = d + t * d.std(ddof=1) / np.sqrt(tasks) - d.mean()
+    noise = noise - noise.mean(axis=2, keepdims=True)
+    spread = random.normal(0.0, 0.5, (1, seeds))  # what a seed has in common
+    return (level + d + noise[0] + spread).tolist(), (level + noise[1] + spread).tolist()
+
+
+def raises(random: Random) -> Iterator[Call]:
+    """Other clear cases."""
+    yield call(*table(random, 4, 6.0))

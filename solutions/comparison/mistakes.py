@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -10,9 +10,7 @@ import control
 import numpy as np
 from scipy.stats import t as student
 
-from labkit.shapes import Array
-
-from .answers import paired_difference
+from .answers import paired_difference, recipe
 
 
 @dataclass(frozen=True)
@@ -121,68 +119,6 @@ class Interval:
         return float(d.mean()), float(self.share * width)
 
 
-def ends_of_the_interval(
-    errors_a: Sequence[float], errors_b: Sequence[float]
-) -> tuple[float, float]:
-    """The two ends of the interval instead of its middle and half width."""
-    mean, half = paired_difference(errors_a, errors_b)
-    return mean - half, mean + half
-
-
-@dataclass(frozen=True)
-class VerdictsBy:
-    """Verdicts by an interval that is not the right one.
-
-    Attributes:
-        interval: Mean and half width, given two rows.
-    """
-
-    interval: Callable[..., tuple[float, float]]
-
-    def __call__(self, table: Mapping[str, Any]) -> dict[str, str]:
-        """The verdicts."""
-        found = {}
-        for claim, rows in table.items():
-            mean, half = self.interval(*rows)
-            sure = "holds" if mean > 0 else "does not hold"
-            found[claim] = sure if abs(mean) > half else "undecided"
-        return found
-
-
-def always_decided(table: Mapping[str, Any]) -> dict[str, str]:
-    """Uses only the sign of the difference."""
-    return {
-        claim: "holds" if np.mean(a) > np.mean(b) else "does not hold"
-        for claim, (a, b) in table.items()
-    }
-
-
-def the_other_way_round(table: Mapping[str, Any]) -> dict[str, str]:
-    """Takes the larger error as the better one."""
-    found = {}
-    for claim, (a, b) in table.items():
-        mean, half = paired_difference(b, a)
-        found[claim] = (
-            "undecided" if abs(mean) <= half else "holds" if mean > 0 else "does not hold"
-        )
-    return found
-
-
-def never_decided(table: Mapping[str, Any]) -> dict[str, str]:
-    """Says "undecided" for every claim."""
-    return dict.fromkeys(table, "undecided")
-
-
-def ten_percent(table: Mapping[str, Any]) -> dict[str, str]:
-    """A threshold for the means, ignoring their spread."""
-    found = {}
-    for claim, (a, b) in table.items():
-        ratio = np.mean(a) / np.mean(b)
-        sure = "holds" if ratio > 1.1 else "does not hold"
-        found[claim] = sure if abs(np.log(ratio)) > np.log(1.1) else "undecided"
-    return found
-
-
 @dataclass(frozen=True)
 class Loop:
     """The loop with another factor instead of the lag and the integrator.
@@ -205,50 +141,27 @@ class Loop:
 
 
 @dataclass(frozen=True)
-class Paired:
-    """A mean and a half width of the differences, or of something else.
+class Judged:
+    """The verdict with another rule.
 
     Attributes:
-        of: The values, given the two rows.
-        half: The half width, given the values.
-        mean: The middle, given the values.
+        interval: Mean and half width, given two rows.
+        units: The rows, given errors of shape (tasks, seeds).
+        says: The verdict, given mean and half width; None is the right one.
     """
 
-    of: Callable[[Array, Array], Array] = np.subtract
-    half: Callable[[Array], Any] = lambda d: (
-        student.ppf(0.975, len(d) - 1) * d.std(ddof=1) / np.sqrt(len(d))
-    )
-    mean: Callable[[Array], Any] = np.mean
+    interval: Callable[..., tuple[float, float]] = paired_difference
+    units: Callable[[Any], Any] = lambda errors: np.mean(errors, axis=1)
+    says: Callable[[float, float], str] | None = None
 
-    def __call__(self, errors_a: Sequence[float], errors_b: Sequence[float]) -> tuple[float, float]:
-        """Middle and half width."""
-        a, b = np.asarray(errors_a, dtype=float), np.asarray(errors_b, dtype=float)
-        d = np.asarray(self.of(a, b))
-        return float(self.mean(d)), float(self.half(d))
+    def __call__(self, a: Any, b: Any) -> tuple[float, float, str]:
+        """Mean, half width and verdict."""
+        mean, half = self.interval(self.units(np.array(a)), self.units(np.array(b)))
+        right = "undecided" if abs(mean) <= half else "holds" if mean > 0 else "does not hold"
+        return mean, half, self.says(mean, half) if self.says else right
 
 
-def half_of(d: Array) -> float:
-    """Half of the 95 % interval of one row."""
-    return float(student.ppf(0.975, len(d) - 1) * d.std(ddof=1) / np.sqrt(len(d)))
-
-
-@dataclass(frozen=True)
-class Said:
-    """The right verdicts in other words.
-
-    Attributes:
-        words: The words for "holds", "does not hold" and "undecided".
-        sure: Whether the verdict is decided, given the differences; None is right.
-    """
-
-    words: tuple[Any, Any, Any] = ("holds", "does not hold", "undecided")
-    sure: Callable[[Array], bool] = lambda d: abs(d.mean()) > half_of(d)
-
-    def __call__(self, table: Mapping[str, Any]) -> dict[str, Any]:
-        """The verdicts."""
-        found = {}
-        for claim, (a, b) in table.items():
-            d = np.subtract(a, b)
-            decided = self.words[0] if d.mean() > 0.0 else self.words[1]
-            found[claim] = decided if self.sure(d) else self.words[2]
-        return found
+def reports_half(runner: Callable[..., float]) -> tuple[float, float]:
+    """The report's recipe: half of the gain at which it swings."""
+    Kp, Kd = recipe(runner)
+    return 1.5 * Kp, Kd

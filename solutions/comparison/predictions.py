@@ -4,6 +4,14 @@ from labkit.course import Choose, Prediction
 
 PREDICTIONS = (
     Prediction(
+        "table_1",
+        "Table 1 of the report lists for the workspace impedance P = (0.5, 0.5, 0.5, ...) and D = (45, 15, 27, ...). "
+        "Take them as stiffness in N/m and damping in N s/m for x, y and z, and push the tip of 1 kg along x with "
+        "5 N for two seconds. The tip",
+        Choose({"a": "hardly moves", "b": "creeps away as in honey", "c": "swings about 11 cm"}),
+        truth="b",
+    ),
+    Prediction(
         "twenty_pairs",
         "Four tasks with five seeds each give 20 differences between two controllers. You want to "
         "draw a conclusion about tasks in general. Compared with the 95 % interval from the means "
