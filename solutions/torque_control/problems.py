@@ -284,6 +284,13 @@ FIND_BUG = Problem(
     ),
     wrong=(
         Wrong(
+            "the whole run compared",
+            "At first the law is right, so no suspect fits the whole run.",
+            mistakes.compares_the_whole_run,
+            "Look where the fault is, and nowhere else.",
+            "Compare late in the run, where the mistake is in the law.",
+        ),
+        Wrong(
             "always the first",
             "You give the same letter for every run.",
             lambda log: "a",
