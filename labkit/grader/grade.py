@@ -59,9 +59,8 @@ def grade(
     with closing(Session(sandbox, limits)) as session:
         try:
             cells = session.read(data)
+            _refuse_other(cells, bundle)
             todo = plan(cells, bundle.data["cells"])
-            if not todo.places:
-                _refuse_other(cells, bundle)
         except LabkitError as error:
             return rejection(str(error), student, bundle, sandbox.level, data)
         tools = {q.name: withheld_tools(todo.looks, q.name, q.withheld) for q in bundle.questions}
@@ -130,10 +129,10 @@ def hashes(data: bytes, bundle: Bundle) -> dict[str, str]:
 
 
 def _refuse_other(cells: Sequence[Cell], bundle: Bundle) -> None:
-    """Refuse a notebook without an answer, if most cells that nbgrader named are of another."""
+    """Refuse a notebook with none of the answers' cells, if most that have a name are unknown."""
     named = {cell["grade_id"] for cell in cells} - {""}
     ours = named & {cell.get("grade_id") for cell in bundle.data["cells"]}
-    if 2 * len(ours) < len(named):
+    if 2 * len(ours) < len(named) and not named & {q.name for q in bundle.questions}:
         raise LabkitError(
             f"this looks like another assignment's notebook: only {len(ours)} of its {len(named)} "
             f"named cells are of {bundle.data['assignment']}"
