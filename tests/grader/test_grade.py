@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from contextlib import contextmanager
 from types import SimpleNamespace
 from typing import ClassVar
 
@@ -11,14 +10,14 @@ from handmade import FULL, NAME, QUICK, add, cell_of, put, raw
 
 from labkit.course.calling import NoAnswer
 from labkit.course.handin import receipt
-from labkit.course.verdict import Kind, Outcome
+from labkit.course.verdict import Kind
 from labkit.errors import LabkitError
 from labkit.grader import grade as module
-from labkit.grader.grade import grade, hashes, parse, rejection
+from labkit.grader.grade import grade, hashes, rejection
 from labkit.grader.plan import plan
 from labkit.grader.results import engine
 from labkit.grader.sandbox.parse import read
-from labkit.grader.sandbox.protocol import Disconnected, ProtocolError
+from labkit.grader.sandbox.protocol import Disconnected
 from labkit.grader.submission import digest
 
 
@@ -27,10 +26,16 @@ class Here:
 
     all: ClassVar[list[Here]] = []
 
-    def __init__(self, sandbox, steps, limits):
-        self.steps, self.right, self.spent, self.closed = steps, [], 0.25, 0
+    def __init__(self, sandbox, limits):
+        self.steps, self.right, self.spent, self.closed = (), [], 0.25, 0
         self.answers, self.names, self.reports = {}, {}, []
         Here.all.append(self)
+
+    def read(self, data):
+        found = read(data)
+        if "cells" not in found:
+            raise LabkitError(found["rejected"])
+        return found["cells"]
 
     def start(self):
         for step in self.steps:
@@ -71,7 +76,6 @@ def marks(monkeypatch, bundle):
     """Grades a notebook."""
     monkeypatch.setattr(module, "Session", Here)
     monkeypatch.setattr(module, "RemoteFunction", Function)
-    monkeypatch.setattr(module, "parse", lambda data, sandbox, limits: read(data)["cells"])
     sandbox = SimpleNamespace(level="here")
     return lambda notebook, note="": grade(raw(notebook), "ada", bundle, sandbox, QUICK, note)
 
@@ -274,45 +278,7 @@ def test_a_rejection_has_no_points(bundle):
     assert result.isolation == "here"
 
 
-class Parser:
-    """A sandbox whose parser answers, or does not."""
-
-    def __init__(self, found):
-        self.found, self.sent, self.asked = found, b"", []
-        self.level, self.connection = "here", self
-        self.socket = SimpleNamespace(settimeout=self.asked.append, sendall=self.sendall)
-
-    @contextmanager
-    def spawn(self, role, limits, size):
-        self.asked += [role, size]
-        yield self
-
-    def sendall(self, data):
-        self.sent = data
-        if not data:
-            raise BrokenPipeError
-
-    def read(self, seconds):
-        self.asked.append(seconds)
-        if isinstance(self.found, Exception):
-            raise self.found
-        return self.found
-
-
-@pytest.mark.parametrize("found", [{"rejected": "no"}, {}, ProtocolError(""), OSError()])
-@pytest.mark.parametrize("data", [b"{}", b""])
-def test_a_file_that_cannot_be_read_is_rejected(found, data, bundle):
-    """Whatever its parser says or does."""
-    parser = Parser(found)
-    with pytest.raises(LabkitError):
-        parse(data, parser, QUICK)
-    assert parser.asked == ["parse", len(data), QUICK.parse, QUICK.parse]
-    result = grade(data, "ada", bundle, parser, QUICK)
-    assert result.rejected and result.score == 0.0 and result.isolation == "here"
-    assert "no" in result.rejected or found != {"rejected": "no"}
-
-
-def test_what_a_parser_says_is_taken():
-    parser = Parser({"cells": [{"id": "x"}]})
-    assert parse(b"data", parser, QUICK) == [{"id": "x"}] and parser.sent == b"data"
-    assert Outcome.RIGHT == "right"
+def test_a_file_that_cannot_be_read_is_rejected(marks):
+    """With no points, and its session is closed."""
+    result = marks({"nbformat": 3, "cells": []})
+    assert "format is 3" in result.rejected and result.score == 0.0 and Here.all[-1].closed == 1
