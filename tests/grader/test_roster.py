@@ -79,6 +79,7 @@ def test_canvas_adds_its_numbers_to_who_is_there(course):
         "Ada-Lovelace", "7", "ada", "ada@x.test"
     )  # fmt: skip
     assert grace.id == "Grace-Hopper", "who is not in a list stays"
+    assert "new: Zoe Kay (zoe)" in imported(course, "name,login\nZoe Kay,zoe\n")
 
 
 def test_a_plain_table_and_namesakes(course):
