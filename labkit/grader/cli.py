@@ -418,7 +418,12 @@ def export(
     if assignment not in (None, DEFENCE):
         course.notebook_source(assignment)
     if layout == "gradescope":
-        return _autograder(course, str(assignment), to)
+        from .gradescope import autograder
+
+        to = to or course.root / "dist" / f"{assignment}-gradescope.zip"
+        autograder(course, str(assignment), to)
+        print(f"written: {to}; it holds the hidden cases, so give it to Gradescope alone")
+        return 0
     doubts, rules = list(idle_extensions(course)), read_rules(course)
     names = [x.stem for x in sorted(course.bundle.glob("*.json"))]
     all_marks = {}
@@ -441,17 +446,6 @@ def export(
     _write(as_csv(table), to)
     _tell(doubts, doubtful=True)
     return int(bool(doubts) or any(mark.missing for mark in everybody))
-
-
-def _autograder(course: Course, assignment: str, to: Path | None) -> int:
-    """Write the zip for Gradescope."""
-    from .gradescope import autograder
-
-    if to is None:
-        raise LabkitError("name the zip to write: --to FILE")
-    autograder(course, assignment, to)
-    print(f"written: {to}; it holds the hidden cases, so give it to Gradescope alone")
-    return 0
 
 
 def _nobody(assignment: str, why: str = "") -> LabkitError:

@@ -2,7 +2,7 @@
 
 The container cannot make namespaces, so submissions are isolated by user id; see
 `sandbox.forkserver.AsUser`.  The manual, gradescope-autograders.readthedocs.io, describes the files
-under "Autograder Specifications" and "Submission Metadata", and under "Troubleshooting" the limits:
+under "Autograder Specifications", and under "Troubleshooting" the limits:
 half a processor, 768 MB and 10 minutes, after which nothing counts.
 """
 
@@ -21,7 +21,6 @@ from zipfile import ZIP_DEFLATED, ZipFile, ZipInfo
 from ..course.authoring.bundle import Bundle
 from ..course.authoring.layout import Course
 from ..course.messages import summary
-from .clean import clean_line
 from .files import write
 from .grade import grade, rejection
 from .plan import imports
@@ -62,7 +61,7 @@ def _grade(place: Path, results: Path) -> None:
     source = Course(place / "source")
     (path,) = source.bundle.glob("*.json")
     bundle = Bundle.of(source, path.stem)
-    student = _student(place / "submission_metadata.json")
+    student = "student"  # Gradescope knows whose it is
     data, note, why = Submission(student, path.stem, place / "submission").read()
     with Sandbox(imports(bundle.data["cells"]), isolation=Isolation.USER) as sandbox:
         if why:
@@ -71,13 +70,6 @@ def _grade(place: Path, results: Path) -> None:
             result = grade(data, student, bundle, sandbox, LIMITS, note)
     write(results, json.dumps(gradescope_results(bundle, result)))
     print(result, result.isolation, sep="\n")
-
-
-def _student(path: Path) -> str:
-    """The address of the student who handed in."""
-    users = json.loads(path.read_text()).get("users", []) if path.exists() else []
-    mails = [clean_line(str(user.get("email", ""))).casefold() for user in users]
-    return (mails or [""])[0]
 
 
 def gradescope_results(bundle: Bundle, result: Result) -> dict[str, Any]:
@@ -120,7 +112,6 @@ def autograder(course: Course, assignment: str, to: Path) -> None:
     from .student_zip import wheel
 
     bundle = Bundle.of(course, assignment)
-    files = {f"build/course/bundle/{assignment}.json": json.dumps(bundle.data)}
     to.parent.mkdir(parents=True, exist_ok=True)
     with tempfile.TemporaryDirectory() as folder, ZipFile(to, "w", ZIP_DEFLATED) as archive:
         os.chmod(to, 0o600)
@@ -128,8 +119,7 @@ def autograder(course: Course, assignment: str, to: Path) -> None:
         for path in Path(folder).glob("*.whl"):
             archive.write(path, path.name)
         archive.write(course.root / "hashes.txt", "hashes.txt")
-        for name, text in files.items():
-            archive.writestr(name, text)
+        archive.writestr(f"build/course/bundle/{assignment}.json", json.dumps(bundle.data))
         for name, template in (("setup.sh", "setup"), ("run_autograder", "run")):
             script = ZipInfo(name, (2026, 1, 1, 0, 0, 0))
             script.external_attr = 0o755 << 16

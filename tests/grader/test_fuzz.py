@@ -112,7 +112,7 @@ def test_nothing_in_a_students_hand_reaches_another(course, solved, tmp_path, mo
     run(course, "grade", NAME, "--jobs", "2")
     run(course, "grade", NAME, "--diff", "--student", "eve0", "--student", "eve1")
     capsys.readouterr()
-    for layout in ("nbgrader", "canvas", "moodle", "moodle-worksheet", "questions"):
+    for layout in ("canvas", "moodle", "moodle-worksheet", "questions"):
         assert run(course, "export", NAME, "--layout", layout) < 2
         out = capsys.readouterr().out
     (row,) = (line.split(",") for line in out.splitlines() if line.startswith("ada,"))
