@@ -14,51 +14,6 @@ import labkit as lk
 from .answers import Path, Scaling, circle, trapezoid
 
 
-def twice_too_slow(t: float, duration: float) -> tuple[float, float, float]:
-    """Forgets that only half of the time is there to speed up: a = 2 / T^2."""
-    if t < 0.0:
-        return 0.0, 0.0, 0.0
-    if t >= duration:
-        return 1.0, 0.0, 0.0
-    a = 2.0 / duration**2
-    if t < duration / 2.0:
-        return a * t**2 / 2.0, a * t, a
-    left = duration - t
-    return 1.0 - a * left**2 / 2.0, a * left, -a
-
-
-def always_cruises(
-    t: float, distance: float, v_max: float, a_max: float
-) -> tuple[float, float, float]:
-    """No triangular case: a short distance still has the ramps of a long one."""
-    return _ramps(t, distance, v_max, a_max)
-
-
-def speeds_up_all_the_way(
-    t: float, distance: float, v_max: float, a_max: float
-) -> tuple[float, float, float]:
-    """The peak speed over a short distance as if the motion never braked."""
-    return _ramps(t, distance, min(v_max, sqrt(2.0 * distance * a_max)), a_max)
-
-
-def _ramps(t: float, distance: float, v_max: float, a_max: float) -> tuple[float, float, float]:
-    """The trapezoid whose speed is v_max, even if there is no room for its ramps."""
-    ramp = v_max / a_max
-    duration = distance / v_max + ramp
-    if t < 0.0:
-        return 0.0, 0.0, 0.0
-    if t >= duration:
-        return 1.0, 0.0, 0.0
-    if t < ramp:
-        way, speed, a = a_max * t**2 / 2.0, a_max * t, a_max
-    elif t < duration - ramp:
-        way, speed, a = v_max * (t - ramp / 2.0), v_max, 0.0
-    else:
-        left = duration - t
-        way, speed, a = distance - a_max * left**2 / 2.0, a_max * left, -a_max
-    return way / distance, speed / distance, a / distance
-
-
 def limits_on_s(
     t: float, distance: float, v_max: float, a_max: float
 ) -> tuple[float, float, float]:
@@ -131,12 +86,7 @@ def time_for_s(path: Path, scaling: Scaling, t: float) -> lk.Sample:
 
 def still_but_accelerated(t: float, duration: float) -> tuple[float, float, float]:
     """Holds t at the ends, and asks the formulas there: the acceleration stays on."""
-    a = 4.0 / duration**2
-    t = min(max(t, 0.0), duration)
-    if t < duration / 2.0:
-        return a * t**2 / 2.0, a * t, a
-    left = duration - t
-    return 1.0 - a * left**2 / 2.0, a * left, -a
+    return Bang(before=False, after=False)(min(max(t, 0.0), duration), duration)
 
 
 def way_for_s(t: float, distance: float, v_max: float, a_max: float) -> tuple[float, float, float]:
@@ -182,6 +132,7 @@ class Bang:
         end: The value at which it rests after the end.
         middle: When it begins to brake, given T.
         brake: (s, ds, dds) while braking, given t, T and a; None takes the right ones.
+        size: T² times the acceleration.
     """
 
     ds: float = 1.0
@@ -191,10 +142,11 @@ class Bang:
     end: float = 1.0
     middle: Callable[[float], float] = lambda T: T / 2.0
     brake: Callable[[float, float, float], tuple[float, float, float]] | None = None
+    size: float = 4.0
 
     def __call__(self, t: float, duration: float) -> tuple[float, float, float]:
         """The motion at t."""
-        T, a = duration, 4.0 / duration**2
+        T, a = duration, self.size / duration**2
         if t < 0.0 and self.before:
             return 0.0, 0.0, 0.0
         if t >= T and self.after:
@@ -220,23 +172,30 @@ class Ramps:
     Attributes:
         offset: Factor of half the ramp, by which the cruise is late.
         dds: Factor of the acceleration while braking.
+        top: The top speed, given distance, v_max and a_max.
     """
 
     offset: float = 1.0
     dds: float = 1.0
+    top: Callable[[float, float, float], float] = lambda d, v, a: min(v, sqrt(d * a))
 
     def __call__(
         self, t: float, distance: float, v_max: float, a_max: float
     ) -> tuple[float, float, float]:
         """The motion at t."""
         d, a = distance, a_max
-        v = min(v_max, sqrt(d * a))
+        v = self.top(d, v_max, a)
         ramp = v / a
-        T = d / v + ramp
-        s, ds, dds = trapezoid(t, d, v_max, a)
-        if ramp <= t < T - ramp:
-            return v * (t - self.offset * ramp / 2.0) / d, ds, dds
-        return s, ds, self.dds * dds if t >= T - ramp else dds
+        left = d / v + ramp - t
+        if t < 0.0:
+            return 0.0, 0.0, 0.0
+        if left <= 0.0:
+            return 1.0, 0.0, 0.0
+        if t < ramp:
+            return a * t**2 / 2.0 / d, a * t / d, a / d
+        if left > ramp:
+            return v * (t - self.offset * ramp / 2.0) / d, v / d, 0.0
+        return 1.0 - a * left**2 / 2.0 / d, a * left / d, -self.dds * a / d
 
 
 @dataclass(frozen=True)

@@ -66,7 +66,7 @@ BANG_BANG = Problem(
             "an acceleration of 2/T²",
             "With this acceleration, s reaches only 1/4 by the middle, where it should be 1/2. "
             "Speeding up lasts T/2, not T.",
-            mistakes.twice_too_slow,
+            mistakes.Bang(size=2.0),
             cure="Choose a such that a (T/2)²/2 = 1/2.",
         ),
         Wrong(
@@ -265,7 +265,7 @@ TRAPEZOID = Problem(
         Wrong(
             "no triangular case",
             "On a short distance, the ramps of a long one overlap, so s passes 1 or jumps back.",
-            mistakes.always_cruises,
+            mistakes.Ramps(top=lambda d, v, a: v),
             cure="Use the smaller of v_max and √(distance·a_max) as the top speed.",
         ),
         Wrong(
@@ -284,7 +284,7 @@ TRAPEZOID = Problem(
             "a triangle that is too high",
             "√(2·distance·a_max) is the speed after speeding up over the whole distance, but "
             "only half of it is available, because the other half is for braking.",
-            mistakes.speeds_up_all_the_way,
+            mistakes.Ramps(top=lambda d, v, a: min(v, sqrt(2.0 * d * a))),
             cure="The top speed of the triangle is √(distance·a_max).",
         ),
         Wrong(
