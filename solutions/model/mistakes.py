@@ -11,7 +11,7 @@ import numpy as np
 import labkit as lk
 from labkit.shapes import Array
 
-from .answers import coriolis, mass_matrix, power_balance
+from .answers import mass_matrix, power_balance
 
 
 def _columns(axes: Any, arms: Any) -> Array:
@@ -34,21 +34,6 @@ def turns_first(axes: Any, origins: Any, tip: Any) -> Array:
     return np.vstack([J[3:], J[:3]])
 
 
-def inertia_not_turned(masses: Any, inertias: Any, rotations: Any, com_jacobians: Any) -> Array:
-    """The links' inertia left in their own axes."""
-    return mass_matrix(masses, inertias, [np.eye(3)] * 7, com_jacobians)
-
-
-def inertia_turned_back(masses: Any, inertias: Any, rotations: Any, com_jacobians: Any) -> Array:
-    """R^T I R where R I R^T belongs."""
-    return mass_matrix(masses, inertias, np.transpose(rotations, (0, 2, 1)), com_jacobians)
-
-
-def points_only(masses: Any, inertias: Any, rotations: Any, com_jacobians: Any) -> Array:
-    """Links without rotational inertia, as if they were points."""
-    return mass_matrix(masses, 0.0 * np.asarray(inertias), rotations, com_jacobians)
-
-
 def half_of_it(masses: Any, inertias: Any, rotations: Any, com_jacobians: Any) -> Array:
     """Takes the one half of the kinetic energy into the matrix."""
     return 0.5 * mass_matrix(masses, inertias, rotations, com_jacobians)
@@ -58,33 +43,6 @@ def _slopes(mass_matrix: Callable[[Any], Array], q: Any) -> Array:
     h = 1e-5
     slopes = [(mass_matrix(q + d) - mass_matrix(q - d)) / (2.0 * h) for d in h * np.eye(7)]
     return np.stack(slopes, axis=2)
-
-
-def half_the_rate(mass_matrix: Callable[[Any], Array], q: Any, dq: Any) -> Array:
-    """Mdot / 2: then Mdot - 2 C is zero, and zero is skew."""
-    return np.asarray(0.5 * _slopes(mass_matrix, q) @ dq)
-
-
-def not_skew(mass_matrix: Callable[[Any], Array], q: Any, dq: Any) -> Array:
-    """The right C dq from Lagrange's equation, but a matrix for which Mdot - 2 C is not skew."""
-    dM = _slopes(mass_matrix, q)
-    return np.asarray(dM @ dq - 0.5 * (dM.transpose(2, 1, 0) @ dq))
-
-
-def without_the_half(mass_matrix: Callable[[Any], Array], q: Any, dq: Any) -> Array:
-    """Christoffel's symbols without their one half."""
-    return 2.0 * coriolis(mass_matrix, q, dq)
-
-
-def signs_mixed(mass_matrix: Callable[[Any], Array], q: Any, dq: Any) -> Array:
-    """The minus at the wrong one of the three terms: the transpose."""
-    return coriolis(mass_matrix, q, dq).T
-
-
-def kinetic_only(log: lk.Log, model: lk.Model) -> Array:
-    """Forgets the potential energy."""
-    energy = [model.kinetic_energy(q, dq) for q, dq in zip(log.q, log.dq, strict=True)]
-    return np.asarray(np.gradient(energy, log.t) - np.sum(log.tau * log.dq, axis=1))
 
 
 def commanded_torque(log: lk.Log, model: lk.Model) -> Array:
@@ -112,14 +70,6 @@ def arm_of_the_tip(axes: Any, origins: Any, tip: Any) -> Array:
 def rows_swapped(masses: Any, inertias: Any, rotations: Any, com_jacobians: Any) -> Array:
     """Takes the angular rows for the velocity of the centre of mass."""
     return mass_matrix(masses, inertias, rotations, np.roll(com_jacobians, 3, axis=1))
-
-
-def all_signs_plus(mass_matrix: Callable[[Any], Array], q: Any, dq: Any) -> Array:
-    """The third slope of Christoffel's symbols added, not taken off."""
-    D = _slopes(mass_matrix, q)
-    return np.asarray(
-        0.5 * sum(np.einsum(e, D, dq) for e in ("ijk,k->ij", "ikj,k->ij", "jki,k->ij"))
-    )
 
 
 def unit_arms(axes: Any, origins: Any, tip: Any) -> Array:

@@ -131,20 +131,20 @@ MASS_MATRIX = Problem(
         Wrong(
             "the inertia left in the link's axes",
             "w is in world axes and the inertia is in the link's axes.",
-            mistakes.inertia_not_turned,
+            mistakes.Kinetic(inertia=lambda I_l, R: I_l),
             cure="Turn the inertia first, with R I Rᵀ.",
         ),
         Wrong(
             "the inertia turned the wrong way",
             "Rᵀ I R turns an inertia from world axes into the link's axes.",
-            mistakes.inertia_turned_back,
+            mistakes.Kinetic(inertia=lambda I_l, R: R.T @ I_l @ R),
             cure="Turn it in the other direction, with R I Rᵀ.",
         ),
         Wrong(
             "links treated as points",
             "The kinetic energy of the links' rotation is missing, so the last joint, which "
             "turns the hand about itself, has almost no inertia.",
-            mistakes.points_only,
+            mistakes.Kinetic(inertia=lambda I_l, R: 0.0 * I_l),
             cure="Add the part with the angular velocities.",
         ),
         Wrong(
@@ -329,35 +329,35 @@ CORIOLIS = Problem(
             "half of the rate of M",
             "C = Ṁ/2 passes the skew test, because Ṁ - 2C is then zero, and zero is skew. But C "
             "dq is then not the Coriolis torque.",
-            mistakes.half_the_rate,
+            mistakes.Slopes((1.0, 0.0, 0.0)),
             cure="Use Christoffel's symbols.",
         ),
         Wrong(
             "the right torque, but not skew",
             "C dq is right, but many matrices give this product, and for yours Ṁ - 2C is not "
             "skew. The proofs of notebook 04 need it to be skew.",
-            mistakes.not_skew,
+            mistakes.Slopes((2.0, 0.0, -1.0)),
             cure="Use Christoffel's symbols.",
         ),
         Wrong(
             "twice the right matrix",
             "Either the factor in front of Christoffel's symbols is missing, or you divided a "
             "difference between q + h and q - h by h.",
-            mistakes.without_the_half,
+            mistakes.Slopes((2.0, 2.0, -2.0)),
             cure="The factor is 1/2, and the difference spans 2h.",
         ),
         Wrong(
             "the transpose of C",
             "This is the transpose of C. Either you stored the entry in C[j, i], or the minus is "
             "on the wrong term.",
-            mistakes.signs_mixed,
+            mistakes.Slopes((1.0, -1.0, 1.0)),
             cure="The minus belongs to the slope along the row's own joint, ∂M_jk/∂q_i.",
         ),
         Wrong(
             "all three slopes added",
             "You added all three slopes, but one of them comes from the kinetic energy, on the "
             "other side of Lagrange's equation.",
-            mistakes.all_signs_plus,
+            mistakes.Slopes((1.0, 1.0, 1.0)),
             cure="Subtract the third slope, ∂M_jk/∂q_i.",
         ),
         Wrong(
@@ -421,7 +421,7 @@ POWER_BALANCE = Problem(
             "kinetic energy only",
             "Lifting the arm stores energy too; without it the balance includes the power that "
             "gravity takes.",
-            mistakes.kinetic_only,
+            mistakes.Balance(potential=0.0),
             cure="Add the potential energy.",
         ),
         Wrong(
