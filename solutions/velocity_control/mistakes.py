@@ -91,54 +91,9 @@ def workspace_terms(
     return law, others
 
 
-def faster_with_d(kp: float, kd: float) -> float:
-    """Adds kd to kp, as if D helped P."""
-    return kp * (1.0 + kd)
-
-
-def without_d(kp: float, kd: float) -> float:
-    """D left out."""
-    return kp
-
-
-def minus_the_rate(kp: float, kd: float) -> float:
-    """The root s of exp(s t), not the rate r of exp(-r t)."""
-    return -kp / (1.0 + kd)
-
-
-def d_turned_round(kp: float, kd: float) -> float:
-    """D with the other sign, which divides by zero at kd = 1."""
-    return kp / (1.0 - kd)
-
-
-def gains_added(kp: float, kd: float) -> float:
-    """The two gains added, whose units differ."""
-    return kp + kd
-
-
-def undamped(J: Any, damping: float) -> Array:
-    """The plain pseudo-inverse."""
-    return np.asarray(J.T @ np.linalg.inv(J @ J.T))
-
-
-def damping_squared(J: Any, damping: float) -> Array:
-    """Squares a damping that is lambda squared already."""
-    return damped_inverse(J, damping**2)
-
-
 def damping_everywhere(J: Any, damping: float) -> Array:
     """Adds the damping to every entry of J J^T, without the identity."""
     return np.asarray(J.T @ np.linalg.inv(J @ J.T + damping))
-
-
-def damping_taken_off(J: Any, damping: float) -> Array:
-    """The damping subtracted, which can make a regular matrix singular."""
-    return damped_inverse(J, -damping)
-
-
-def damping_rooted(J: Any, damping: float) -> Array:
-    """Takes the square root of the damping."""
-    return damped_inverse(J, float(np.sqrt(damping)))
 
 
 _MODEL = lk.Model("left")

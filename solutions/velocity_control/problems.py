@@ -168,33 +168,33 @@ DECAY_RATE = Problem(
             "kd making the decay faster",
             "kd does not make the decay faster: here it slows the decay. The speed is on both "
             "sides of the equation.",
-            mistakes.faster_with_d,
+            mistakes.Rate(lambda kp, kd: kp * (1.0 + kd)),
             cure="(1 + kd) de/dt = -kp e.",
         ),
         Wrong(
             "kd left out",
             "kp alone is right only for kd = 0. The measured speed is the commanded one, so the "
             "command depends on itself through kd.",
-            mistakes.without_d,
+            mistakes.Rate(lambda kp, kd: kp),
             cure="Solve for the speed.",
         ),
         Wrong(
             "a rate with a minus",
             "exp(-r t) already contains the minus, and yours is a second one.",
-            mistakes.minus_the_rate,
+            mistakes.Rate(lambda kp, kd: -kp / (1.0 + kd)),
             cure="The rate of an error that decays is positive.",
         ),
         Wrong(
             "kd with the wrong sign",
             "At kd = 1 your rate divides by zero. The target is at rest, so the error of the "
             "speeds is minus the joint's speed.",
-            mistakes.d_turned_round,
+            mistakes.Rate(lambda kp, kd: kp / (1.0 - kd)),
             cure="kd brakes: (1 + kd) de/dt = -kp e.",
         ),
         Wrong(
             "the gains added",
             "kp is in 1/s and kd has no unit, so they cannot be added.",
-            mistakes.gains_added,
+            mistakes.Rate(lambda kp, kd: kp + kd),
             cure="Write down the equation of the error, and collect the terms with de/dt.",
         ),
         Wrong(
@@ -258,13 +258,13 @@ DAMPED_INVERSE = Problem(
             "This is the plain pseudo-inverse: when the elbow is nearly straight, it commands "
             "speeds that no joint can reach. (As a cut-off for small singular values the damping "
             "changes nothing here.)",
-            mistakes.undamped,
+            mistakes.BySingularValues(lambda s, d: 1.0 / s),
             cure="Add the damping times the identity to J Jᵀ.",
         ),
         Wrong(
             "the damping squared",
             "`damping` is already the factor of |dq|², which many books write as λ².",
-            mistakes.damping_squared,
+            mistakes.BySingularValues(lambda s, d: s / (s**2 + d**2)),
             cure="Do not square it.",
         ),
         Wrong(
@@ -277,13 +277,13 @@ DAMPED_INVERSE = Problem(
         Wrong(
             "the damping subtracted",
             "You subtract the damping, so J Jᵀ can become singular.",
-            mistakes.damping_taken_off,
+            mistakes.BySingularValues(lambda s, d: s / (s**2 - d)),
             cure="Add it.",
         ),
         Wrong(
             "the square root of the damping",
             "`damping` is the factor of |dq|² itself; you took its root.",
-            mistakes.damping_rooted,
+            mistakes.BySingularValues(lambda s, d: s / (s**2 + d**0.5)),
             cure="Use it as it is.",
         ),
         Wrong(
