@@ -11,7 +11,6 @@ import numpy as np
 import labkit as lk
 from labkit.shapes import Array
 
-from ..warmup.mistakes import euler_subtracted, in_tool_axes
 from .answers import damped_inverse
 
 
@@ -96,65 +95,6 @@ def damping_everywhere(J: Any, damping: float) -> Array:
     return np.asarray(J.T @ np.linalg.inv(J @ J.T + damping))
 
 
-_MODEL = lk.Model("left")
-
-
-def _pose(state: lk.State) -> Array:
-    """The pose of the tip."""
-    return _MODEL.pose(state.q)
-
-
-def _law(
-    state: Any, target: Any, J: Any, turn: Any, kp: Any, damping: float, ff: float
-) -> lk.JointVelocity:
-    e = np.concatenate([target.pose[:3, 3] - _pose(state)[:3, 3], turn])
-    return lk.JointVelocity(damped_inverse(J, damping) @ (ff * target.twist + kp * e))
-
-
-def _turn(state: lk.State, target: lk.PoseSample) -> Array:
-    return lk.se3.orientation_error(target.pose[:3, :3], _pose(state)[:3, :3])
-
-
-def euler_error(
-    state: lk.State, target: lk.PoseSample, model: lk.Model, *, kp: Any, damping: float
-) -> lk.JointVelocity:
-    """Roll, pitch and yaw subtracted for the orientation."""
-    turn = euler_subtracted(target.pose[:3, :3], _pose(state)[:3, :3])
-    return _law(state, target, model.tip_jacobian(state.q), turn, kp, damping, 1.0)
-
-
-def turn_in_tool_axes(
-    state: lk.State, target: lk.PoseSample, model: lk.Model, *, kp: Any, damping: float
-) -> lk.JointVelocity:
-    """The right turn in the tool's axes, with a Jacobian in the world's."""
-    turn = in_tool_axes(target.pose[:3, :3], _pose(state)[:3, :3])
-    return _law(state, target, model.tip_jacobian(state.q), turn, kp, damping, 1.0)
-
-
-def body_jacobian(
-    state: lk.State, target: lk.PoseSample, model: lk.Model, *, kp: Any, damping: float
-) -> lk.JointVelocity:
-    """An error in world axes with the Jacobian of the tool's axes."""
-    J = model.body_jacobian(state.q)
-    return _law(state, target, J, _turn(state, target), kp, damping, 1.0)
-
-
-def damping_ignored(
-    state: lk.State, target: lk.PoseSample, model: lk.Model, *, kp: Any, damping: float
-) -> lk.JointVelocity:
-    """The plain pseudo-inverse, whatever the damping."""
-    J = model.tip_jacobian(state.q)
-    return _law(state, target, J, _turn(state, target), kp, 0.0, 1.0)
-
-
-def transpose_for_inverse(
-    state: lk.State, target: lk.PoseSample, model: lk.Model, *, kp: Any, damping: float
-) -> lk.JointVelocity:
-    """The transpose of the Jacobian, as if it undid the Jacobian."""
-    T_wt, J = model.pose(state.q), model.tip_jacobian(state.q)
-    return lk.JointVelocity(J.T @ (target.twist + kp * lk.se3.pose_error(target.pose, T_wt)))
-
-
 def sine_of_the_turn(R_wd: Array, R_wt: Array) -> Array:
     """Half the sum of the axes' cross products: the sine of the angle, not the angle."""
     return np.asarray(0.5 * np.cross(R_wt.T, R_wd.T).sum(axis=0))
@@ -162,13 +102,17 @@ def sine_of_the_turn(R_wd: Array, R_wt: Array) -> Array:
 
 @dataclass(frozen=True)
 class WorkspaceLaw:
-    """The workspace law with another error.
+    """The workspace law with another error, Jacobian or inverse.
 
     Attributes:
         turn: The error of orientation, given (R_wd, R_wt).
+        inverse: The inverse of a Jacobian, given the damping.
+        in_tool: Whether the Jacobian is the one in the tool's axes.
     """
 
     turn: Callable[[Array, Array], Array] = lk.se3.orientation_error
+    inverse: Callable[[Array, float], Array] = damped_inverse
+    in_tool: bool = False
 
     def __call__(
         self, state: lk.State, target: lk.PoseSample, model: lk.Model, *, kp: Any, damping: float
@@ -177,8 +121,8 @@ class WorkspaceLaw:
         T_wt = model.pose(state.q)
         e_p = target.pose[:3, 3] - T_wt[:3, 3]
         e = np.concatenate([e_p, self.turn(target.pose[:3, :3], T_wt[:3, :3])])
-        J_inv = damped_inverse(model.tip_jacobian(state.q), damping)
-        return lk.JointVelocity(J_inv @ (target.twist + kp * e))
+        J = model.body_jacobian(state.q) if self.in_tool else model.tip_jacobian(state.q)
+        return lk.JointVelocity(self.inverse(J, damping) @ (target.twist + kp * e))
 
 
 def transpose_projector(J: Any, dq_wish: Any) -> Array:

@@ -8,7 +8,9 @@ from labkit.course import PUBLIC_ARMS, Call, Close, Letter, OwnArm
 from labkit.course.authoring.problem import Problem, Trial, Wrong, call
 from labkit.course.judges import UNSAID
 
+from ..warmup.mistakes import euler_subtracted, in_tool_axes
 from . import answers, hidden, mistakes, variants
+from .answers import damped_inverse
 from .hidden import (
     MODEL,
     READY,
@@ -401,28 +403,28 @@ WORKSPACE_VELOCITY_PD = Problem(
             "With the gripper down and a yaw beyond 90 degrees, as in the ready pose, the "
             "difference of the angles drives roll and pitch in the wrong direction, and it jumps "
             "at 180 degrees. This is the mistake of equation 16.",
-            mistakes.euler_error,
+            mistakes.WorkspaceLaw(turn=euler_subtracted),
             cure="Use the logarithm, as in notebook 00.",
         ),
         Wrong(
             "the turn in the tool's axes",
             "The tip Jacobian is in world axes, but your error is in the tool's axes. With the "
             "gripper down, two components then have the wrong sign.",
-            mistakes.turn_in_tool_axes,
+            mistakes.WorkspaceLaw(turn=in_tool_axes),
             cure="Use R_wd R_wtᵀ.",
         ),
         Wrong(
             "the body Jacobian with an error in world axes",
             "The body Jacobian gives the twist in the tool's axes, and with the gripper down the "
             "tool's z axis points down. Your error is in world axes.",
-            mistakes.body_jacobian,
+            mistakes.WorkspaceLaw(in_tool=True),
             cure="Use tip_jacobian.",
         ),
         Wrong(
             "the damping ignored",
             "This is the plain pseudo-inverse: when the elbow is straight, it commands speeds "
             "that no joint can reach.",
-            mistakes.damping_ignored,
+            mistakes.WorkspaceLaw(inverse=lambda J, d: damped_inverse(J, 0.0)),
             cure="Use the damped inverse.",
         ),
         Wrong(
@@ -443,7 +445,7 @@ WORKSPACE_VELOCITY_PD = Problem(
             "the transpose for the inverse",
             "Jᵀ does not undo J: the tip moves by J Jᵀ times the twist that you wanted, in other "
             "directions and at other speeds.",
-            mistakes.transpose_for_inverse,
+            mistakes.WorkspaceLaw(inverse=lambda J, d: J.T),
             cure="Use the damped inverse.",
         ),
         Wrong(
