@@ -5,7 +5,6 @@ from __future__ import annotations
 import platform
 from collections.abc import Iterator
 from dataclasses import dataclass
-from importlib.util import find_spec
 from textwrap import wrap
 
 from ..sim import installed
@@ -51,11 +50,8 @@ def examine() -> Iterator[Finding]:
         says += f"; students can work here, and grading needs Linux: the container\n\n{elsewhere()}"
         yield Finding("system", False, says)
         return
+    says += f", Python {platform.python_version()}, {' and '.join(installed())}"
     yield Finding("system", True, says)
-    yield Finding("Python", True, f"{platform.python_version()}, {' and '.join(installed())}")
-    missing = [x for x in ("nbgrader", "jupytext") if find_spec(x) is None]
-    says = f"missing {', '.join(missing)}; type: pip install 'labkit[grader]'"
-    yield Finding("instructor's packages", not missing, says if missing else "installed")
     yield from sandbox()
 
 
@@ -70,10 +66,7 @@ def sandbox() -> Iterator[Finding]:
             process.send({"cell": 0, "source": _TRY, "answers": [], "seconds": 10.0})
             failed = str(process.read(30.0).get("error", "it did not answer"))
             yield Finding("sandbox", not failed, failed or made.level)
-            says = "made" if made.group else (
-                "none here: memory is limited for each process, not for all together; a "
-                "container's own --memory and --pids-limit hold for it as a whole"
-            )  # fmt: skip
+            says = "made" if made.group else "none: memory is limited for each process alone"
             yield Finding("cgroup of a sandbox", made.group is not None, says, needed=False)
     except (NoIsolation, SandboxLost) as error:
         yield Finding("sandbox", False, f"{error}\n\n{elsewhere()}")

@@ -20,6 +20,7 @@ import traceback
 from collections.abc import Sequence
 from contextlib import suppress
 from importlib import import_module
+from pathlib import Path
 from types import ModuleType
 from typing import Any
 
@@ -112,7 +113,7 @@ def main() -> None:
     os.dup2(nowhere, 1)
     _load(modules)
     children = AsUser() if how == "user" else InBubblewrap()
-    only, space = Filter(), _address_space()
+    only, loaded = Filter(), int(Path("/proc/self/statm").read_text().split()[0])
     gc.collect()
     gc.freeze()
     worker.send({"ready": True})
@@ -139,7 +140,7 @@ def main() -> None:
     connection = Connection(socket.socket(fileno=ends[0]))
     try:
         children.enter(uid, request["limits"]["files"] << 20)
-        _confine(request["limits"], uid, space, only)
+        _confine(request["limits"], uid, loaded * resource.getpagesize(), only)
         connection.send({"confined": True})
         runner.serve(connection, request["limits"], ends[1:])
     except BaseException:
@@ -189,12 +190,6 @@ def _confine(limits: dict[str, Any], uid: int, space: int, only: Filter) -> None
     ):
         resource.setrlimit(what, (value, value))
     only.install()
-
-
-def _address_space() -> int:
-    """The size of what this process has mapped so far, in bytes."""
-    with open("/proc/self/statm") as file:
-        return int(file.read().split()[0]) * resource.getpagesize()
 
 
 def _mount(source: bytes, target: bytes, flags: int, data: str = "") -> None:

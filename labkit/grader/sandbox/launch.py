@@ -29,18 +29,14 @@ from ...errors import LabkitError
 from .limits import BOX, Limits, kill_user, make_group, remove_group
 from .protocol import Connection, ProtocolError
 
-INSTALL = "apt-get install bubblewrap libseccomp2"
 FIRST_UID = 64000
-MAX_USERS = 1000
-"""If root grades, each sandbox has its own user among these."""
-START = 120.0  # seconds
+"""If root grades, each sandbox has its own user from this one on."""
 DEVICES = ("/dev/null", "/dev/zero", "/dev/full", "/dev/random", "/dev/urandom")
 """The devices that bubblewrap shows."""
 _PACKAGE = Path(labkit.__file__).parent
 _PARTS = ("bin", "lib", "lib32", "lib64", "pyvenv.cfg")
 """The parts that are shown of the system, of ``/usr`` and of each Python."""
-_HUGE_PAGES = "/sys/kernel/mm/transparent_hugepage"
-_ALSO_SHOWN = ("/etc/ld.so.cache", "/etc/alternatives", _HUGE_PAGES)
+_MORE = ("/etc/ld.so.cache", "/etc/alternatives", "/sys/kernel/mm/transparent_hugepage")
 _FORKSERVER = (sys.executable, "-P", "-s", "-m", "labkit.grader.sandbox.forkserver")
 _VARIABLES = {
     "PATH": "/usr/bin:/bin",
@@ -49,7 +45,6 @@ _VARIABLES = {
     "MPLBACKEND": "Agg",
     "OPENBLAS_NUM_THREADS": "1",
     "OMP_NUM_THREADS": "1",
-    "LC_ALL": "C.UTF-8",
     "GLIBC_TUNABLES": "glibc.malloc.hugetlb=1",
     "PYTHONMALLOC": "malloc",
 }
@@ -121,7 +116,7 @@ class Sandbox(AbstractContextManager["Sandbox"]):
                 preexec_fn=self._enter,
             )
         try:
-            self._forkserver.read(START)
+            self._forkserver.read(120.0)
             self.start(Limits())
             self.end()
         except (ProtocolError, SandboxLost) as error:
@@ -144,8 +139,7 @@ class Sandbox(AbstractContextManager["Sandbox"]):
     def level(self) -> str:
         """What isolates a submission here, in one line."""
         who = f"id {self.uid}" if self.uid else "an unprivileged user"
-        group = "a cgroup" if self.group else "no cgroup"
-        return f"{self.isolation.value}, {who}, no network, seccomp, limits, {group}"
+        return f"{self.isolation.value}, {who}, seccomp, limits{', a cgroup' * bool(self.group)}"
 
     def start(self, limits: Limits, data: bytes | None = None) -> Connection:
         """Fork a new process inside, in place of the one before.
@@ -162,10 +156,8 @@ class Sandbox(AbstractContextManager["Sandbox"]):
         with theirs, open(os.memfd_create("notebook"), "w+b") as file:
             file.write(data or b"")
             file.seek(0)
-            ends = [theirs.fileno(), file.fileno()]
-            self._request(
-                {"limits": asdict(limits), "uid": self.uid}, ends[: 1 + (data is not None)]
-            )
+            ends = [theirs.fileno()] + [file.fileno()] * (data is not None)
+            self._request({"limits": asdict(limits), "uid": self.uid}, ends)
         try:
             reply = connection.read(20.0)
         except ProtocolError as error:
@@ -221,7 +213,7 @@ def _bubblewrap(hidden: Sequence[Path]) -> tuple[list[str], dict[str, str]]:
     """
     program = shutil.which("bwrap")
     if program is None:
-        raise NoIsolation(f"bubblewrap is missing; get it with: {INSTALL}")
+        raise NoIsolation("bubblewrap is missing; type: apt-get install bubblewrap libseccomp2")
     words = [program, "--unshare-ipc", "--unshare-pid", "--unshare-net", "--unshare-uts"]
     words += ["--unshare-cgroup-try", "--die-with-parent", "--new-session", "--clearenv"]
     if os.geteuid():
@@ -267,7 +259,7 @@ def python_paths() -> list[Path]:
         program = Path(os.path.normpath(program.parent / os.readlink(program)))
         prefixes.add(program.parents[1])
     prefixes |= {prefix.resolve() for prefix in prefixes}
-    places = [*(prefix / part for prefix in prefixes for part in _PARTS), *map(Path, _ALSO_SHOWN)]
+    places = [*(prefix / part for prefix in prefixes for part in _PARTS), *map(Path, _MORE)]
     return sorted(place for place in places if place.exists())
 
 
@@ -303,8 +295,8 @@ def _own_user() -> tuple[int, socket.socket]:
     Without root it is 0, for this very user.
     """
     claim = socket.socket(socket.AF_UNIX)
-    for uid in range(FIRST_UID, FIRST_UID + MAX_USERS):
+    for uid in range(FIRST_UID, FIRST_UID + 1000):
         with suppress(OSError):
             claim.bind(f"\0labkit-sandbox-{uid}")  # freed however this process ends
             return 0 if os.geteuid() else uid, claim
-    raise NoIsolation(f"all {MAX_USERS} users for sandboxes are in use; stop other graders")
+    raise NoIsolation("all 1000 users for sandboxes are in use; stop other graders")

@@ -12,14 +12,11 @@ from typing import Any
 
 from ...course.notebook import grade_id
 from ...course.source import analyse
+from ...errors import LabkitError
 from .protocol import clean_text
 
 MOST_CELLS = 1000
 MOST_SOURCE = 2_000_000  # characters, in all cells together
-
-
-class Rejected(Exception):
-    """The file is not a notebook that can be graded; the message is a sentence that says why."""
 
 
 def read(data: bytes) -> dict[str, Any]:
@@ -35,7 +32,7 @@ def read(data: bytes) -> dict[str, Any]:
     """
     try:
         return {"cells": list(_cells(_notebook(data)))}
-    except Rejected as why:
+    except LabkitError as why:
         return {"rejected": str(why)}
 
 
@@ -44,18 +41,18 @@ def _notebook(data: bytes) -> dict[str, Any]:
         notebook = json.loads(data)
     except (ValueError, RecursionError, MemoryError) as error:
         why = f"the file is not a notebook; its JSON is broken: {error}"
-        raise Rejected(why[:200]) from None
-    if not isinstance(notebook, dict) or not isinstance(notebook.get("cells"), list):
-        raise Rejected("the file is not a notebook of format 4: it has no cells")
-    if notebook.get("nbformat") != 4:
-        raise Rejected(f"the notebook's format is {str(notebook.get('nbformat'))[:20]}, not 4")
+        raise LabkitError(why[:200]) from None
+    if not isinstance(notebook, dict) or notebook.get("nbformat") != 4:
+        raise LabkitError("the file is not a notebook of format 4")
+    if not isinstance(notebook.get("cells"), list):
+        raise LabkitError("the notebook has no cells")
     about = notebook.get("metadata")
     kernel = about.get("kernelspec") if isinstance(about, dict) else None
     language = kernel.get("language") if isinstance(kernel, dict) else None
     if language not in (None, "python", "sage"):
-        raise Rejected(f"the notebook's kernel runs {str(language)[:20]}, not Python")
+        raise LabkitError(f"the notebook's kernel runs {str(language)[:20]}, not Python")
     if len(notebook["cells"]) > MOST_CELLS:
-        raise Rejected(f"it has {len(notebook['cells'])} cells; the limit is {MOST_CELLS}")
+        raise LabkitError(f"it has {len(notebook['cells'])} cells; the limit is {MOST_CELLS}")
     return notebook
 
 
@@ -71,7 +68,7 @@ def _cells(notebook: dict[str, Any]) -> Iterator[dict[str, Any]]:
             source = ""
         total += len(source)
         if total > MOST_SOURCE:
-            raise Rejected("its cells have over 2 MB of text; delete some of it")
+            raise LabkitError("its cells have over 2 MB of text; delete some of it")
         source = clean_text(source.replace("\r\n", "\n").replace("\r", "\n"))
         kind = "code" if cell.get("cell_type") == "code" else "text"
         yield {

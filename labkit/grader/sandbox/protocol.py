@@ -89,19 +89,9 @@ class Connection:
         if data.count(b",") + data.count(b"[") + data.count(b"{") > max_values:
             raise BadMessage(f"more than {max_values:,} values came back")
         try:
-            message = json.loads(data)
-        except (ValueError, RecursionError):
-            raise BadMessage("what came back is not JSON") from None
-        if not isinstance(message, dict):
-            raise BadMessage("what came back is not a message")
-        return message
-
-    def request(
-        self, message: dict[str, Any], seconds: float, max_bytes: int, max_values: int = MAX_BYTES
-    ) -> dict[str, Any]:
-        """Write one message and read the reply, each within ``seconds``; raise as `read` does."""
-        self.send(message, seconds)
-        return self.read(seconds, max_bytes, max_values)
+            return dict(json.loads(data).items())
+        except (ValueError, AttributeError, RecursionError):
+            raise BadMessage("what came back is not a JSON object") from None
 
     def _read_line(self, seconds: float, max_bytes: int) -> bytes:
         """Read one line without its newline; raise as `read` does."""

@@ -36,7 +36,6 @@ def serve(connection: Connection, limits: dict[str, Any], files: Sequence[int] =
     notebook = Notebook(limits)
     signal.signal(signal.SIGALRM, _time_up)
     signal.signal(signal.SIGPROF, _time_up)
-    signal.signal(signal.SIGINT, signal.SIG_IGN)
     while True:
         try:
             asked = connection.read()

@@ -107,7 +107,7 @@ class Session:
             self._starts += 1
             self._process = self._process or self.sandbox.start(self.limits)
             self._ran = True
-            died = self._run_cells(self._process)
+            died = self._run_cells()
             if died is not None:
                 self._fatal.add(died)
                 self.close()
@@ -120,17 +120,12 @@ class Session:
             Whether the question was opened now.
 
         Raises:
-            Disconnected: The process cannot be started.
+            ProtocolError: The process cannot be started, or does not get ready.
         """
         if self._asked == question.name:
             return False
-        message = {"question": question.name, "right": self.right}
-        try:
-            if "ready" not in self.start().request(message, 2 * self.limits.grace, MAX_REPLY):
-                raise Disconnected("it did not get ready")
-        except ProtocolError as error:
-            self.close()
-            raise Disconnected(str(error)) from None
+        self.start()
+        self._request({"question": question.name, "right": self.right}, 2 * self.limits.grace)
         self._asked = question.name
         return True
 
@@ -146,17 +141,8 @@ class Session:
             BadMessage: What came back is not a reply; the process was killed.
             Disconnected: The fork that answers, or the whole process, died.
         """
-        assert self._process is not None
-        began = time.monotonic()
         longest = self.limits.call * self.limits.patience + self.limits.grace
-        wait = max(0.0, min(seconds, longest, self._left))
-        try:
-            reply = self._process.request(message, wait, MAX_REPLY, MAX_VALUES)
-        except ProtocolError:
-            self.close()
-            raise
-        finally:
-            self._spend(time.monotonic() - began)
+        reply = self._request(message, min(seconds, longest))
         if "over" in reply:
             self._asked = ""
             raise Disconnected("it died")
@@ -164,12 +150,11 @@ class Session:
 
     def close_question(self) -> None:
         """End the question that is open, if there is one."""
-        if self._asked and self._process is not None:
-            self._asked = ""
+        if self._asked:
             with suppress(ProtocolError):
-                if "over" in self._process.request({"end": True}, self.limits.grace, MAX_REPLY):
-                    return
-            self.close()
+                if "over" not in self._request({"end": True}, self.limits.grace):
+                    self.close()
+            self._asked = ""
 
     def failed(self) -> tuple[dict[str, Any], ...]:
         """A report on each cell that failed when it last ran, in order."""
@@ -187,32 +172,43 @@ class Session:
             process.close()
             self.sandbox.end()
 
-    def _spend(self, seconds: float) -> None:
-        self.spent += seconds
-        self._left -= seconds
+    def _request(self, message: dict[str, Any], seconds: float) -> dict[str, Any]:
+        """Send a message and return the reply; kill the process if there is none in time."""
+        assert self._process is not None
+        began = time.monotonic()
+        wait = max(0.1, min(seconds, self._left))
+        try:
+            self._process.send(message, wait)
+            return self._process.read(wait, MAX_REPLY, MAX_VALUES)
+        except ProtocolError:
+            self.close()
+            raise
+        finally:
+            spent = time.monotonic() - began
+            self.spent += spent
+            self._left -= spent
 
-    def _run_cells(self, process: Connection) -> int | None:
+    def _run_cells(self) -> int | None:
         """Run all cells; return the number of the one that ended the process, if any."""
         again = []  # cells with a NameError, which may be in the wrong order
         for step in self.steps:
             if step.number not in self._fatal:
-                kind = self._run(process, step)
+                kind = self._run(step)
                 if kind == "died":
                     return step.number
                 if kind == "NameError":
                     again.append(step)
-        return next((step.number for step in again if self._run(process, step) == "died"), None)
+        return next((step.number for step in again if self._run(step) == "died"), None)
 
-    def _run(self, process: Connection, step: Step) -> str:
+    def _run(self, step: Step) -> str:
         """Run one cell and report on it; return the kind of its exception, "" or "died"."""
         began = time.monotonic()
         seconds = min(self.limits.cell, max(LEAST_SHARE * self.limits.cells, self._cells))
         wait = seconds * self.limits.patience + self.limits.grace
-        wait = max(0.1, min(wait, self._left))
         cell = {"cell": step.number, "source": step.source, "answers": step.answers}
         kind, error, output = "died", "", ""
         try:
-            said = process.request(cell | {"seconds": seconds}, wait, MAX_REPLY)
+            said = self._request(cell | {"seconds": seconds}, wait)
             if said.get("ran") == step.number:
                 kind = clean_line(str(said.get("kind", "")), 60)
                 error = clean_line(str(said.get("error", "")), 400)
@@ -224,7 +220,6 @@ class Session:
         except ProtocolError:
             error = "it ended the process"
         spent = time.monotonic() - began
-        self._spend(spent)
         self._cells -= spent
         self._output -= len(output)
         report = {"kind": kind, "error": error, "output": output, "seconds": round(spent, 4)}

@@ -20,28 +20,17 @@ from labkit.course.own_arm import commanded, my_arm, my_bug
 def install() -> None:
     """Put the stubs where a notebook looks for the originals."""
     checks = ModuleType("labkit.course")
-    for function in (check, predict, use):
-        setattr(checks, function.__name__, function)
-    vars(checks).update(case=nothing, commanded=commanded)
+    vars(checks).update(check=nothing, case=nothing, predict=predict, use=use, commanded=commanded)
     sys.modules["labkit.course"] = vars(labkit)["course"] = checks
-    vars(labkit).update(ready=ready, hand_in=nothing, progress=nothing, restore=nothing)
+    vars(labkit).update(ready=nothing, hand_in=nothing, progress=nothing, restore=nothing)
     vars(labkit).update(my_arm=my_arm, my_bug=my_bug)
-    vars(builtins).update(get_ipython=Shell, display=display)
-    vars(IPython).update(get_ipython=Shell, display=display)
-    vars(IPython.display)["display"] = display
+    vars(builtins).update(get_ipython=Shell, display=nothing)
+    vars(IPython).update(get_ipython=Shell, display=nothing)
+    vars(IPython.display)["display"] = nothing
 
 
-def ready() -> None:
-    """Do nothing, as the machine is not the student's."""
-
-
-def check(name: str, function: Callable[..., Any] | None = None) -> float:
-    """Give no verdict; the grader does, outside."""
-    return 0.0
-
-
-def nothing(name: str = "") -> None:
-    """Do nothing."""
+def nothing(*_: Any, **__: Any) -> None:
+    """Do nothing, as the grader gives verdicts outside, and nobody looks."""
 
 
 def predict(name: str, said: Any = "?", *, truth: Any = None) -> Any:
@@ -69,10 +58,6 @@ def use(
         return ((yours or function) if name in right else given)(*args, **kwargs)
 
     return either
-
-
-def display(*things: Any, **options: Any) -> None:
-    """Show nothing."""
 
 
 class Shell:
