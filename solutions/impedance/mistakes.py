@@ -190,43 +190,6 @@ def hand_works_twice(
 
 
 @dataclass(frozen=True)
-class ShapedTerms:
-    """Another torque from the terms of the shaped impedance.
-
-    Attributes:
-        law: The torque, given J, the tip's inertia, the desired one, the desired acceleration, J'
-            dq, D de, K e, the wrench, C dq and g.
-    """
-
-    law: Callable[..., Any]
-
-    def __call__(
-        self,
-        state: lk.State,
-        target: lk.PoseSample,
-        wrench: Any,
-        model: lk.Model,
-        *,
-        inertia: Any,
-        stiffness: Any,
-        damping: Any,
-    ) -> lk.JointTorque:
-        """The torque."""
-        q, dq = state.q, state.dq
-        J, e = model.tip_jacobian(q), lk.se3.pose_error(target.pose, model.pose(q))
-        drift = model.tip_jacobian_rate(q, dq) @ dq
-        De, Ke = damping * (target.twist - J @ dq), stiffness * e
-        L, C, g = model.operational_inertia(q), model.coriolis(q, dq) @ dq, model.gravity(q)
-        F = np.asarray(wrench)
-        return lk.JointTorque(self.law(J, L, inertia, target.dtwist, drift, De, Ke, F, C, g))
-
-
-def shaped(J: Any, L: Any, M: Any, a: Any, drift: Any, P: Any, F: Any, C: Any, g: Any) -> Any:
-    """The right torque, given the pull P = D de + K e."""
-    return J.T @ (L @ (a + np.linalg.inv(M) @ (P + F) - drift) - F) + C + g
-
-
-@dataclass(frozen=True)
 class MassesOf:
     """Another matrix from M and J.
 

@@ -117,57 +117,60 @@ OPERATIONAL_INERTIA = Problem(
         Wrong(
             "J M Jᵀ",
             "J M Jᵀ has the right shape but the wrong unit: with J in m/rad it grows with the "
-            "length of the lever, while the mass felt at the end of a longer lever gets smaller. "
-            "Begin with the inverse of M.",
+            "length of the lever, while the mass felt at the end of a longer lever gets smaller.",
             mistakes.j_m_jt,
             "Follow a push through the arm instead of guessing a product that fits.",
+            cure="Begin with the inverse of M.",
         ),
         Wrong(
             "pseudo-inverses of J on both sides",
             "With six joints this is right. With seven it keeps the elbow out of the motion, and "
-            "the arm seems heavier than it is. Follow the push instead: Jᵀ F, then M⁻¹, then J.",
+            "the arm seems heavier than it is.",
             mistakes.pseudo_inverses,
             "pinv(J) chooses the smallest joint speeds; the arm itself chooses those with the "
             "least energy.",
+            cure="Follow the push instead: Jᵀ F, then M⁻¹, then J.",
         ),
         Wrong(
             "the last inverse left out",
-            "J M⁻¹ Jᵀ says how easily the tip moves. The question asks how heavy the tip feels, "
-            "which is the inverse.",
+            "Your matrix says how easily the tip moves. The question asks how heavy it feels.",
             mistakes.mobility,
             "Mobility and inertia are inverse to each other.",
+            cure="Invert it.",
         ),
         Wrong(
             "1 / M, number by number",
-            "1 / M takes the reciprocal of each number. The inverse of a matrix is np.linalg.inv, "
-            "or better a solve.",
+            "1 / M takes the reciprocal of each number: that is not the inverse of a matrix.",
             mistakes.inverse_by_element,
             "In numpy, / divides element by element.",
+            cure="np.linalg.inv, or better a solve.",
         ),
         Wrong(
             "only the diagonal of M",
-            "The joints accelerate each other, so the numbers off the diagonal of M matter. Use "
-            "the whole matrix.",
+            "You use the diagonal of M alone, but the joints accelerate each other.",
             mistakes.diagonal_only,
             "The mass matrix couples the joints.",
         ),
         Wrong(
             "the inverse of J M Jᵀ",
-            "M must be inverted first. Follow the push: Jᵀ F, then M⁻¹, then J.",
+            "You inverted the whole product, in which M is not inverted: the unit is not kg.",
             mistakes.inverse_of_the_wrong,
             "Check the unit: the result must be in kg.",
+            cure="Follow the push: Jᵀ F, then M⁻¹, then J.",
         ),
         Wrong(
             "1 over each number",
-            "1 / A takes the reciprocal of each number. The inverse of a matrix is np.linalg.inv.",
+            "1 / A takes the reciprocal of each number: that is not the inverse of a matrix.",
             mistakes.numbers_turned_over,
             "1 / A is not A⁻¹.",
+            cure="np.linalg.inv.",
         ),
         Wrong(
             "the mass matrix left out",
-            "The inverse of J Jᵀ knows nothing of masses. Put M⁻¹ between J and Jᵀ, then invert.",
+            "The inverse of J Jᵀ knows nothing of masses.",
             mistakes.MassesOf(lambda M, J: np.linalg.inv(J @ J.T)),
             "Say what each factor does to a wrench.",
+            cure="Put M⁻¹ between J and Jᵀ, then invert.",
         ),
     ),
     variants=(variants.inertia_by_inverse, variants.inertia_by_root),
@@ -249,26 +252,25 @@ WORKSPACE_IMPEDANCE = Problem(
         Wrong(
             "the spring's sign reversed",
             "The spring drives the tip away from its target: after any disturbance the arm leaves "
-            "its workspace. With e as target minus actual, the stiffness has a plus. (In the "
-            "report that this lab grew out of, the equation has your sign, and the program does "
-            "not.)",
+            "its workspace.",
             mistakes.plus_in_front,
             "One convention: e = target - actual, and a plus before every gain.",
+            cure="With e as target minus actual, the stiffness has a plus.",
         ),
         Wrong(
             "the springs multiplied by Λ",
-            "The springs are multiplied by the inertia, so that a stiffness in N/m has no "
-            "meaning. Keep springs and dampers outside Λ; inside, the law is computed torque at "
-            "the tip.",
+            "The springs are multiplied by the inertia, so that a stiffness in N/m has no meaning: this is "
+            "computed torque at the tip.",
             mistakes.springs_inside,
             "In an impedance the stiffness is in N/m, outside the inertia.",
+            cure="Keep springs and dampers outside Λ.",
         ),
         Wrong(
             "a pseudo-inverse for Jᵀ",
-            "The pseudo-inverse is for speeds. A force F at the tip takes exactly the joint "
-            "torques Jᵀ F.",
+            "The pseudo-inverse is for speeds, and you map a force with it.",
             mistakes.inverse_for_transpose,
             "Jᵀ maps forces, J⁺ maps speeds.",
+            cure="A force F at the tip takes the joint torques Jᵀ F.",
         ),
     ),
     terms=mistakes.tip_terms,
@@ -501,82 +503,53 @@ SHAPED_IMPEDANCE = Problem(
     wrong=(
         Wrong(
             "the inertia ignored",
-            "This is the law with the arm's own inertia. Divide springs, dampers and wrench by "
-            "M_d, then multiply by Λ; and subtract the wrench, which is the hand's part of the "
-            "force.",
+            "This is the law with the arm's own inertia: M_d and the wrench do not matter in it.",
             mistakes.own_inertia,
             "With M_d = Λ the two laws agree.",
+            cure="Divide springs, dampers and wrench by M_d, multiply by Λ, and subtract the wrench.",
         ),
         Wrong(
             "the hand's share left in",
-            "Your motors provide all the force that the motion takes, and the hand pushes as "
-            "well. Subtract the hand's wrench.",
+            "Your motors provide all the force that the motion takes, and the hand pushes as well.",
             mistakes.hand_works_twice,
             "Λ a = F_motors + F_hand.",
+            cure="Subtract the hand's wrench.",
         ),
         Wrong(
             "the wrench inside reversed",
-            "The tip should yield to the push: the wrench has a plus in M_d⁻¹ (D ė + K e + F).",
+            "Your tip accelerates against the push.",
             mistakes.ShapedLaw(inside=-1.0),
             "Follow one push through the law, sign by sign.",
+            cure="The wrench has a plus in M_d⁻¹ (D ė + K e + F).",
         ),
         Wrong(
             "the hand's share added",
-            "The hand provides a part of the force, so the motors must provide less. Subtract the "
-            "wrench instead of adding it.",
+            "The hand provides a part of the force, but your motors provide more for it, not less.",
             mistakes.ShapedLaw(outside=-1.0),
             "Which part of the force comes from whom?",
+            cure="Subtract the wrench.",
         ),
         Wrong(
             "the wrench subtracted, and no more",
-            "The wrench must also accelerate the tip: add M_d⁻¹ F to the acceleration.",
+            "In your law the wrench does not accelerate the tip.",
             mistakes.ShapedLaw(inside=0.0),
             "Follow one push through the law, sign by sign.",
+            cure="Add M_d⁻¹ F to the acceleration.",
         ),
         Wrong(
             "M_d where Λ belongs",
-            "The motors have to move the arm's own inertia, so multiply the acceleration by Λ. "
-            "M_d only determines how large this acceleration should be.",
+            "The motors have to move the arm's own inertia; M_d only determines how large the "
+            "acceleration should be.",
             mistakes.ShapedLaw(for_own=True),
             "First find the desired acceleration, then the force that it takes.",
+            cure="Multiply the acceleration by Λ.",
         ),
         Wrong(
             "J̇ q̇ left out",
-            "The tip accelerates even if the joints turn at constant speed. Subtract this part, "
-            "J̇ q̇, before you multiply by Λ.",
+            "The tip accelerates even if the joints turn at constant speed; your law does not know it.",
             mistakes.ShapedLaw(drift=0.0),
             "ẍ = J q̈ + J̇ q̇ has two terms.",
-        ),
-        Wrong(
-            "the wanted inertia not inverted",
-            "Multiply the forces by the inverse of the desired inertia, not by the inertia itself.",
-            mistakes.ShapedTerms(
-                lambda J, L, M, a, v, D, K, F, C, g: (
-                    J.T @ (L @ (a + M @ (D + K + F) - v) - F) + C + g
-                )
-            ),
-            "A force divided by an inertia is an acceleration.",
-        ),
-        Wrong(
-            "only the diagonal of the wanted inertia",
-            "The desired inertia is a matrix: invert the whole matrix.",
-            mistakes.ShapedTerms(
-                lambda J, L, M, a, v, D, K, F, C, g: mistakes.shaped(
-                    J, L, np.diag(np.diag(M)), a, v, D + K, F, C, g
-                )
-            ),
-            "1/diag(M) is not the inverse of M.",
-        ),
-        Wrong(
-            "the target's acceleration divided by the inertia",
-            "The target's acceleration is an acceleration already: do not multiply it by the "
-            "inverse of M_d.",
-            mistakes.ShapedTerms(
-                lambda J, L, M, a, v, D, K, F, C, g: (
-                    J.T @ (L @ (np.linalg.inv(M) @ (a + D + K + F) - v) - F) + C + g
-                )
-            ),
-            "Units: divide forces, not accelerations.",
+            cure="Subtract J̇ q̇ before you multiply by Λ.",
         ),
     ),
     variants=(variants.shaped_by_factor, variants.shaped_by_pseudo_inverse),

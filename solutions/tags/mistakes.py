@@ -105,11 +105,6 @@ def logarithms_subtracted(estimates: Any, truth: Any) -> tuple[Array, Array]:
     return _quality(estimates, truth, error)
 
 
-def turn_first(estimates: Any, truth: Any) -> tuple[Array, Array]:
-    """Turn, then position."""
-    return _quality(estimates, truth, lambda a, b: np.roll(se3.pose_error(a, b), 3))
-
-
 def _euler(R: Array) -> Array:
     return np.array(
         [

@@ -496,83 +496,68 @@ QUALITY = Problem(
     wrong=(
         Wrong(
             "estimate minus truth",
-            "The sign is wrong: in this course an error is target minus actual, here truth minus "
-            "estimate.",
+            "The sign is wrong: yours is estimate minus truth.",
             mistakes.the_other_sign,
             "Choose one sign of the error, and say it aloud.",
         ),
         Wrong(
             "Euler angles subtracted",
             "A tag that faces the camera is rotated by half a turn from the camera's axes, "
-            "exactly where Euler angles jump. Use the logarithm of one rotation.",
+            "exactly where Euler angles jump.",
             mistakes.euler_subtracted,
             "Never subtract Euler angles.",
+            cure="Use the logarithm of one rotation.",
         ),
         Wrong(
             "n instead of n - 1 in the denominator",
-            "You divided by n. The mean comes from the same numbers, so divide by n - 1.",
+            "You divided by n, but the mean comes from the same numbers.",
             mistakes.n_in_the_denominator,
             "n or n - 1: who gave you the mean?",
+            cure="Divide by n - 1.",
         ),
         Wrong(
             "the covariance of the mean",
-            "This is the covariance of the mean. Give the covariance of a single picture: do not "
-            "divide by the number of pictures.",
+            "This is the covariance of the mean; that of a single picture is asked for.",
             mistakes.of_the_mean,
             "Standard deviation and standard error are two things.",
+            cure="Do not divide by the number of pictures.",
         ),
         Wrong(
             "the variances alone",
-            "The errors are correlated: a tag that seems tilted also seems moved. Give the whole "
-            "covariance, as np.cov does.",
+            "The errors are correlated: a tag that seems tilted also seems moved. You give the "
+            "variances alone.",
             mistakes.diagonal_only,
             "The numbers off the diagonal say which errors occur together.",
+            cure="Give the whole covariance, as np.cov does.",
         ),
         Wrong(
             "the turn in the tag's axes",
-            "R_estimateᵀ R_truth is a rotation in the tag's axes. Position and rotation should "
-            "both be in the camera's axes: R_truth R_estimateᵀ.",
+            "Your rotation is in the tag's axes, your position in the camera's.",
             mistakes.turn_in_tag_axes,
             "In which axes is the rotation vector?",
+            cure="Take R_truth R_estimateᵀ.",
         ),
         Wrong(
             "the turn reversed",
-            "This is the rotation from the truth to the estimate. Put the truth on the left of "
-            "the product.",
+            "This is the rotation from the truth to the estimate.",
             mistakes.turn_backwards,
             "Choose one sign of the error, and say it aloud.",
+            cure="Put the truth on the left of the product.",
         ),
         Wrong(
             "logarithms subtracted",
             "The difference of two rotation vectors is not a rotation vector, least of all near "
-            "half a turn, where they jump. Multiply the rotations, then take one logarithm.",
+            "half a turn, where they jump.",
             mistakes.logarithms_subtracted,
             "Orientations are compared by a product.",
-        ),
-        Wrong(
-            "the turn before the position",
-            "Put the position first, then the rotation vector.",
-            mistakes.turn_first,
-            "In this course the position comes before the rotation.",
+            cure="Multiply the rotations, then take one logarithm.",
         ),
         Wrong(
             "about zero, with n - 1",
-            "The covariance is about the mean: subtract the mean from each error first, as np.cov "
-            "does.",
+            "Your spread is about zero, so it holds the bias as well.",
             mistakes.Quality(spread=lambda e: e.T @ e / (len(e) - 1)),
             "Bias and spread are two different numbers.",
-        ),
-        Wrong(
-            "degrees",
-            "Your rotation vector is in degrees. Give it in radians.",
-            mistakes.Quality((1.0, 180.0 / np.pi)),
-            "Say the unit of every number.",
-        ),
-        Wrong(
-            "correlations",
-            "np.corrcoef divides by the standard deviations. Give the covariance, which has units.",
-            mistakes.Quality(spread=lambda e: np.corrcoef(e.T)),
-            "A correlation has no unit: it does not say how large the errors are.",
+            cure="Subtract the mean from each error first, as np.cov does.",
         ),
     ),
     variants=(variants.quality_by_loops,),
@@ -632,37 +617,36 @@ BLEND = Problem(
         Wrong(
             "a cubic polynomial",
             "A cubic matches position and velocity, but its acceleration jumps at every new goal, "
-            "and the torque with it. Use fifth order to match the acceleration as well.",
+            "and the torque with it.",
             mistakes.without_the_bend,
             "Count the conditions: a polynomial needs as many coefficients.",
+            cure="Fifth order matches the acceleration as well.",
         ),
         Wrong(
             "the start's velocity left out",
-            "The reference is moving when the blend begins. At t = 0 the blend must have the "
-            "reference's velocity.",
+            "The reference is moving when the blend begins, but yours begins without its velocity.",
             mistakes.Blended(start=(0.0, 1.0)),
             "At both ends check position, velocity and acceleration.",
         ),
         Wrong(
             "the goal's acceleration left out",
-            "At t = duration the blend must have the goal's acceleration, which is not always "
-            "zero.",
+            "Your blend ends without acceleration, but the goal's is not always zero.",
             mistakes.Blended(end=(1.0, 0.0)),
             "At both ends check position, velocity and acceleration.",
         ),
         Wrong(
             "a polynomial without end",
-            "After `duration` the polynomial grows without limit. From there on, continue with "
-            "the goal's velocity.",
+            "After `duration` your polynomial grows without limit.",
             mistakes.never_ends,
             "A polynomial is useful only between its ends.",
+            cure="From there on, continue with the goal's velocity.",
         ),
         Wrong(
             "an acceleration that never ends",
-            "After the end the acceleration must be zero, even if the goal's was not. Set it to "
-            "zero there.",
+            "After the end your acceleration goes on, but the goal's velocity should.",
             mistakes.speeds_up_for_ever,
             "Read what the question says about the time after the end.",
+            cure="Set it to zero there.",
         ),
         Wrong(
             "counts from the start after the end",
@@ -721,41 +705,42 @@ PREDICT = Problem(
         Wrong(
             "the cross terms left out",
             "A push changes the velocity and, through the velocity, the position, so the two "
-            "errors are correlated. Keep the terms between them.",
+            "errors are correlated.",
             mistakes.noise_on_the_diagonal,
             "Derive Q; do not guess its diagonal.",
+            cure="Keep the terms between them.",
         ),
         Wrong(
             "one push in each step",
             "age⁴/4, age³/2 and age² belong to a single push that is held for the whole step: two "
-            "half steps then do not give the same as one step. White noise gives age³/3, age²/2 "
-            "and age.",
+            "half steps then do not give the same as one step.",
             mistakes.Predicted(((4, 0.25), (3, 0.5), (2, 1.0))),
             "Held noise and white noise grow with different powers of the step.",
+            cure="White noise gives age³/3, age²/2 and age.",
         ),
         Wrong(
             "Q left out",
             "Q is missing, so the velocity never becomes less certain, and soon the filter "
-            "ignores every picture. Add Q.",
+            "ignores every picture.",
             mistakes.Predicted(((0, 0.0), (0, 0.0), (0, 0.0))),
             "What is not seen becomes less sure.",
         ),
         Wrong(
             "pushes on the velocity alone",
-            "A push at the beginning of the step has moved the position by its end. Integrate "
-            "F(s) too.",
+            "A push at the beginning of the step has moved the position by its end; yours has not.",
             mistakes.Predicted(((0, 0.0), (0, 0.0), (1, 1.0))),
             "Derive Q; do not guess its diagonal.",
+            cure="Integrate F(s), too.",
         ),
         Wrong(
             "the noise squared",
-            "accel_noise is a power already, in m²/s³. Do not square it.",
+            "You squared accel_noise, which is a power already, in m²/s³.",
             mistakes.Predicted(((3, 1 / 3), (2, 0.5), (1, 1.0)), power=2.0),
             "Is it a variance or a deviation? Look at the unit.",
         ),
         Wrong(
             "back in time",
-            "Carry the mean forward by `age`, from the picture to now.",
+            "You carry the mean back in time.",
             mistakes.back_in_time,
             "Say for each number at what time it is valid.",
         ),
@@ -768,15 +753,17 @@ PREDICT = Problem(
         ),
         Wrong(
             "a half where a third belongs",
-            "The block of the position has age³/3: ∫ (age - s)² ds.",
+            "One of your powers of the age has the wrong factor: the position's.",
             mistakes.Predicted(((3.0, 0.5), (2.0, 0.5), (1.0, 1.0))),
             "Integrate the push's effect.",
+            cure="∫ (age - s)² ds = age³/3.",
         ),
         Wrong(
             "no half beside the diagonal",
-            "The blocks off the diagonal have age²/2: ∫ (age - s) ds.",
+            "One of your powers of the age has the wrong factor: beside the diagonal.",
             mistakes.Predicted(((3.0, 1.0 / 3.0), (2.0, 1.0), (1.0, 1.0))),
             "Integrate the push's effect.",
+            cure="∫ (age - s) ds = age²/2.",
         ),
     ),
     variants=(variants.predict_by_exponential,),

@@ -13,35 +13,11 @@ import labkit as lk
 from . import answers as right
 
 
-def actual_minus_target(
-    state: lk.State, target: lk.Sample, model: lk.Model, *, kp: Any, kd: Any, arm_compensates: bool
-) -> lk.JointTorque:
-    """The textbook's error, actual minus target, with the other textbook's plus in front."""
-    return right.augmented_pd(state, target, model, kp=-kp, kd=-kd, arm_compensates=arm_compensates)
-
-
 def always_carries(
     state: lk.State, target: lk.Sample, model: lk.Model, *, kp: Any, kd: Any, arm_compensates: bool
 ) -> lk.JointTorque:
     """Adds the weight although the arm carries it already."""
     return right.augmented_pd(state, target, model, kp=kp, kd=kd, arm_compensates=False)
-
-
-def own_speed_in_coriolis(
-    state: lk.State, target: lk.Sample, model: lk.Model, *, kp: Any, kd: Any, arm_compensates: bool
-) -> lk.JointTorque:
-    """C times the arm's own speed, as the report's equation 18 has it."""
-    q, dq = state.q, state.dq
-    tau = right.augmented_pd(state, target, model, kp=kp, kd=kd, arm_compensates=arm_compensates)
-    return lk.JointTorque(tau.value + model.coriolis(q, dq) @ (dq - target.velocity))
-
-
-def damps_the_motion(
-    state: lk.State, target: lk.Sample, model: lk.Model, *, kp: Any, kd: Any, arm_compensates: bool
-) -> lk.JointTorque:
-    """Damps the arm's own speed, not the difference from the desired one."""
-    tau = right.augmented_pd(state, target, model, kp=kp, kd=kd, arm_compensates=arm_compensates)
-    return lk.JointTorque(tau.value - kd * target.velocity)
 
 
 def model_at_the_target(
@@ -56,26 +32,14 @@ def model_at_the_target(
 
 @dataclass(frozen=True)
 class AugmentedLaw:
-    """The augmented law with weighted terms; 1 is right, 0 omits a term, -1 reverses it.
+    """The augmented law with one slip.
 
     Attributes:
-        e: Factor of the error of the angles.
-        de: Factor of the error of the speeds.
-        coriolis: Factor of C.
-        weight: Factor of g.
-        beside: Factor of the elements of M off the diagonal.
-        diagonal: Factor of the diagonal of M.
         switch: Whether the gravity switch is inverted.
         swapped: Whether kp and kd are exchanged.
         at_target: Whether C is taken at the target's speed.
     """
 
-    e: float = 1.0
-    de: float = 1.0
-    coriolis: float = 1.0
-    weight: float = 1.0
-    beside: float = 1.0
-    diagonal: float = 1.0
     switch: bool = False
     swapped: bool = False
     at_target: bool = False
@@ -91,15 +55,13 @@ class AugmentedLaw:
         arm_compensates: bool,
     ) -> lk.JointTorque:
         """The torque."""
-        q, dq, dq_d = state.q, state.dq, target.velocity
-        kp, kd = (kd, kp) if self.swapped else (kp, kd)
-        M = model.mass_matrix(q)
-        M = self.beside * M + (self.diagonal - self.beside) * np.diag(np.diag(M))
-        C = self.coriolis * model.coriolis(q, dq_d if self.at_target else dq)
-        tau = M @ target.acceleration + C @ dq_d
-        tau = tau + kp * self.e * (target.position - q) + kd * self.de * (dq_d - dq)
-        if arm_compensates == self.switch:
-            tau = tau + self.weight * model.gravity(q)
+        q, dq_d = state.q, target.velocity
+        if self.swapped:
+            kp, kd = kd, kp
+        flag = arm_compensates != self.switch
+        tau = right.augmented_pd(state, target, model, kp=kp, kd=kd, arm_compensates=flag).value
+        if self.at_target:
+            tau = tau + (model.coriolis(q, dq_d) - model.coriolis(q, state.dq)) @ dq_d
         return lk.JointTorque(tau)
 
 
