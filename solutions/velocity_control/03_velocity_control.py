@@ -1,15 +1,14 @@
 # %% [markdown]
 # # 03 · Velocity control
 #
-# The arm knows where it should be. Now it must get there, although it starts somewhere else,
-# answers late and measures with noise. The controllers here command the *speeds* of the joints,
-# and the motors keep them: the easiest way to drive an arm.
+# The arm must get where its target is, although it starts elsewhere, answers late and measures with noise. The
+# controllers here command the *speeds* of the joints.
 #
 # | | |
 # |---|---|
 # | **You need** | numpy; the error is target minus actual, that of an orientation is the turn R_wd R_wtᵀ; twists are (v, w) (notebook 00) |
 # | **Given** | the arm as the textbook has it (`lk.IDEAL`) and with friction, lag and noise (`lk.BAXTER`); trajectories; the Jacobian |
-# | **You write** | a mended controller and what was wrong with it, a decay rate, a damped inverse, a controller of the tip, the lag of an arm |
+# | **You write** | a mended controller, a decay rate, a damped inverse, a controller of the tip, the lag of an arm |
 # | **Time** | core 3.2 hours, 22 points; all 3.6 hours, 26 points. Stop after 3 hours; what is left is read, not written. |
 
 # %% setup=true
@@ -24,8 +23,8 @@ lk.ready()
 # %% [markdown]
 # ## Find and mend
 #
-# *Feed-forward* turns the joints at the target's own speed; *feedback* adds a pull in proportion to the error (P) and to its
-# rate (D). The report prints such a law. This is *our reading of the printed formula*, in the
+# *Feed-forward* turns the joints at the target's own speed; *feedback* pulls in proportion to the error (P) and its
+# rate (D). This is *our reading of the report's formula*, in the
 # course's sign. **Some terms are right. Change what is wrong, nothing else.**
 
 # %%
@@ -66,8 +65,8 @@ panels[0].set_ylabel("largest error [rad]")
 lk.plotting.show("Equation 17 in three runs, the largest error of a joint: " + "; ".join(says) + ".")
 
 # %% [markdown]
-# A run that looks good proves little. Copy equation 17 into the stub and mend it. (The check starts beside a
-# resting target, because feed-forward hides even feedback of the wrong sign.)
+# A run that looks good proves little. Copy equation 17 into the stub and mend it. (The check starts beside its
+# target: feed-forward hides even feedback of the wrong sign.)
 
 # %% question="joint_velocity_pd"
 def joint_velocity_pd(state, target, *, kp, kd):
@@ -80,7 +79,7 @@ def joint_velocity_pd(state, target, *, kp, kd):
 
 
 # %% [markdown]
-# Baxter with your controller, started a tenth of a radian off. When does the arm become restless? Does D help?
+# Baxter with your controller, a tenth of a radian off. When does it become restless? Does D help?
 
 # %%
 def feedforward(state, target, **gains):
@@ -135,9 +134,9 @@ dials = lk.plotting.dials(try_gains, kp=(0.0, 40.0, 5.0, "1/s"), kd=(0.0, 3.0, 0
 #
 # ## What D does here
 #
-# In most textbooks D adds damping and so lets you raise P: they push a mass with a force.
-# Here you command the speed itself. Suppose that a joint moves at exactly the commanded speed, and its
-# target rests. Write down the equation of the error.
+# In textbooks that push a mass with a force, D adds damping and lets you raise P.
+# Here you command the speed itself. A joint moves at exactly the commanded speed, and its
+# target rests: write down the equation of the error.
 
 # %% question="decay_rate"
 def decay_rate(kp, kd):
@@ -280,8 +279,7 @@ lk.plotting.show(
 # %% [markdown]
 # ## A controller for the tip
 #
-# The report's equation 16 controls the tip. Here its first term is mended as in 17; the rest is as printed. In run H the hand is also
-# tilted by 5°.
+# The report's equation 16, its first term mended as in 17; the rest is as printed. In run H the hand is also tilted by 5°.
 
 # %%
 def equation_16(state, target, *, kp=4.0, k_turn=0.04):
@@ -333,8 +331,8 @@ def what_shows(run):
 
 
 # %% [markdown]
-# Now mend equation 16; `lk.se3.orientation_error(R_wd, R_wt)` is the turn of notebook 00. The trap: most wrong
-# versions draw a fine circle as long as the hand starts upright, so the check tilts it.
+# Now mend it; `lk.se3.orientation_error(R_wd, R_wt)` is the turn of notebook 00. The trap: most wrong
+# versions draw a fine circle if the hand starts upright.
 
 # %% question="workspace_velocity_pd"
 def workspace_velocity_pd(state, target, model, *, kp, damping):
@@ -441,7 +439,7 @@ lk.plotting.show(
 # %% [markdown]
 # ## Baxter, at last
 #
-# Three controllers draw the same circle on Baxter, with friction, lag and noise, from a little off the path.
+# Three controllers draw a circle on Baxter, from a little off the path.
 
 # %%
 joints = model.joint_trajectory(poses, q0)
@@ -483,7 +481,7 @@ lk.replay.show(
 # %% [markdown]
 # Feed-forward draws a good circle in the wrong place. Feedback removes the error of the start; a few
 # millimetres are left where the tip is fastest: motors lag, and the state is
-# old. And the two controllers? Give both the same kp before you call one better.
+# old. (Give both controllers the same kp before you call one better.)
 
 # %% [markdown] why="why_with_more_d"
 # What did you see happen to the error of a resting joint when D grew, and why? In your mechanics lecture a
@@ -497,7 +495,7 @@ lk.replay.show(
 # ### END SOLUTION
 
 # %% [markdown]
-# Now in real time. Press *Start* and drag the arm off its circle. You hardly
+# Now in real time: drag the arm off its circle. You hardly
 # can: velocity mode is stiff, until a motor reaches its
 # torque limit: push at the tip with 60 N along +y. Then raise kp to 30, and
 # *state_delay* until the arm swings. With half the kp, how much more delay can it bear?
