@@ -12,9 +12,10 @@ within its torque limit, dry friction holds the speed at zero, and the stops end
 
 from __future__ import annotations
 
+from functools import cache
 from math import inf
 from operator import le, lt
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -89,7 +90,7 @@ def joint_torques(
         wanted = np.array([stair[k] for stair, k in zip(stairs, states, strict=True)])
         of_speed = np.array([k in (LOW, STICK, HIGH) for k in states])
         rows = np.where(of_speed[:, None], G, unit)
-        y = np.linalg.solve(rows, np.where(of_speed, wanted - u, wanted))
+        y = _gesv()(rows, np.where(of_speed, wanted - u, wanted))[2]
         v, wrong = u + G @ y, False
         for i, (k, torque, speed) in enumerate(zip(states, y.tolist(), v.tolist(), strict=True)):
             before, after = stairs[i][k - 1], stairs[i][k + 1]
@@ -108,6 +109,14 @@ def joint_torques(
         f"the joints' torques were not found in {_ROUNDS} rounds: the inertias in G differ by "
         f"a factor of {np.linalg.cond(G):.1g}; check those of the robot, or take a smaller dt"
     )
+
+
+@cache
+def _gesv() -> Any:
+    """LAPACK's solver for small systems, which is slow to import."""
+    from scipy.linalg.lapack import dgesv
+
+    return dgesv
 
 
 class JointStep(NamedTuple):
@@ -169,10 +178,7 @@ class Joints:
 
     def __init__(self, model: Model, dt: float) -> None:
         """Make the joints of ``model`` and its plant, with steps of ``dt`` [s]."""
-        from scipy.linalg.lapack import dgesv  # slow to import
-
         self._dynamics, self._dt, robot = model.dynamics, dt, model.robot
-        self._gesv = dgesv
         viscous = model.plant.each("viscous", robot.n)
         self._viscous = viscous if viscous.any() else None
         self._nothing, self._unit = robot.zeros, np.eye(robot.n)
@@ -229,7 +235,7 @@ class Joints:
         wanted = (drive.speed - dq) / dt
         free, inverse = self._dynamics.free_motion(q, dq, tau)
         target = np.where(self._held, wanted - free, self._sign * bound)
-        y = self._gesv(np.where(self._rows, inverse, self._unit), target)[2]
+        y = _gesv()(np.where(self._rows, inverse, self._unit), target)[2]
         a = free + inverse.dot(y)
         slack = _ROUNDING / dt
         for sign, torque, most, made, meant in zip(
