@@ -175,3 +175,11 @@ def test_what_an_id_is_depends_on_the_other_columns(tmp_path, heads, column):
     path.write_text(f"{heads}\nAda Lovelace,7,9\n")
     (((_, one),), _) = read_list(path)
     assert getattr(one, column) == ("9" if column == "id_number" else "7")
+
+
+@pytest.mark.parametrize("ids", ["ada\nADA", "../x", "-x"])
+def test_two_students_in_one_folder_or_one_outside_are_an_error(course, ids):
+    """The roster is a file that a person may have edited."""
+    (course.root / FILE).write_text(f"id\n{ids}\n")
+    with pytest.raises(LabkitError):
+        read_roster(course)
