@@ -275,3 +275,20 @@ def test_a_transfer_function_is_judged_by_its_response():
         found = judge(answer, right)
         assert (found and found.kind) == kind
     assert judge.same(right, right) and not judge.same(right, Ratio((3.0,), (1.0, 1.0)))
+
+
+def test_a_position_alone_is_no_sample():
+    """It is told that parts are missing; three rows of an array are three parts."""
+    sample = lk.Sample(V, V, V)
+    assert CLOSE(V, sample).kind is Kind.PARTS
+    assert CLOSE(np.stack([V, V, V]), sample) is None
+
+
+def test_motions_are_compared_up_to_a_quarter_beyond_their_end():
+    """Another path, another duration and a sample in its place are told."""
+    a, b, c = np.zeros(3), V, V[::-1].copy()
+    line = lk.Trajectory(lk.Line(a, b), lk.Quintic(2.0))
+    assert CLOSE(lk.Trajectory(lk.Line(a, b), lk.Quintic(2.0)), line) is None
+    for other in (lk.Line(a, c), lk.Quintic(2.0)), (lk.Line(a, b), lk.Quintic(2.2)):
+        assert "of the line at" in CLOSE(lk.Trajectory(*other), line).part
+    assert CLOSE(line(0.0), line).kind is Kind.TYPE

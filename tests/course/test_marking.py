@@ -280,3 +280,11 @@ def test_a_factor_stays_only_if_it_holds_in_every_wrong_call():
 def test_without_an_answer_there_is_no_known_mistake():
     """Also if the mistake has none, as where a question has no public call."""
     assert recognise(replace(DOUBLE, mistakes=(Mistake("nothing", "It is none."),)), []) is None
+
+
+def test_the_outcome_of_all_tests_is_the_worst_that_is_shown():
+    """What was not tried does not count, and a stub in one branch is no stub."""
+    unseen = replace(DOUBLE, tests=(*DOUBLE.tests, Test("unseen", ())))
+    assert mark(unseen, double).outcome is Outcome.RIGHT
+    assert mark(DOUBLE, lambda x: stub(x) if x == 3.0 else 2.0 * x).outcome is Outcome.ERROR
+    assert mark(DOUBLE, lambda x: stub(x) if x == 3.0 else 5.0).outcome is Outcome.WRONG

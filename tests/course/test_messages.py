@@ -18,8 +18,8 @@ from labkit.course import Call, Close, Test
 from labkit.course.card import card
 from labkit.course.judges import COMMITTED
 from labkit.course.marking import mark, not_counted
-from labkit.course.messages import is_prediction, message, outcome_word, worth
-from labkit.course.question import Loop, in_points
+from labkit.course.messages import is_prediction, message, outcome_word
+from labkit.course.question import Loop
 from labkit.course.verdict import Outcome, TestResult, Verdict
 
 GOLDEN = Path(__file__).with_name("words.txt")
@@ -79,16 +79,6 @@ def test_messages_are_those_of_the_golden_file(pytestconfig):
     if pytestconfig.option.golden:
         GOLDEN.write_text(text, encoding="utf-8")
     assert text == GOLDEN.read_text(encoding="utf-8")
-
-
-@pytest.mark.parametrize("points", [4.0, 5.0, 1.0])
-def test_a_test_is_worth_what_it_earns_alone(points):
-    """The points beside a test are those that it earns if it is the only one that passes."""
-    question = replace(COMPLETE, points=points)
-    for function, passes in ((lambda x: abs(2.0 * x), 1), (lambda x: 2.0 * x + (x == 3.0), 2)):
-        verdict = mark(question, function)
-        note = f"(worth {verdict.earned:g} of {in_points(points)})"
-        assert worth(verdict.tests[passes], verdict) == f" {note}"
 
 
 @pytest.mark.parametrize("expected", [1 / 3, np.sin(np.arange(4.0)), np.sin(np.ones((5, 7)))])
