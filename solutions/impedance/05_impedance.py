@@ -11,7 +11,7 @@
 # | **You need** | Newton's law for one mass on a spring; matrices and their inverses |
 # | **Given** | the arm's model, an arm that can be pushed, a wall to meet |
 # | **You write** | the inertia at the tip, springs at the tip and in the joints, a scale |
-# | **Time** | core 3 hours, 20 points; with the extension 24 points. Stop after 3 hours; what is left is read, not written. |
+# | **Time** | core 3 hours, 20 points; all 3.7 hours, 24 points. Stop after 3 hours; what is left is read, not written. |
 
 # %% setup=true
 from dataclasses import replace

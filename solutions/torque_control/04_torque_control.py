@@ -9,7 +9,7 @@
 # | **You need** | matrices; a damped spring, ë + kd ė + kp e = 0 |
 # | **Given** | the arm's model: M, C and g (02 builds them, here you only use them) |
 # | **You write** | a mended torque law, another one, gains for a real arm, a finder of bugs |
-# | **Time** | core 3 hours, 18 points; with the extension 22 points. Stop after 3 hours; what is left is read, not written. |
+# | **Time** | core 3 hours, 18 points; all 3.8 hours, 22 points. Stop after 3 hours; what is left is read, not written. |
 
 # %% setup=true
 from dataclasses import replace
