@@ -9,6 +9,7 @@ import nbformat
 from IPython.display import HTML
 
 from labkit.course.authoring.layout import OUTCOMES, Course
+from labkit.grader.doctor import elsewhere
 
 from .claims import holds
 from .front import NOTEBOOKS, hours
@@ -41,9 +42,6 @@ ON_THE_MODEL = ("04", "05")
 """Notebooks whose chapters use the equations of the chapter on the model."""
 CLASS, TEAM = 200, 3
 """Number of students, and size of the teams that write a report, in the example for marking."""
-TALK = "a talk about it: ten minutes with the team, one question to each"
-DEFENCE = 5.0
-"""Minutes for a defence, which can replace the talk."""
 WORDS_A_MINUTE = 238.0
 """Words per minute of silent reading: Brysbaert, J. Memory and Language 109 (2019) 104047."""
 WHY = 80.0 / WORDS_A_MINUTE + 0.25
@@ -52,12 +50,10 @@ REPORT_WORDS = 720.0
 """The largest number of words that the six parts of notebook 08 allow."""
 REPORT_MINUTES = REPORT_WORDS / WORDS_A_MINUTE + 0.5 + 6 * 0.4 + 1.5
 """Minutes for a report: its words, its figure, six rows of the rubric at 24 s each, a comment."""
-LONG_REPORT = 20.0
-"""Minutes for a report if a person takes more time."""
 MINUTES = {
     "four short 'why' answers of each student, of at most 80 words": 4 * WHY,
     "a report of four pages, at most 720 words, with its rubric": REPORT_MINUTES / TEAM,
-    TALK: 10.0 / TEAM,
+    "a defence": 8.0,
     "contested marks, with labkit explain": 0.3,
 }
 """The work of a person, in minutes for each student.
@@ -149,9 +145,8 @@ def plan() -> HTML:
         what = what if rows else f"practice hand-in, then {what}"
         spent = " to ".join(dict.fromkeys(f"{x + read:.2g}" for x in (core, whole)))
         rows.append((what, spent, *map(_week, WEEKS[name[:2]]), by_hand))
-    talks = f"{CLASS / TEAM:.0f} talks, {CLASS * MINUTES[TALK] / 60.0:.0f} h; or "
-    defences = f"{CLASS} defences, {CLASS * DEFENCE / 60.0:.0f} h"
-    rows.append(("talk or defence", "", "12", "6", "2, at its end", talks + defences))
+    defences = f"{CLASS} defences, {CLASS * MINUTES['a defence'] / 60.0:.0f} h"
+    rows.append(("defence", "", "12", "6", "2, at its end", defences))
     return table(
         ("What is due", "Hours, core to all", "Week of 12", "Week of 6", "Week of 2",
          f"Then by hand, for {CLASS} students"), rows,
@@ -166,11 +161,7 @@ def _week(which: int | str | None) -> str:
 
 
 def numbers_told() -> None:
-    """Numbers of the prose about the cost of marking and the kinds of points."""
-    whole = sum(MINUTES.values())
-    number("marking_minutes", whole, ".1f")
-    number("marking_hours", whole * CLASS / 60.0, ".0f")
-    number("defence_minutes", DEFENCE - MINUTES[TALK], ".1f")
+    """Numbers of the prose: points by kind, and hours of reading."""
     problems = [p for name in NOTEBOOKS for p in COURSE.problems(name)]
     own_arm = sum(p.points for p in problems if "experiment" in p.outcomes)
     everything = sum(sum(_points(name)) for name in NOTEBOOKS)
@@ -180,8 +171,6 @@ def numbers_told() -> None:
     number("points_arm", own_arm, "g")
     number("points_whys", everything - functions, "g")
     number("reading_hours", sum(READING.values()), ".0f")
-    number("report_minutes", REPORT_MINUTES, ".1f")
-    number("long_report_minutes", (LONG_REPORT - REPORT_MINUTES) / TEAM, ".1f")
 
 
 def outcomes() -> HTML:
@@ -200,14 +189,15 @@ def marking() -> HTML:
     rows = [(what, f"{m:.1f}", f"{m * CLASS / 60:.0f}") for what, m in MINUTES.items()]
     whole = sum(MINUTES.values())
     rows.append(("total", f"{whole:.1f}", f"{whole * CLASS / 60:.0f}"))
-    defended = whole - MINUTES[TALK] + DEFENCE
-    rows.append(
-        ("with a defence in place of the talk", f"{defended:.1f}", f"{defended * CLASS / 60:.0f}")
-    )
-    holds(max(whole, defended) < 10.0, "less than ten minutes for each student, defence or talk")
+    holds(12.5 < whole < 13.5, "thirteen minutes for each student")
     return table(
         ("By hand", "Minutes per student", f"Hours for {CLASS} students"),
         rows,
         f"A whole term, reports by teams of {TEAM}. All minutes are the authors' estimates; those "
         "for reading follow from the longest texts allowed.",
     )
+
+
+def isolation() -> None:
+    """What a sandbox needs in the places where people grade, in the words of `labkit doctor`."""
+    print(elsewhere())
