@@ -98,7 +98,6 @@ def test_the_zip_holds_what_a_student_needs_and_no_more(unpacked):
             "start.py",
             "constraints.txt",
             "pyproject.toml",
-            "environment.yml",
             ".devcontainer/devcontainer.json",
             "binder/postBuild",
             "binder/runtime.txt",
