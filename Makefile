@@ -80,8 +80,10 @@ lock: .venv/.dev ## choose the versions in constraints.txt, and look for wheels 
 	  pyproject.toml --output-file constraints.txt
 	@echo uv | $(UV) compile --quiet --system-certs --generate-hashes --python-platform $(firstword $(SYSTEMS)) --python-version 3.11 \
 	  --only-binary :all: --extra notebook --no-annotate --no-header $(PIN) pyproject.toml - --output-file hashes.txt
-	@for system in $(SYSTEMS); do $(UV) compile --quiet --system-certs --only-binary :all: --extra notebook $(PIN) \
-	  --python-platform $$system --python-version 3.12 pyproject.toml >/dev/null || echo "no wheels: $$system"; done
+	@for system in $(SYSTEMS); do for python in 3.11 3.12 3.13 3.14; do \
+	  $(UV) compile --quiet --system-certs --only-binary :all: --extra notebook $(PIN) --python-platform $$system \
+	  --python-version $$python pyproject.toml >/dev/null 2>&1 && said="wheels of all" || said="WHEELS MISSING"; \
+	  echo "$$system, Python $$python: $$said"; done; done
 
 clean: ## delete generated files; students' work, marks and hidden cases are kept
 	rm -rf .venv .venv-313 dist book/_build book/generated build/[!c]* build/campaign*
