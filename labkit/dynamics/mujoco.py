@@ -51,14 +51,13 @@ class MuJoCo:
         return M
 
     def coriolis(self, q: Array, dq: Array) -> Array:
-        r"""By Christoffel's symbols: :math:`C(q, v)\,w = [c(v + w) - c(v) - c(w)] / 2`.
+        r"""By Christoffel's symbols: :math:`C(q, v)\,w = [b(v + w) - b(v - w)] / 4`.
 
-        Here :math:`c(v) = C(q, v)\,v`; the gravity of the three biases is not in it.
+        The bias b is quadratic in the speeds, and gravity cancels.
         """
         data = self._at(q)
-        g, c = self._bias(data, self._still), self._bias(data, dq)
-        columns = [self._bias(data, dq + w) - c - self._bias(data, w) + g for w in self._each]
-        return 0.5 * np.array(columns).T
+        columns = [self._bias(data, dq + w) - self._bias(data, dq - w) for w in self._each]
+        return 0.25 * np.array(columns).T
 
     def gravity(self, q: Array) -> Array:
         return self.bias(q, self._still)
