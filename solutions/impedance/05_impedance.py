@@ -416,6 +416,7 @@ def springs_in_each_joint(J, stiffness, elbow):
 my_joint_impedance = use("joint_impedance", joint_impedance, springs_in_each_joint)
 mine = [np.asarray(my_joint_impedance(model.tip_jacobian(ready), x, 10.0)) for x in (K, D)]
 alone = [np.diag(JOINT_K), np.diag(JOINT_D)]
+chosen = "your matrix" if my_joint_impedance is joint_impedance else "a stand-in"
 
 
 def stiffness_felt(K_q, D_q, newtons=5.0):
@@ -437,7 +438,7 @@ angle = np.linspace(0.0, 2.0 * np.pi, 200)
 pushes = 10.0 * np.column_stack([np.cos(angle), 0.0 * angle, np.sin(angle)])
 curves = (
     ("springs at the tip: asked for", np.diag(K[:3]), {"color": "0.8", "linewidth": 5}),
-    ("your springs in the joints", stiffness_felt(*mine), {"color": "C0"}),
+    (chosen, stiffness_felt(*mine), {"color": "C0"}),
     ("a spring in each joint alone", stiffness_felt(*alone), {"color": "C1", "linestyle": "--"}),
 )
 plt.figure(figsize=(7.5, 3.2), layout="constrained")
@@ -450,7 +451,7 @@ plt.ylabel("z [mm]")
 plt.legend(frameon=False, loc="upper left", bbox_to_anchor=(1.0, 1.0))
 lk.plotting.show(
     "Where pushes of 10 N from all sides in the plane of x and z move the tip: a circle where the springs are "
-    f"even. Measured along x: {curves[1][1][0, 0]:.0f} N/m with yours, {curves[2][1][0, 0]:.0f} N/m with a "
+    f"even. Measured along x: {curves[1][1][0, 0]:.0f} N/m with {chosen}, {curves[2][1][0, 0]:.0f} N/m with a "
     "spring in each joint."
 )
 

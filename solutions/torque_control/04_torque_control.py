@@ -172,6 +172,7 @@ def position_mode(state, target, model, *, kp, kd, arm_compensates):
     return lk.JointPosition(target.position)
 
 
+position_mode.__name__ = "a stand-in, position mode"
 my_augmented_pd = use("augmented_pd", augmented_pd, position_mode)
 three_runs(my_augmented_pd)
 
