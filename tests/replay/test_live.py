@@ -71,7 +71,7 @@ def test_nothing_runs_before_start(live):
 
 
 @pytest.mark.parametrize("body", [3, 7])
-def test_a_hand_pushes_any_link_as_statics_says(body):
+def test_a_hand_pushes_any_link_as_the_law_says(body):
     """At rest the joints' springs carry the hand's force, K (q - q_d) = J^T f: tip and elbow."""
     with lk.Arm("left", TEXTBOOK, q0=READY) as arm:
         hand = Hand(arm)
@@ -186,7 +186,7 @@ def test_other_cells_are_told_while_the_arm_is_live(live):
 
 
 def test_walls_and_bands_are_moved(live):
-    """A wall dragged into the tip pushes it, a band pulls it, as statics says."""
+    """A wall dragged into the tip pushes it, a band pulls it, as it should."""
     far = lk.Wall(T_READY[:3, 3] + [0.3, 0.0, 0.0], (-1.0, 0.0, 0.0))
     band = lk.Spring(T_READY[:3, 3], 200.0)
     session, _ = live({"springs": springy}, things=[far, band])
