@@ -62,10 +62,9 @@ def test_a_reference_that_jumps_is_measured():
     """Its largest step in place and speed, and how often it began anew."""
 
     def servo(t, memory, sighting, hand, T_tc, T_mg):
-        at = hand(0.0)[:3, 3] + (t > 1.0) * np.array([0.01, 0.0, 0.0])
         still = np.zeros(3)
-        rest = Sample(at, still, still)
-        return Memory(memory.goal, Bend(rest, rest, 1.0), float(t > 1.0), t)
+        rest = Sample(np.array([0.5 + 0.01 * (t > 4.0), 0.3, 0.3]), still, still)
+        return Memory(memory.goal, Bend(rest, rest, 1.0), float(t > 4.0), t)
 
     found = Conveyor(duration=5.0).follow(servo, T_TC, T_MG).measured()
     assert found["place_step_mm"] == pytest.approx(10.0)
