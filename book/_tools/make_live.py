@@ -20,7 +20,7 @@ OUT = ROOT / "book/live/numbers.js"
 HEAD = "// Made by book/_tools/make_live.py from labkit and solutions; do not edit it.\n"
 
 import labkit as lk  # noqa: E402
-from labkit import joints, motors, scene  # noqa: E402
+from labkit import joints, scene  # noqa: E402
 from labkit.run import RUNAWAY  # noqa: E402
 from labkit.tags.drawing import Intrinsics  # noqa: E402
 from labkit.tags.tag import Tag  # noqa: E402
@@ -47,7 +47,7 @@ def numbers() -> dict[str, Any]:
         "constants": {
             "dt": 1e-3,
             "quick": joints.QUICK,
-            "braking": motors.BRAKING,
+            "braking": joints.BRAKING,
             "runaway": RUNAWAY,
             "pad": {
                 "radius": scene.TIP_RADIUS,

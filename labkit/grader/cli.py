@@ -17,7 +17,7 @@ import click
 
 from ..course.authoring.layout import DEFENCE, Course
 from ..errors import LabkitError
-from .clean import few, how_many
+from .clean import clean_text, few, how_many
 from .each import Failures
 
 PATH = click.Path(path_type=Path)
@@ -86,7 +86,7 @@ def _tell(sentences: Iterable[object], doubtful: bool = False) -> None:
 def _write(text: str, to: Path | None) -> None:
     """Write a text to a file or, without one, to the screen."""
     if to is None:
-        sys.stdout.write(text)
+        sys.stdout.write(clean_text(text))
     else:
         to.write_text(text, encoding="utf-8")
         print(f"written: {to}")

@@ -91,4 +91,4 @@ class Failures(list[str]):
 
     def __exit__(self, *_: object) -> None:
         for sentence in self:
-            print(sentence, file=sys.stderr, flush=True)
+            print(clean_line(sentence), file=sys.stderr, flush=True)

@@ -41,6 +41,7 @@ def executor(workers: int, dask: str | None = None) -> Iterator[Executor]:
         if dask is None:
             pool: Executor = LocalExecutor(workers)
             os.environ["PYTHONSAFEPATH"] = "1"  # workers import nothing from where this runs
+            stack.callback(os.environ.pop, "PYTHONSAFEPATH", None)
         else:
             try:
                 from distributed import Client

@@ -100,7 +100,7 @@ def apply_rules(course: Course, book: Any, assignment: str) -> None:
 
 
 def _record(course: Course, book: Any, source: Notebook, result: Result) -> list[str]:
-    """Write one student's scores, whole or not at all; nbgrader commits who the student is first.
+    """Write one student's scores, whole or not at all, and then the notebook.
 
     Returns:
         What a person should look at.

@@ -10,7 +10,7 @@ import control
 import numpy as np
 from scipy.stats import t as student
 
-from .answers import paired_difference, recipe
+from .answers import paired_difference
 
 
 @dataclass(frozen=True)
@@ -159,9 +159,3 @@ class Judged:
         mean, half = self.interval(self.units(np.array(a)), self.units(np.array(b)))
         right = "undecided" if abs(mean) <= half else "holds" if mean > 0 else "does not hold"
         return mean, half, self.says(mean, half) if self.says else right
-
-
-def reports_half(runner: Callable[..., float]) -> tuple[float, float]:
-    """The report's recipe: half of the gain at which it swings."""
-    Kp, Kd = recipe(runner)
-    return 1.5 * Kp, Kd

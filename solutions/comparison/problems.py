@@ -174,13 +174,6 @@ RECIPE = Problem(
             "The best gain on one path is the most fragile one.",
             "Step back clearly from the largest Kp that was safe.",
         ),
-        Wrong(
-            "the report's half",
-            "Half of the gain at which the arm swings, as the report has it, leaves too little margin here.",
-            mistakes.reports_half,
-            "A margin of two is one of 6 dB; an older state eats it.",
-            "Take about a third.",
-        ),
     ),
     variants=(variants.by_doubling, variants.by_bisection),
 )
