@@ -80,7 +80,8 @@ _to = click.option("--to", type=PATH, metavar="FILE", help="Write to FILE, not t
 def _tell(sentences: Iterable[object], doubtful: bool = False) -> None:
     """Print sentences as they come."""
     for sentence in sentences:
-        print(sentence, file=sys.stderr if doubtful else sys.stdout, flush=True)
+        said = clean_text(str(sentence))
+        print(said, file=sys.stderr if doubtful else sys.stdout, flush=True)
 
 
 def _write(text: str, to: Path | None) -> None:
