@@ -15,6 +15,8 @@ def mathml(formula: str, *, block: bool = False) -> str:
     Raises:
         math_core.LatexError: The formula has a fault, which ends the build.
     """
+    if block and r"\begin" not in formula and ("&" in formula or r"\\" in formula):
+        formula = rf"\begin{{aligned}}{formula}\end{{aligned}}"  # as Sphinx reads several lines
     return _CONVERTER.convert_with_local_state(formula, displaystyle=block)
 
 
