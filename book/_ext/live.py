@@ -9,8 +9,8 @@ Its argument is the kind of panel, its options are the settings, and its text is
     Drag the arm.
     :::
 
-Before the click the figure shows a still picture of the panel.  `make_stills.py` takes one for each
-page and names it after the page.
+Before the click the figure shows a still picture of the panel.  `make_stills.py` takes them; the
+still of an open panel has the name of its page.
 """
 
 from __future__ import annotations
@@ -59,7 +59,8 @@ class LiveArm(SphinxDirective):
         title = own.setdefault("title", "The live arm")
         data = json.dumps({"piece": piece, **own, "settings": settings}).replace("<", "\\u003c")
         static = "../" * self.env.docname.count("/") + "_static/"
-        still = self.env.docname.replace("/", "_") + ".webp"
+        shown = self.env.docname.replace("/", "_") if piece == "open" else f"live_{piece}"
+        still = f"{shown}.webp"
         if not (STILLS / still).exists():
             raise self.error(f"static/stills has no {still}; run `make book stills`")
         html = (

@@ -1,7 +1,7 @@
 """Take a still picture of each live panel of the built book before any input.
 
 Chromium loads the panel of a page and takes a screenshot.  The background of the arm becomes
-transparent, because pages may be light or dark.  The program writes book/static/stills/PAGE.webp,
+transparent, because pages may be light or dark.  The program writes book/static/stills/NAME.webp,
 which the directive `live-arm` shows until the panel is loaded.
 """
 
@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import argparse
 import io
+import re
 from pathlib import Path
 
 import numpy as np
@@ -18,7 +19,6 @@ from playwright.sync_api import Page, sync_playwright
 
 ROOT = Path(__file__).resolve().parents[2]
 SIZE = {"width": 800, "height": 608}
-LIVE = "document.querySelector('.lk-live').live"
 STILLS = ROOT / "book/static/stills"
 WIDE, HIGH = 680, 360
 """Size of a still on the page, in [px]; the picture has twice this number of pixels."""
@@ -32,17 +32,17 @@ AFTER = 0.9
 """Time of the arm in the picture, in [s]."""
 
 
-def photograph(page: Page, address: str, to: Path) -> None:
-    """Take the still of the page at an address."""
+def photograph(page: Page, address: str, k: int, to: Path) -> None:
+    """Take a still of panel k, from 0, of the page at an address."""
     page.goto(address)
-    page.locator(".lk-live .lk-load").click()
-    page.wait_for_selector(".lk-live [data-ready]")
+    panel = page.locator(".lk-live").nth(k)
+    panel.locator(".lk-load").click()
+    panel.locator("[data-ready]").first.wait_for()
     page.add_style_tag(content=FRAME)
-    page.evaluate(f"{LIVE}.pause(true)")
-    page.evaluate(f"{LIVE}.session.restart()")
-    page.evaluate(f"{LIVE}.live({AFTER})")
+    panel.evaluate("e => { e.live.pause(true); e.live.session.restart(); }")
+    panel.evaluate(f"e => e.live.live({AFTER})")
     page.wait_for_timeout(1000)  # the stage is drawn again after its size has changed
-    stage = page.locator(".lk-live .lk-canvas")
+    stage = panel.locator(".lk-canvas")
     seen = np.asarray(Image.open(io.BytesIO(stage.screenshot(timeout=0))).convert("RGB"))
     seen = seen[: 2 * HIGH, : 2 * WIDE]
     ground = np.where((seen == seen[9, 9]).all(axis=-1), 0, 255).astype(np.uint8)
@@ -64,9 +64,9 @@ def main() -> None:
         page = browser.new_page(viewport=SIZE, color_scheme="light", device_scale_factor=2)
         page.set_default_timeout(600_000)  # only so that nothing waits for ever
         for file in sorted(book.rglob("*.html")):
-            if 'class="lk-live"' in file.read_text(encoding="utf-8"):
-                name = "_".join(file.relative_to(book).with_suffix("").parts)
-                photograph(page, file.as_uri(), STILLS / f"{name}.webp")
+            names = re.findall(r"stills/(\w+\.webp)", file.read_text(encoding="utf-8"))
+            for k, name in enumerate(names):
+                photograph(page, file.as_uri(), k, STILLS / name)
         browser.close()
 
 

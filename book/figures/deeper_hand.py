@@ -116,11 +116,6 @@ def freedom() -> None:
         abs(np.dot(row, n[::2])) < 1e-09 and row[0] > 0.9 and (row[3] < -0.9),
         "Multiply the two numbers of each row and add the four products: the sum is",
     )
-    x = [1.0 / (2.0 * math.sqrt(0.01)), *(0.01 / (sigma**2 + 0.01) for sigma in (0.1, 0.3))]
-    holds(
-        math.isclose(x[0], 5.0) and math.isclose(x[1], 0.5) and math.isclose(x[2], 0.1),
-        "the norm of the joint speeds is at most 5 times the norm of the wanted twist",
-    )
     numbers({"sigma_least": sigma[-1], "sigma_most": sigma[0]}, ".2g")
     number("w_ready", float(np.prod(sigma)), ".2g")
 

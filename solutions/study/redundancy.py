@@ -17,9 +17,12 @@ from labkit import Model
 from labkit.shapes import Array
 
 from .singular import damped_inverse
+from .workspace_velocity import WorkspaceVelocityPD
 
 OUTWARDS = 0.1
 """How fast the tip is pulled while the elbow is nearly straight, in [m/s]."""
+WORTH = np.repeat((1.0, WorkspaceVelocityPD.lever), 3)
+"""The weight of each row of a twist, as in the controllers: a radian counts as much as a lever."""
 
 
 def laps(model: Model, q0: Any, count: int = 6, pull: float = 0.0, radius: float = 0.12) -> Array:
@@ -61,7 +64,7 @@ def stretched(model: Model, angles: Any, damping: float) -> tuple[Array, Array]:
     Args:
         model: The model of the arm.
         angles: The angles of the joint e1, shape (k,) in [rad].
-        damping: The damping, lambda squared.
+        damping: The damping, lambda squared, in [m²].
 
     Returns:
         The speed of the fastest joint [rad/s] and the speed that the tip lacks [m/s], shape (k,)
@@ -73,7 +76,7 @@ def stretched(model: Model, angles: Any, damping: float) -> tuple[Array, Array]:
         q[3] = angle
         J, p = model.tip_jacobian(q), model.pose(q)[:3, 3]
         V = np.concatenate([OUTWARDS * p / np.linalg.norm(p), np.zeros(3)])
-        u = damped_inverse(J, damping) @ V
+        u = damped_inverse(WORTH[:, None] * J, damping) @ (WORTH * V)
         fastest.append(np.abs(u).max())
         missed.append(np.linalg.norm((V - J @ u)[:3]))
     return np.array(fastest), np.array(missed)

@@ -8,17 +8,27 @@ from accessibility import COLOURS, violations
 from test_pages import too_wide
 
 pytestmark = pytest.mark.slow
-PAGES = ("index", "live", "live_stiffness", "live_age", "live_singular")
+PAGES = ("index", "live", "stiffness", "age", "singular")
+PLACES = {
+    "stiffness": "chapters/impedance",
+    "age": "chapters/tags",
+    "singular": "deeper/redundancy",
+}
+"""Where the panels of one idea are."""
 ERROR = "document.querySelector('.lk-live').live.now.error"  # of the tip, in [m]
 OFF, BACK = f"{ERROR} > 0.01", f"{ERROR} < 0.003"
 
 
 @pytest.fixture
 def live(visit, open_chromium):
-    """Open a page and load its live arm."""
+    """Open a page, or that of an idea, and load its live arm, alone."""
 
     def go(name, **options):
-        page = visit(f"{name}.html", browser=open_chromium, **options)
+        page = visit(f"{PLACES.get(name, name)}.html", browser=open_chromium, **options)
+        piece = f'"piece": "{name if name in PLACES else "open"}"'
+        page.evaluate("""piece => document.querySelectorAll('.lk-live').forEach((e) => {
+            if (!e.querySelector('script').textContent.includes(piece)) e.remove();
+        })""", piece)  # fmt: skip
         page.locator(".lk-live .lk-load").first.click()
         page.wait_for_selector(".lk-live [data-ready]")
         page.evaluate("document.querySelectorAll('.lk-more').forEach((e) => { e.open = true; })")
@@ -133,7 +143,7 @@ def test_the_cursor_says_what_can_be_taken_hold_of(live):
     box = canvas.bounding_box()
     page.mouse.move(box["x"] + 8, box["y"] + 8)
     cursor_is("default")
-    corners = live("live_age").locator(".lk-corners")
+    corners = live("age").locator(".lk-corners")
     grip = corners.locator(".lk-grip").first
     look = "e => getComputedStyle(e).cursor"
     assert grip.evaluate(look) == "grab"
@@ -194,7 +204,7 @@ def test_a_dial_makes_a_new_curve_and_the_old_one_stays(live):
 
 def test_no_single_stiffness_keeps_both_limits_and_two_do(live):
     """K = 1000 N/m presses with 23.1 N as the page says; Kx = 300 with Kz = 1000 N/m keeps both."""
-    page = live("live_stiffness")
+    page = live("stiffness")
     page.get_by_label("Your prediction in N").fill("30")
     page.get_by_role("button", name="Try it").click()
     verdict = page.locator(".lk-kept", has_text="At rest")
@@ -220,7 +230,7 @@ def test_no_single_stiffness_keeps_both_limits_and_two_do(live):
 
 def test_the_wall_tells_nothing_before_the_reader_has(live):
     """Bars, numbers and the arrow of "Stiffness has a direction" wait for a prediction."""
-    page = live("live_stiffness", phone=True)
+    page = live("stiffness", phone=True)
     bars, readout = page.locator(".lk-bars"), page.locator(".lk-live .lk-readout")
     page.wait_for_function("document.querySelector('.lk-live').live.now.t > 2.5")
     assert bars.is_hidden()
@@ -236,7 +246,7 @@ def test_the_wall_tells_nothing_before_the_reader_has(live):
 
 def test_the_tag_tells_nothing_before_the_reader_has(live):
     """Numbers, curves and table of "Age, not noise" wait for a prediction, typed by keys."""
-    page = live("live_age", phone=True)
+    page = live("age", phone=True)
     results = page.locator(".lk-live .lk-table")
     assert results.is_hidden()
     assert "from the tag" not in page.inner_text(".lk-live .lk-readout")
@@ -248,7 +258,7 @@ def test_the_tag_tells_nothing_before_the_reader_has(live):
 
 def test_half_a_pixel_flips_a_tag(live):
     """By keys: at 1.5 m and 10 degrees one corner's half pixel changes the better pose."""
-    page = live("live_age")
+    page = live("age")
     type_into(page, "Distance", 1.5)
     type_into(page, "Turned by", 10)
     page.get_by_label("Corner", exact=True).select_option("upper right")
