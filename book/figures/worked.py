@@ -30,7 +30,6 @@ def paths() -> None:
     D, tick = line.length, 0.005
     sample = lk.Trajectory(line, lk.Quintic(DURATION))(1.0)
     speed, pace = np.linalg.norm(sample.velocity), lk.Quintic(DURATION)(1.0)
-    shows("about 27 cm away", 27.0, 100.0 * D, 0.01)
     shows("which is 0.269 m", 0.269, D, 1e-3)
     shows("the tip is 27.9 mm along", 27.9, 1e3 * np.linalg.norm(sample.position), 2e-3)
     shows("= 0.2637$ per second", 0.2637, pace[1], 1e-3)

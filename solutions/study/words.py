@@ -60,6 +60,7 @@ MARKS = re.compile(r"^(?:[`:]{3,}.*|:\w[\w-]*:.*|\(\S+\)=|<.*>)$", re.MULTILINE)
 APART = re.compile(r"^(?:\||#).*$", re.MULTILINE)
 NAME = re.compile(r"\]\([^)]*\)|\{[\w:]+\}`[^`]*`|`[^`]*`")
 ENDS = re.compile(r"(?<=[.?!:])[\"*)]*\s+(?=[\"*(\[]*[A-Z])|\n\s*\n|\n[ \t]*(?:[-:]|\d\.) ")
+NUMBER = re.compile(r"(?<![\w.,])\d[\d.,]*+(?!/[ks])")  # neither s0 nor 1/s
 RELATION = re.compile(r"[=<>]|\\(?:le|ge|approx|min|leftarrow)\b")
 
 
@@ -81,7 +82,7 @@ def page(path: Path) -> tuple[int, float, float, int, float, int]:
     """
     text, read = prose(path.read_text(encoding="utf-8"))
     told, all_words = APART.sub("\n", text), words(text)
-    found = [len(re.findall(r"\d[\d.,]*", x)) for x in re.split(r"\n\s*\n", told)]
+    found = [len(NUMBER.findall(x)) for x in re.split(r"\n\s*\n", told)]
     lengths = [n for n in map(words, ENDS.split(told)) if n > 2] or [0]
     share = 100 * sum(found) / max(words(told), 1)
     return all_words, all_words / 150 + read / 3, share, max(found), median(lengths), max(lengths)
