@@ -103,7 +103,6 @@ def push() -> HTML:
         number(f"linear_{stiffness:.0f}", _linear(stiffness, read_at - BEGINS), ".4g")
     shows("Look at the curve for 600 N/m", 600.0, told_to_be[-1])
     creeps = np.interp((0.7, 0.85, read_at), log.t, y)  # of the stiffest
-    numbers(dict(zip(("jump_600", "dip_600", "creep_600"), creeps, strict=True)))
     first, then, last = creeps
     holds(then < 0.99 * first < first < 0.9 * last, "it rises, falls back and creeps")
     above = max(x / k for x, k in zip(found, told_to_be, strict=True)) - 1.0
@@ -177,7 +176,6 @@ def wall() -> HTML:
     """The force of each controller on a wall."""
     met = experiments.wall()
     wrist = float(abs(met[0].log.tau[-1, 5]))  # of the position mode
-    slid = 1e3 * float(np.linalg.norm(met[0].at_rest[1:]))
     stiff = contact_stiffness(experiments.the_wall())
     _, ax = plt.subplots(figsize=(6.0, 3.2))
     ends = {}
@@ -196,7 +194,6 @@ def wall() -> HTML:
     )
     holds(0.0 < ends["joint torque"] < soft, "Computed torque is soft as well")
     numbers({"contact": stiff, "wall_rigid": 0.03 * stiff}, ".4g")
-    number("wall_slid", slid, ".2g")
     numbers(
         {"wall_soft": soft, "wall_expected": expected, "wall_hard": hard,
          "wall_torque": ends["joint torque"]},

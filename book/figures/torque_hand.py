@@ -218,7 +218,6 @@ def wrists() -> None:
     shows("On the circle, with 225 1/s²", 225.0, ON_CIRCLE)
     shows("A friction of 0.3 N m alone", 0.3, lk.BAXTER.stiction[5])
     number("held_w1", 1e3 * lk.BAXTER.stiction[5] / (ON_CIRCLE * M[5, 5]), ".2g")
-    number("wrist_times", off[5] / off[0], ".2g")
     holds(off[5] > 10.0 * off[0] > 0.0, "times the shoulder's")
 
 
