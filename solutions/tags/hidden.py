@@ -139,7 +139,7 @@ def _pose(random: Random, size: float = 0.3) -> Array:
 
 def _moving_hand(random: Random, t: float, at: Any, speed: float) -> Hand:
     """A hand that comes to ``at`` at time t along a straight line."""
-    times = np.linspace(t - 4.0, t, 21)
+    times = np.linspace(t - 4.0, t, 3)
     v = speed * random.uniform(0.5, 1.0, 3) * random.choice([-1.0, 1.0], 3)
     return Hand(times, at + np.outer(times - t, v), _pose(random)[:3, :3])
 

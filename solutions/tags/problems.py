@@ -25,8 +25,8 @@ _AGES = call(*_BELIEF, 0.1, 0.01), call(*_BELIEF, 0.4, 0.05)
 _OTHER_AGES = "other ages and noises"
 
 
-_LOOKS = tuple(hidden.looking(_RANDOM) for _ in range(3))
-_OCCASIONS = tuple(hidden.looking(_RANDOM, *occasion) for occasion in hidden.OCCASIONS)
+_LOOKS = tuple(hidden.looking(_RANDOM) for _ in range(2))
+_EARLY, _NEAR, _FAR, *_NO_TAG = (hidden.looking(_RANDOM, *x) for x in hidden.OCCASIONS)
 _WHEN = "other waits, steps, and pictures without the tag"
 
 
@@ -154,10 +154,10 @@ STEP = Problem(
             "other places",
             0.0,
         ),
-        Trial("the goal", (*_LOOKS, *_OCCASIONS), hidden.looks, "other hands", 2.0, "goal"),
-        Trial("when it looks", _OCCASIONS, hidden.occasions, _WHEN, 1.0, "looked"),
-        Trial("whether it begins anew", _OCCASIONS, hidden.occasions, _WHEN, 1.0, "began"),
-        Trial("the new line", _LOOKS, hidden.looks, "other lines", 1.0, "line"),
+        Trial("the goal", (_LOOKS[0], _NEAR), hidden.looks, "other hands", 2.0, "goal"),
+        Trial("when it looks", (_EARLY, _NEAR, *_NO_TAG), hidden.occasions, _WHEN, 1.0, "looked"),
+        Trial("whether it begins anew", (_NEAR, _FAR), hidden.occasions, _WHEN, 1.0, "began"),
+        Trial("the new line", _LOOKS[1:], hidden.looks, "other lines", 1.0, "line"),
         Trial(
             "behind a tag on a conveyor, and above a tag at rest",
             (hidden.chase(hidden.WHOLE), hidden.chase({"lines": 2.0}, speed=0.0)),
