@@ -25,11 +25,6 @@ _PACKAGES = {str(Path(np.__file__).parents[1]), *map(sysconfig.get_path, ("purel
 _LIBRARIES = (_MINE, sysconfig.get_path("stdlib"), *_PACKAGES)
 
 
-def in_labkit(file: str) -> bool:
-    """Whether a file of code is a part of labkit."""
-    return file.startswith(_MINE)
-
-
 def in_library(file: str) -> bool:
     """Whether a file of code is a part of labkit, of Python or of an installed package."""
     return file.startswith(_LIBRARIES)

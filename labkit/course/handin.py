@@ -13,10 +13,8 @@ import shutil
 import tempfile
 import textwrap
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from contextlib import suppress
 from dataclasses import dataclass
 from datetime import UTC, datetime
-from importlib.metadata import PackageNotFoundError, distribution, packages_distributions, requires
 from pathlib import Path
 from typing import Any
 
@@ -41,7 +39,6 @@ SILENT = "LABKIT_SUBMIT_CHECK"
 """The environment variable that is set while `submit_check` runs a notebook."""
 LARGEST = 10.0
 """Size in megabytes above which a learning platform may reject a notebook."""
-_FOREIGN = "labkit-foreign"
 _END = f'__import__("{__name__}", fromlist=["_"])._end()'
 """The cell below those of the notebook, which binds no name in it."""
 
@@ -170,11 +167,6 @@ def submit_check(path: Path, seconds: float = 600.0) -> Tried:
         problems += _gaps(question, at_check[question], verdict)
     none = [q for q, v in verdicts.items() if v and v.outcome is Outcome.NOT_ATTEMPTED]
     notes += [f"not answered: {', '.join(none)}"] if none else []
-    for output in ran[-1]["outputs"]:
-        notes += [
-            f"{x} does not come with labkit; an answer that needs it may earn nothing when marked"
-            for x in output["metadata"].get(_FOREIGN, ())
-        ]
     lost, told = _texts(cells, data["texts"])
     return Tried(name, (*problems, *lost), (*notes, *told), verdicts)
 
@@ -265,7 +257,7 @@ def _texts(
 
 
 def _end() -> None:
-    """After the last cell: try each answer as it is now, and name libraries that labkit lacks.
+    """After the last cell: try each answer as it is now.
 
     A name that has been given to something else than a function still means the function that was
     checked, as in marking.
@@ -283,27 +275,3 @@ def _end() -> None:
             continue
         verdict, *_ = place.verdict(name, now)
         display({"text/plain": name}, metadata=verdict_metadata(verdict), raw=True)
-    display({"text/plain": ""}, metadata={_FOREIGN: sorted(_foreign(names))}, raw=True)
-
-
-def _foreign(names: Mapping[str, Any]) -> set[str]:
-    """Modules that a notebook uses and that labkit does not bring."""
-    roots = {_home(x).partition(".")[0] for key, x in names.items() if not key.startswith("_")}
-    waiting, ours = ["labkit"], set[str]()
-    for one in waiting:  # the list grows
-        with suppress(PackageNotFoundError):  # what only another system needs
-            ours.add(distribution(one).name)
-            for need in requires(one) or ():
-                extra = re.search(r"extra == ['\"](\w+)", need)
-                if not extra or (one == "labkit" and extra[1] == "notebook"):
-                    found = re.split(r"[^\w.-]", need)[0]
-                    waiting += [found] if found not in waiting else []
-    owners: Mapping[str, Sequence[str]] = packages_distributions()
-    return {x for x in roots if x in owners and not ours.intersection(owners[x])}
-
-
-def _home(x: Any) -> str:
-    """The module of a thing, or its own name if it is one; an odd thing may raise when asked."""
-    with suppress(Exception):
-        return str(getattr(x, "__module__", None) or getattr(x, "__name__", ""))
-    return ""

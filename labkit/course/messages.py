@@ -400,8 +400,6 @@ def _quoted(part: str) -> str:
 
 def likely_cause(d: Difference) -> str:
     """The likely cause of wrong numbers."""
-    if _is_rounded(d.expected, d.found):
-        return "is float32, which has 7 digits; compute in float64"
     if d.times is None:
         return ""
     for factor, means in _CAUSES.items():
@@ -418,17 +416,6 @@ def _instead(d: Difference) -> str:
     if d.expected not in _COMMANDS:
         return what
     return f"{what}; return lk.{d.expected}(...) with one number for each joint"
-
-
-def _is_rounded(expected: Value, found: Value) -> bool:
-    """Whether numbers are right but for float32; short numbers, such as 0.5, do not show it."""
-    if not isinstance(found, float | tuple) or type(found) is not type(expected):
-        return False
-    a, b = np.array(found), np.array(expected)
-    short = all(x == float(f"{x:.6g}") for x in a.ravel().tolist())
-    tiny = 1e-6 * np.abs(b).max(initial=0.0)
-    alike = a.shape == b.shape and np.allclose(a, b, rtol=1e-5, atol=tiny)
-    return bool(alike and not short and (a == a.astype(np.float32)).all())
 
 
 def _apart(expected: Value, found: Value) -> tuple[str, str]:

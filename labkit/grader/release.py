@@ -15,7 +15,7 @@ from pathlib import Path
 
 import nbformat
 
-from ..course.authoring.layout import Course, check_outcomes
+from ..course.authoring.layout import Course
 from ..course.authoring.release import Prepared, prepare, write
 from ..course.notebook import BLANK, grade_id, manifest
 from ..course.source import analyse
@@ -134,11 +134,6 @@ def prepared(course: Course, name: str, seed: int) -> Prepared:
         LabkitError: The text, a problem, an answer or a known mistake must be corrected.
     """
     path = course.notebook_source(name)
-    for problem in course.problems(name):
-        check_outcomes(path.with_name("problems.py"), problem.name, problem.outcomes)
-    for asked in course.predictions(name):
-        outcomes = getattr(asked, "outcomes", ())  # a prediction has none
-        check_outcomes(path.with_name("predictions.py"), asked.name, outcomes)
     made = prepare(course, name, seed)
     reasons = []
     for number, cell in enumerate(made.source.cells, start=1):

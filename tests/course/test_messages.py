@@ -83,14 +83,12 @@ def test_messages_are_those_of_the_golden_file(pytestconfig):
 
 @pytest.mark.parametrize("expected", [1 / 3, np.sin(np.arange(4.0)), np.sin(np.ones((5, 7)))])
 def test_numbers_that_differ_little_do_not_look_the_same(expected):
-    """The digits show the difference, and float32, if that is the cause, is named."""
+    """The digits show the difference."""
     tests = (Test("a", (Call((), expected=expected),)),)
     question = replace(DOUBLE, judge=Close(rtol=1e-9), tests=tests, mistakes=())
-    for given, cause in ((np.float32(expected), True), (expected * (1.0 + 2e-7), False)):
-        words = " ".join(said(lambda given=given: given, question).split())
-        shown = re.search(r"expected ([^,]*?|\[.*?\]),? got ([^,]*?|\[.*?\])( To try|$)", words)
-        assert shown and shown[1] != shown[2]
-        assert ("t is float32, which has 7 digits; compute in float64" in words) == cause
+    words = " ".join(said(lambda: expected * (1.0 + 2e-7), question).split())
+    shown = re.search(r"expected ([^,]*?|\[.*?\]),? got ([^,]*?|\[.*?\])( To try|$)", words)
+    assert shown and shown[1] != shown[2]
 
 
 def test_the_same_failure_is_told_once():

@@ -53,20 +53,3 @@ def test_points_have_to_add_up(monkeypatch):
     """What the first cell promises is what the questions give."""
     with pytest.raises(LabkitError, match=r"the first cell says 9 points, .* come to 2$"):
         released(monkeypatch, (problem(),), first="about 4 hours · 9 points")
-
-
-@pytest.mark.parametrize("outcomes", [("moton",), ("motion", "moton"), "motion"])
-def test_an_outcome_that_there_is_not_is_refused(monkeypatch, outcomes):
-    """It would be missing from the class report; the names that there are are told."""
-    with pytest.raises(
-        LabkitError, match=r"problems\.py: double has the outcome '.*frames, motion"
-    ):
-        released(monkeypatch, (problem(outcomes=outcomes),))
-
-
-def test_the_outcome_of_a_measurement_is_checked_too(monkeypatch):
-    """Where the predictions are written."""
-    asked = SimpleNamespace(name="friction", outcomes=("experiments",))
-    monkeypatch.setattr(Course, "predictions", lambda self, name: (asked,))
-    with pytest.raises(LabkitError, match=r"predictions\.py: friction has the outcome 'experi"):
-        released(monkeypatch, (problem(),))

@@ -113,15 +113,10 @@ def test_a_notebook_without_problems_is_a_sentence(tmp_path):
         course.problems("09_dance")
 
 
-def test_a_withheld_name_must_exist(tmp_path, monkeypatch):
-    """A name that is misspelt would withhold nothing; so nothing is released."""
-    (first, *others) = PROBLEMS.values()
-    problems = (replace(first, withheld=("labkit.Circel",)), *others)
-    monkeypatch.setattr(Course, "problems", lambda self, name: problems)
-    course = synthetic(tmp_path / "course")
-    with pytest.raises(LabkitError, match=r"withholds labkit\.Circel, which does not exist"):
-        release(course, NAME, 1)
-    assert not course.build.exists()
+def test_names_of_tools_and_outcomes_must_exist():
+    """One that is misspelt would withhold nothing, or be missing from the class report."""
+    first = replace(PROBLEMS["circle"], withheld=("labkit.Circel",), outcomes=("moton",))
+    assert len(refused(PROBLEMS | {"circle": first})) == 2
 
 
 def test_one_refusal_stops_no_other_release(monkeypatch, capsys):

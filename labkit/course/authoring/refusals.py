@@ -11,6 +11,7 @@ import ast
 import json
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import replace
+from pkgutil import resolve_name
 from typing import Any
 
 import numpy as np
@@ -26,6 +27,7 @@ from ..question import Call, Question, Raised
 from ..serialize import encode
 from ..source import analyse, needed, withheld_tools
 from ..verdict import Outcome
+from .layout import OUTCOMES
 from .problem import Problem
 
 USE = "def use(name, function, given, yours=None, **options):\n    return yours or function\n"
@@ -73,6 +75,13 @@ def _reasons(problem: Problem, question: Question, text: str | None) -> Iterator
             f"of use(), earns {earned:g} of {question.points:g} points; make the stand-in worse "
             "than the answer, or withhold the tool that it uses"
         )
+    for outcome in {*problem.outcomes} - {*OUTCOMES}:
+        yield f"it has the outcome {outcome!r}; take one of {', '.join(OUTCOMES)}"
+    for withheld in question.withheld:
+        try:
+            resolve_name(withheld)
+        except (ImportError, AttributeError):
+            yield f"it withholds {withheld}, which does not exist; correct the name"
     yield from _alike(question, problem)
     yield from _untold(question)
 
