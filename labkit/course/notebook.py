@@ -219,8 +219,8 @@ def source_notebook(
     """The notebook that nbgrader takes as its source, with the solutions inside.
 
     In the source text, a code cell with ``question="name"`` holds a stub whose solution region
-    imports the answer.  An empty code cell with ``predict="name"`` marks the place of
-    a prediction.  A Markdown cell with ``why="name"``, or
+    imports or is the answer; a cell ``tests`` is left out.  An empty code cell with
+    ``predict="name"`` marks the place of a prediction.  A Markdown cell with ``why="name"``, or
     ``task="name" points=3`` for a longer text, asks for a text and holds a model answer in a
     solution region.  ``setup=true`` marks cells that students should leave alone; the code of
     cells with what `FOLDED` finds is folded.  The brief before a stub and the check after it are
@@ -242,6 +242,8 @@ def source_notebook(
     cells: list[dict[str, Any]] = []
     asked: list[str] = []
     for cell in text.cells:
+        if cell.metadata.get("title") == "tests":
+            continue
         name = next((cell.metadata[x] for x in _ASKS if x in cell.metadata), None)
         if name is not None:
             asked.append(name)

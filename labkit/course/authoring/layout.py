@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import importlib
 import sys
-from collections.abc import Iterable
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -22,22 +21,6 @@ OUTCOMES = {
     "evidence": "state a claim with a number, its unit and an interval, or that it is undecided",
 }
 """What students can do after the course, by the names that ``outcomes`` of a question uses."""
-
-
-def check_outcomes(file: Path, name: str, outcomes: Iterable[str]) -> None:
-    """Raise a LabkitError unless a question's outcomes are names of `OUTCOMES`.
-
-    Args:
-        file: The file with the question.
-        name: Name of the question.
-        outcomes: The outcomes of which it is evidence.
-    """
-    for outcome in outcomes:
-        if outcome not in OUTCOMES:
-            raise LabkitError(
-                f"{file}: {name} has the outcome {outcome!r}; take one of {', '.join(OUTCOMES)}"
-            )
-
 
 if TYPE_CHECKING:
     from ..predictions import Prediction
@@ -139,13 +122,15 @@ class Course:
         return self.root / "solutions" / name.partition("_")[2] / f"{name}.py"
 
     def problems(self, name: str) -> tuple[Problem, ...]:
-        """The problems of an assignment, from the course's own ``solutions`` package.
+        """The problems of an assignment: those of its ``problems.py``, then its text's own.
 
         Raises:
             UnknownName: There is no assignment of that name.
-            LabkitError: The assignment has a notebook but no problems.
+            LabkitError: The assignment has a notebook but no problems, or one in its text is wrong.
         """
-        return self._listed(name, "problems")
+        from .short import short_problems
+
+        return (*self._listed(name, "problems"), *short_problems(self.notebook_source(name)))
 
     def predictions(self, name: str) -> tuple[Prediction, ...]:
         """The predictions of an assignment, from the course's own ``solutions`` package.
