@@ -42,17 +42,27 @@ class Released:
         questions: The number of questions.
         points: The total of points, which is the maximum that a platform needs.
         by_hand: The points of each cell that a person marks, by its name.
+        handed_in: Whether students have handed it in.
     """
 
     name: str
     questions: int
     points: float
     by_hand: Mapping[str, float]
+    handed_in: bool
 
     def __str__(self) -> str:
         by_hand = ", ".join(f"{k} {v:g}" for k, v in self.by_hand.items())
         says = f"{self.name}: {self.questions} questions, {self.points:g} points"
-        return f"{says}; by hand: {by_hand}" if by_hand else says
+        says += f"; by hand: {by_hand}" if by_hand else ""
+        return f"{says}\n{_IN_TERM.format(self.name)}" if self.handed_in else says
+
+
+_IN_TERM = (
+    "No mark has changed; to see those that would, type: labkit grade {} --diff. "
+    "Students go on in their own notebook, with the new checks.json."
+)
+"""What becomes of marks and of notebooks that students have begun."""
 
 
 def release(course: Course, name: str, seed: int) -> Released:
@@ -72,12 +82,12 @@ def release(course: Course, name: str, seed: int) -> Released:
             handed in and the questions are others now.
     """
     made = prepared(course, name, seed)
-    _refuse_other_questions(course, made)
+    handed_in = _refuse_other_questions(course, made)
     write(made)
     generate(course, name)
     _verify(course.release / name)
     by_hand = {m["grade_id"]: m["points"] for m in manifest(made.source) if "points" in m}
-    return Released(name, len(made.questions), _points(made), by_hand)
+    return Released(name, len(made.questions), _points(made), by_hand, handed_in)
 
 
 def _points(made: Prepared) -> float:
@@ -85,8 +95,12 @@ def _points(made: Prepared) -> float:
     return float(sum(q.points for q in made.questions.values()) + by_hand)
 
 
-def _refuse_other_questions(course: Course, made: Prepared) -> None:
-    """Raise a LabkitError if nbgrader would refuse the release, before anything is written."""
+def _refuse_other_questions(course: Course, made: Prepared) -> bool:
+    """Whether students have handed it in.
+
+    Raises:
+        LabkitError: nbgrader would refuse the release, because the questions are others now.
+    """
     named = {grade_id(cell) for cell in made.source.cells} - {""}
     with open_gradebook(course) as book:
         there = [one for one in book.assignments if one.name == made.name and one.num_submissions]
@@ -96,6 +110,7 @@ def _refuse_other_questions(course: Course, made: Prepared) -> None:
             f"students have handed in {made.name}, so it takes no other questions now "
             f"({min(other)}); keep a question with 0 points, or wait for the next term"
         )
+    return bool(there)
 
 
 def generate(course: Course, name: str) -> None:

@@ -125,12 +125,12 @@ def test_a_term_with_students_does_not_end_by_mistake(course, capsys):
 
 def test_a_release_with_other_questions_waits_for_the_next_term(course, monkeypatch):
     """Once students have handed in; a correction of a test is released as ever."""
-    release(course, CURVES, 1)
+    assert not release(course, CURVES, 1).handed_in
     before = (course.bundle / f"{CURVES}.json").read_bytes()
     with open_gradebook(course) as book:
         book.add_student("ada")
         book.add_submission(CURVES, "ada")
-    release(course, CURVES, 1)
+    assert release(course, CURVES, 1).handed_in
     made = prepared(course, CURVES, 1)
     made.source.cells = [x for x in made.source.cells if "bang_bang" not in str(x.metadata)]
     monkeypatch.setattr("labkit.grader.release.prepared", lambda *_: made)
