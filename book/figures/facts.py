@@ -25,10 +25,8 @@ def velocity() -> None:
     shows("= 30 ms", 0.03, lk.BAXTER.velocity_lag)
     shows("Its state arrives 4 ms late", 0.004, lk.BAXTER.state_delay)
     shows("is about 11.5 ms", 0.0115, 0.004 + 0.5 / 100.0 + 0.5 / 200.0)
-    step, pays = speed_gains.TRIED[1] - speed_gains.TRIED[0], speed_gains.PAYS
-    shows("in steps of 0.15 until a step took away less than 2 % of the error; that gave 0.6",
-        (0.15, 0.02, 0.6),
-        (step, pays, KD))  # fmt: skip
+    shows("until a step took away less than 2 % of the error; that gave 0.6", (0.02, 0.6),
+          (speed_gains.PAYS, KD))  # fmt: skip
     lever = math.sqrt(TIP_SPRING[3] / TIP_SPRING[0])
     shows("If a radian counts as 0.26 m", 0.26, WorkspaceVelocityPD.lever)
     shows("The length of 0.26 m comes from the [impedance](impedance.md) of 300 N/m and 20 N m/rad",

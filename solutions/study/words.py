@@ -60,7 +60,7 @@ MARKS = re.compile(r"^(?:[`:]{3,}.*|:\w[\w-]*:.*|\(\S+\)=|<.*>)$", re.MULTILINE)
 APART = re.compile(r"^(?:\||#).*$", re.MULTILINE)
 NAME = re.compile(r"\]\([^)]*\)|\{[\w:]+\}`[^`]*`|`[^`]*`")
 ENDS = re.compile(r"(?<=[.?!:])[\"*)]*\s+(?=[\"*(\[]*[A-Z])|\n\s*\n|\n[ \t]*(?:[-:]|\d\.) ")
-NUMBER = re.compile(r"(?<![\w.,])\d[\d.,]*+(?!/[ks])")  # neither s0 nor 1/s
+NUMBER = re.compile(r"(?<![\w.,])(?!^\d\. )\d[\d.,]*+(?!/[ks])", re.M)  # neither s0 nor 1/s
 RELATION = re.compile(r"[=<>]|\\(?:le|ge|approx|min|leftarrow)\b")
 
 
