@@ -71,15 +71,7 @@ dials = lk.plotting.dials(
 
 # %% question="operational_inertia"
 def operational_inertia(M, J):
-    """The inertia that a hand feels at the tip of an arm.
-
-    Args:
-        M: Mass matrix, shape (n, n) in [kg m^2].
-        J: Jacobian, shape (6, n), or its first three rows, (3, n).
-
-    Returns:
-        Shape (6, 6), or (3, 3).
-    """
+    """The inertia that a hand feels at the tip, shape (6, 6) or (3, 3)."""
     ### BEGIN SOLUTION
     from solutions.impedance.answers import operational_inertia as answer
 
@@ -198,7 +190,7 @@ def tip_spring(state, target, model, *, stiffness, damping):
 
 # %% question="workspace_impedance"
 def workspace_impedance(state, target, model, *, stiffness, damping):
-    """Springs and dampers between the tip and its target, with the inertia that the tip has.
+    """Springs and dampers at the tip: an lk.JointTorque of shape (7,) in [N m].
 
     Args:
         state: lk.State(t, q, dq).
@@ -206,9 +198,6 @@ def workspace_impedance(state, target, model, *, stiffness, damping):
         model: lk.Model, with pose(q), tip_jacobian(q), tip_jacobian_rate(q, dq),
             operational_inertia(q), coriolis(q, dq) of shape (7, 7), and gravity(q).
         stiffness, damping: K and D, shape (6,) each.
-
-    Returns:
-        lk.JointTorque of shape (7,) in [N m], the arm's weight included.
     """
     ### BEGIN SOLUTION
     from solutions.impedance.answers import workspace_impedance as answer
@@ -390,16 +379,7 @@ lk.replay.show(into) if wall_force is not None else None
 
 # %% question="joint_impedance"
 def joint_impedance(J, stiffness, elbow):
-    """The stiffness of the joints that the tip feels as springs of its own.
-
-    Args:
-        J: Tip Jacobian, shape (6, 7).
-        stiffness: K at the tip, shape (6,), in [N/m] and [N m/rad].
-        elbow: Stiffness of the motion that the tip does not feel, in [N m/rad].
-
-    Returns:
-        K_q, shape (7, 7), in [N m/rad].
-    """
+    """K_q in [N m/rad], for J of shape (6, 7) and stiffness in [N/m] and [N m/rad]."""
     ### BEGIN SOLUTION
     from solutions.impedance.answers import joint_impedance as answer
 
@@ -463,12 +443,11 @@ lk.plotting.show(
 # ## A scale
 #
 # Something is in the gripper of your own arm. At rest its joints need the torque of the load plus dry friction, and
-# you cannot know how large that is; the torque sensors were set to zero with the load in the gripper. Write the
-# experiment as a function: it is tried on arms that you have never seen. The trap is a wall in front: keep the
-# tip within 3 cm of its place. (Use the name that your instructor gave you; `"demo"` is a public arm.)
+# you cannot know how large that is; the torque sensors were set to zero with the load in the gripper. The trap
+# is a wall in front: keep the tip within 3 cm of its place.
 
 # %%
-HANDLE = "demo"
+HANDLE = "demo"  # in a course: the name that your instructor gave you
 own = lk.my_arm(HANDLE)
 holding = np.diag(own.model.mass_matrix(ready))
 holding = lk.control.springs(50.0 * holding, 14.0 * holding)

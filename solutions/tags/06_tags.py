@@ -31,7 +31,7 @@ lk.ready()
 # %% [markdown]
 # ## A picture, and two poses
 #
-# A tag of 10 cm below the tip (an AprilTag, which is as good as the report's), and a camera beside the arm.
+# A tag of 10 cm below the tip, and a camera beside the arm.
 
 # %%
 world = lk.World()
@@ -239,7 +239,7 @@ lk.plotting.show("The speed of a blend of 1 s, between the two speeds that it jo
 #
 # A sighting is late. From several of them, each with its stamp, a straight line gives the tag's velocity, and
 # so where it will be. Aim there. `servo.Bend(start, goal, duration)` is your blend as a value that a memory can
-# keep. First a question about the hand of then:
+# keep.
 
 # %% predict="hand_of_then"
 

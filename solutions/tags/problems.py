@@ -139,8 +139,8 @@ STEP = Problem(
     name="servo_step",
     points=6,
     outcomes=("frames", "sensing"),
-    asks="One step of Algorithm 1. It looks if at least `every` seconds have passed since `looked`; "
-    "else it returns the memory as it is. A look sets `looked`, and without a tag nothing else. "
+    asks="Look if at least `every` seconds have passed since `looked`; "
+    "else return the memory as it is. A look sets `looked`, and without a tag nothing else. "
     "The goal's pose comes from the sighting and from the hand *at its stamp*. Only if it is more "
     "than `moved` from the memory's goal, the memory takes the new goal and a straight "
     "`lk.Trajectory` to it, from where the reference is now, with a bang-bang of `seconds`.",

@@ -238,7 +238,7 @@ else:
 # ## Find the bug
 #
 # Three runs of computed torque. The law is right at first; then, while the arm moves, a version with one mistake
-# replaces it. (Use the name that your instructor gave you; `"demo"` is public.) The suspects:
+# replaces it. The suspects:
 #
 # | | |
 # |---|---|
@@ -266,7 +266,7 @@ axes[2].legend(frameon=False, ncols=2, fontsize="small")
 lk.plotting.show(f"The errors of the seven joints in three misbehaving runs for the name {HANDLE}.")
 
 # %% [markdown]
-# Write the finder: it is tried on runs that you have never seen. The trap is the time before the mistake enters.
+# The trap is the time before the mistake enters.
 
 # %% question="find_bug"
 def find_bug(log):
@@ -290,8 +290,8 @@ print("My three runs:", ", ".join(my_find_bug(lk.my_bug(number, HANDLE)) for num
 # ## Gravity on the real robot, and why nobody could tell
 #
 # For years teams of this lab fought with gravity: one had 3 % of the weight, one minus 10 %, one minus 96 %; the
-# staff multiplied it by 0.075, "because it seems quite wrong". On Baxter the right factor is 0. Here are some factors
-# on a circle, with Baxter's friction.
+# staff multiplied it by 0.075, "because it seems quite wrong". On Baxter the right factor is 0. Some factors on a
+# circle, with friction:
 
 # %%
 holding = np.diag(model.mass_matrix(ready))

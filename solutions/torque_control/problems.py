@@ -83,8 +83,8 @@ AUGMENTED_PD = Problem(
     name="augmented_pd",
     points=3,
     outcomes=("control",),
-    asks="Mend `equation_18`. Change what is wrong, nothing else. Where `arm_compensates` is true the "
-    "arm carries its own weight, and the law must not add it.",
+    asks="Mend `equation_18`. Where `arm_compensates` is true the arm carries its own weight, and the "
+    "law must not add it.",
     answer=answers.augmented_pd,
     judge=TORQUE,
     trials=(
@@ -261,8 +261,8 @@ FIND_BUG = Problem(
     name="find_bug",
     points=3,
     outcomes=("experiment", "control"),
-    asks="Give the letter of the mistake in a run of computed torque. The law is right at first; at some "
-    "time between 0.3 and 0.8 s its mistake enters. `lk.course.commanded(log, letter)` says what a law with "
+    asks="Give the letter of the mistake in a run of computed torque. It enters at some time between 0.3 "
+    "and 0.8 s. `lk.course.commanded(log, letter)` says what a law with "
     "that mistake from the start commands in the states of the run, shape (N, 7). Your function is "
     "tried on runs that you have not seen.",
     answer=answers.find_bug,
