@@ -1,7 +1,7 @@
 # Two images.  The student's, which JupyterHub can start, contains labkit and the notebooks, no answers:
 #   docker build -t baxter-lab .
 #   docker run --rm -p 8888:8888 baxter-lab                          Jupyter, with a token
-# The image of the whole course is for instructors, graders and the dev container:
+# The image of the whole course is for instructors and graders; the dev container has its system's packages alone:
 #   docker build --target course -t baxter-course .
 #   docker run --rm OPTIONS baxter-course make demo                  everything, isolation included
 # Grading makes sandboxes, which Docker forbids by default. OPTIONS, for a container that does nothing else:
@@ -13,9 +13,11 @@ FROM python:3.11-slim-bookworm AS python
 RUN apt-get update && apt-get install -y --no-install-recommends libgomp1 git \
     && rm -rf /var/lib/apt/lists/*
 
-FROM python AS course
+FROM python AS tools
 RUN apt-get update && apt-get install -y --no-install-recommends \
       make bubblewrap libseccomp2 chromium nodejs libatomic1 && rm -rf /var/lib/apt/lists/*
+
+FROM tools AS course
 WORKDIR /lab
 COPY . .
 RUN make .venv/.course && .venv/bin/labkit student-zip && .venv/bin/python -m zipfile -e dist/baxter-lab.zip /handout

@@ -41,7 +41,7 @@ if TYPE_CHECKING:
     from .replay import live
     from .tags import *  # noqa: F403
 
-__version__ = "0.2.0"
+__version__ = "0.3.0"
 
 __all__ = [
     "BAXTER", "IDEAL", "Arm", "BangBang", "Camera", "Chain", "Circle", "Cubic", "Hold",
