@@ -31,7 +31,7 @@ ARG HUB=6.1.1
 COPY --from=course /handout/baxter-lab /lab/.ci/start_container.sh /opt/baxter-lab/
 RUN pip install --quiet --no-cache-dir --disable-pip-version-check --root-user-action=ignore \
       --constraint /opt/baxter-lab/constraints.txt \
-      "$(ls /opt/baxter-lab/labkit-*.whl)[notebook]" "jupyterhub==$HUB" nbgitpuller==1.3.0 nbgrader
+      jupyterlab "$(ls /opt/baxter-lab/labkit-*.whl)[notebook]" "jupyterhub==$HUB" nbgitpuller==1.3.0 nbgrader
 # Of nbgrader's extensions, a student has only the list of assignments; a hub mounts its exchange in the
 # folder made here. JupyterLab does not ask for news.
 RUN for part in formgrader course_list validate_assignment; do \

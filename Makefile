@@ -64,9 +64,9 @@ count: ## count the lines of code, storey by storey, beside their ceilings
 	@python3 tests/test_size.py
 
 lint: .venv/.dev ## check style, spelling, who imports whom, and types
-	@begun=$$(date +%s); $(MAKE) --silent style types && echo "style and types: $$(($$(date +%s) - begun)) s"
+	@begun=$$(date +%s); $(MAKE) --silent -j 2 style types windows && echo "style and types: $$(($$(date +%s) - begun)) s"
 
-.PHONY: style types
+.PHONY: style types windows
 style:
 	@$(BIN)/ruff check --quiet . && $(BIN)/ruff format --quiet --check . || { $(BIN)/ruff format --diff . ; exit 1; }
 	@said=$$($(BIN)/lint-imports --no-logo --no-cache) || { echo "$$said"; exit 1; }
@@ -75,14 +75,20 @@ style:
 types:
 	@$(BIN)/mypy --no-error-summary
 
+windows: # a student's code meets no module, name or signal that Windows lacks
+	@$(BIN)/mypy --no-error-summary --platform win32 --follow-imports silent --cache-dir .mypy_cache/windows \
+	  --exclude labkit/grader labkit
+
 lock: .venv/.dev ## choose the versions in constraints.txt, and look for wheels of what students need
 	@$(UV) compile --quiet --system-certs --universal --python-version 3.11.2 --all-extras --no-annotate --no-header \
 	  pyproject.toml --output-file constraints.txt
-	@echo uv | $(UV) compile --quiet --system-certs --generate-hashes --python-platform $(firstword $(SYSTEMS)) --python-version 3.11 \
+	@echo jupyterlab | $(UV) compile --quiet --system-certs --universal --python-version 3.11.2 --extra notebook \
+	  --no-annotate --no-header $(PIN) pyproject.toml - --output-file .ci/student/constraints.txt
+	@printf 'uv\njupyterlab' | $(UV) compile --quiet --system-certs --generate-hashes --python-platform $(firstword $(SYSTEMS)) --python-version 3.11 \
 	  --only-binary :all: --extra notebook --no-annotate --no-header $(PIN) pyproject.toml - --output-file hashes.txt
 	@for system in $(SYSTEMS); do for python in 3.11 3.12 3.13 3.14; do \
-	  $(UV) compile --quiet --system-certs --only-binary :all: --extra notebook $(PIN) --python-platform $$system \
-	  --python-version $$python pyproject.toml >/dev/null 2>&1 && said="wheels of all" || said="WHEELS MISSING"; \
+	  echo jupyterlab | $(UV) compile --quiet --system-certs --only-binary :all: --extra notebook $(PIN) \
+	  --python-platform $$system --python-version $$python pyproject.toml - >/dev/null 2>&1 && said="wheels of all" || said="WHEELS MISSING"; \
 	  echo "$$system, Python $$python: $$said"; done; done
 
 clean: ## delete generated files; students' work, marks and hidden cases are kept

@@ -60,7 +60,7 @@ def error_map(name: str) -> Trials:
 
 def read_trials(path: Path) -> Trials:
     """Read the trials in a file that `solutions.study.trials` or `solutions.study.maps` wrote."""
-    return Trials(**{key: tuple(value) for key, value in json.loads(path.read_text()).items()})
+    return Trials(**{key: tuple(value) for key, value in json.loads(path.read_bytes()).items()})
 
 
 @dataclass(frozen=True)

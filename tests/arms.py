@@ -5,7 +5,7 @@ from pathlib import Path
 
 import labkit as lk
 
-DATA = Path(site.getsitepackages()[0]) / "cmeel.prefix/share/example-robot-data/robots"
+DATA = Path(site.getsitepackages()[-1]) / "cmeel.prefix/share/example-robot-data/robots"
 FILES = {
     "ur5": DATA / "ur_description/urdf/ur5_robot.urdf",
     "panda": DATA / "panda_description/urdf/panda.urdf",

@@ -95,7 +95,8 @@ def make():
         "--cache-dir",
         CACHE,
     ]
-    wait(words + ["--constraint", HERE / "constraints.txt", wheel() + "[notebook]"], SIZE)
+    words += ["--constraint", HERE / "constraints.txt"]
+    wait(words + ["jupyterlab", wheel() + "[notebook]"], SIZE)
     print("3 of 3: moving the arm for the first time, which takes a while", flush=True)
     tidy()
     wait([program(ENV, "python"), "-c", "import labkit as lk; lk.ready()"])
@@ -182,11 +183,6 @@ def version():
     for path in (wheel(), str(HERE / "constraints.txt")):
         known.update(Path(path).read_bytes())
     return known.hexdigest()
-
-
-def build_wheel(to, config_settings=None, metadata_directory=None):
-    """Supply the finished wheel when pip installs this folder or its zip."""
-    return shutil.copy(wheel(), to) and os.path.basename(wheel())
 
 
 if __name__ == "__main__":

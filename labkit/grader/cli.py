@@ -189,8 +189,11 @@ def roster(course: Course, file: Path, teams: str) -> int:
 @_names
 @click.option("--to", type=PATH, metavar="FILE", help="By default dist/baxter-lab.zip.")
 @click.option("--book", metavar="ADDRESS", help="Link to the book, instead of packing it.")
+@click.option("--open-in", metavar="ADDRESS", default="", help="GitHub repository with the files.")
 @_course
-def student_zip(course: Course, names: tuple[str, ...], to: Path | None, book: str | None) -> int:
+def student_zip(
+    course: Course, names: tuple[str, ...], to: Path | None, book: str | None, open_in: str
+) -> int:
     """Write the zip that students unpack and start.
 
     Without a NAME the zip holds every assignment that was released in this term.
@@ -198,7 +201,7 @@ def student_zip(course: Course, names: tuple[str, ...], to: Path | None, book: s
     from .student_zip import student_zip
 
     to = to or course.root / "dist" / "baxter-lab.zip"
-    names = student_zip(course, names, to, book)
+    names = student_zip(course, names, to, book, open_in.rstrip("/"))
     print(f"{to}: {', '.join(names)}; {to.stat().st_size / 1e6:.1f} MB")
     return 0
 

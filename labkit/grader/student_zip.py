@@ -26,16 +26,11 @@ STUDENT = ".ci/student"
 PICTURE = "book/static/baxter.png"
 BOOK = "book/_build/html"
 """The folder of the built book."""
-PLACES = {
-    "devcontainer.json": ".devcontainer/devcontainer.json",
-    "postBuild": "binder/postBuild",
-    "runtime.txt": "binder/runtime.txt",
-}
-"""The places of those files of ``STUDENT`` that do not belong at the top."""
+_NO_BYTECODE = shutil.ignore_patterns("__pycache__")
 
 
 def student_zip(
-    course: Course, names: Sequence[str], to: Path, book: str | None = None
+    course: Course, names: Sequence[str], to: Path, book: str | None = None, url: str = ""
 ) -> tuple[str, ...]:
     """Write the zip that students get.
 
@@ -44,6 +39,7 @@ def student_zip(
         names: The assignments to include; none means all that are released, in a term those of it.
         to: The file to write.
         book: The address of the book; None includes the book itself, if it is built.
+        url: The public GitHub repository where browsers find what is in the zip; "" for none.
 
     Returns:
         The assignments in it.
@@ -56,12 +52,11 @@ def student_zip(
     if course.term.exists():
         there = [name for name in there if (course.bundle / f"{name}.json").exists()]
     for name in names:
-        course.notebook_source(name)
         if name not in there:
             raise LabkitError(f"{name} is not released in this term; type: labkit release {name}")
     with tempfile.TemporaryDirectory() as folder:
         top = Path(folder) / "baxter-lab"
-        _fill(course, names or there, top, book)
+        _fill(course, names or there, top, book, url)
         to.parent.mkdir(parents=True, exist_ok=True)
         with zipfile.ZipFile(to, "w", zipfile.ZIP_DEFLATED) as archive:
             for path in sorted(filter(Path.is_file, top.rglob("*"))):
@@ -69,23 +64,32 @@ def student_zip(
     return tuple(names or there)
 
 
-def _fill(course: Course, names: Sequence[str], top: Path, book: str | None) -> None:
+def _fill(course: Course, names: Sequence[str], top: Path, book: str | None, url: str) -> None:
     """Write what students get to the new folder ``top``."""
+    shutil.copytree(course.root / STUDENT, top, ignore=_NO_BYTECODE)
     for name in names:
         shutil.copytree(course.release / name, top / "assignments" / name)
-    for path in filter(Path.is_file, (course.root / STUDENT).iterdir()):
-        place = top / PLACES.get(path.name, path.name)
-        place.parent.mkdir(exist_ok=True)
-        shutil.copy(path, place)
-    for name in ("constraints.txt", "LICENSE"):
-        shutil.copy(course.root / name, top)
+    shutil.copy(course.root / "LICENSE", top)
     if book is None and (course.root / BOOK / "index.html").exists():
         shutil.copytree(course.root / BOOK, top / "book")
         book = "book/index.html"
     wheel(course.root, top)
-    start = render("start.html.j2", names=names, book=book)
-    (top / "START.html").write_text(start, encoding="utf-8")
+    page = render("start.html.j2", names=names, book=book, url=url).encode()
+    (top / "START.html").write_bytes(page)
     _start_here(top / "assignments", names, course.root / PICTURE, book)
+    for path in (top / "assignments").rglob("*.ipynb") if url else ():
+        _open_in(top, path, url)
+
+
+def _open_in(top: Path, path: Path, url: str) -> None:
+    """Begin a notebook with links that open it, and a cell that fetches what is missing there."""
+    notebook, (name,) = nbformat.read(path, as_version=4), (x.name for x in top.glob("*.whl"))
+    text = render("open_in.py.j2", url=url, name=path.stem, place=path.relative_to(top), wheel=name)
+    links, fetch = jupytext.reads(text, fmt="py:percent").cells
+    notebook.cells[0].source = f"{links.source}\n\n{notebook.cells[0].source}"
+    fetch.id = "fetch"
+    notebook.cells.insert(1, fetch)
+    nbformat.write(notebook, path)
 
 
 def _start_here(folder: Path, names: Sequence[str], picture: Path, book: str | None) -> None:
@@ -97,8 +101,6 @@ def _start_here(folder: Path, names: Sequence[str], picture: Path, book: str | N
     image = base64.b64encode(picture.read_bytes()).decode()
     notebook.cells[0]["attachments"] = {picture.name: {"image/png": image}}
     notebook.metadata = {"kernelspec": {"name": "python3", "display_name": "Python 3"}}
-    for number, cell in enumerate(notebook.cells):
-        cell["id"] = f"start-{number}"
     nbformat.write(notebook, folder / "START_HERE.ipynb")
 
 
@@ -129,8 +131,7 @@ def wheel(root: Path, to: Path) -> None:
     """
     with tempfile.TemporaryDirectory() as folder:
         copy = Path(folder)
-        unwanted = shutil.ignore_patterns("__pycache__")
-        shutil.copytree(root / "labkit", copy / "labkit", ignore=unwanted)
+        shutil.copytree(root / "labkit", copy / "labkit", ignore=_NO_BYTECODE)
         for name in NOT_FOR_STUDENTS:
             shutil.rmtree(copy / name)
         for name in ("pyproject.toml", "README.md", "LICENSE"):

@@ -29,7 +29,7 @@ class PyBullet:
         bullet.setGravity(0.0, 0.0, -9.81, **here)
         with quiet(), TemporaryDirectory() as folder:
             file = Path(folder, "arm.urdf")  # PyBullet reads only files
-            file.write_text(robot.urdf(plant))
+            file.write_text(robot.urdf(plant), encoding="utf-8")
             flags = bullet.URDF_USE_INERTIA_FROM_FILE
             self._arm: int = bullet.loadURDF(str(file), useFixedBase=True, flags=flags, **here)
         self._joints = tuple(range(len(robot.lower)))

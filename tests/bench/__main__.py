@@ -33,7 +33,7 @@ def main(wanted):
             print(f"  {key:30s}{value:.4g}", flush=True)
     if not wanted:
         OUT.parent.mkdir(exist_ok=True)
-        OUT.write_text(json.dumps(figures, indent=1) + "\n")
+        OUT.write_text(json.dumps(figures, indent=1) + "\n", encoding="utf-8")
         print(f"written to {OUT}")
 
 

@@ -26,7 +26,7 @@ def open_arm(urdf):
     """Load the arm of a URDF text into a new world; return its client and its body."""
     bullet = pybullet()
     client = bullet.connect(bullet.DIRECT)
-    with quiet(), tempfile.NamedTemporaryFile("w", suffix=".urdf") as file:
+    with quiet(), tempfile.NamedTemporaryFile("w", encoding="utf-8", suffix=".urdf") as file:
         file.write(urdf)
         file.flush()
         flags = bullet.URDF_USE_INERTIA_FROM_FILE

@@ -93,7 +93,7 @@ def main(seed=1):
     """Measure, write the file, and say which rows are not right."""
     rows = {name: row(name, seed=seed) for name in CONDITIONS}
     OUT.parent.mkdir(parents=True, exist_ok=True)
-    OUT.write_text(json.dumps({"seed": seed, "rows": rows}, indent=1) + "\n")
+    OUT.write_text(json.dumps({"seed": seed, "rows": rows}, indent=1) + "\n", encoding="utf-8")
     print("30 pictures each: found, median, max [mm], NEES | OpenCV: found, refined, median, max")
     for name, one in rows.items():
         numbers, theirs = (

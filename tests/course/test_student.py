@@ -201,7 +201,7 @@ def test_a_missing_file_is_a_sentence(tmp_path, monkeypatch):
     with pytest.raises(LabkitError, match=r"no checks\.json in 'elsewhere'.*whole folder"):
         check("double", double)
     for text in ('{"assignment": ', "[]", json.dumps(stamp() | {"assignment": "x"})):
-        Path("checks.json").write_text(text)
+        Path("checks.json").write_text(text, encoding="utf-8")
         with pytest.raises(LabkitError, match=r"only a damaged checks\.json in 'elsewhere'"):
             check("double", double)
 
