@@ -1,11 +1,11 @@
 """Two arms that are not Baxter's, from example-robot-data: a UR5 and a Panda."""
 
-import site
+import sysconfig
 from pathlib import Path
 
 import labkit as lk
 
-DATA = Path(site.getsitepackages()[-1]) / "cmeel.prefix/share/example-robot-data/robots"
+DATA = Path(sysconfig.get_path("purelib")) / "cmeel.prefix/share/example-robot-data/robots"
 FILES = {
     "ur5": DATA / "ur_description/urdf/ur5_robot.urdf",
     "panda": DATA / "panda_description/urdf/panda.urdf",

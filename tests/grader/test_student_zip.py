@@ -37,14 +37,7 @@ def unpacked(released, tmp_path_factory):
     """The students' zip, unpacked, with its wheel unpacked beside it."""
     folder = tmp_path_factory.mktemp("handout")
     course = Course(shutil.copytree(released.root, folder / "course", symlinks=True))
-    for name in (
-        "labkit",
-        "book",
-        ".ci",
-        "pyproject.toml",
-        "README.md",
-        "LICENSE",
-    ):
+    for name in ("labkit", "book", ".ci", "pyproject.toml", "README.md", "LICENSE"):
         (course.root / name).symlink_to(ROOT / name)
     stale = course.root / "build" / "lib" / "labkit" / "gone.py"
     stale.parent.mkdir(parents=True)
@@ -93,16 +86,8 @@ def test_the_zip_holds_what_a_student_needs_and_no_more(unpacked):
     found = {str(path.relative_to(top)) for path in top.rglob("*") if path.is_file()}
     found = {name for name in found if not name.endswith(".whl")}
     assert found == {
-        *(
-            "START.html",
-            "README.md",
-            "LICENSE",
-            "start.py",
-            "constraints.txt",
-            ".devcontainer/devcontainer.json",
-            "binder/postBuild",
-            "binder/runtime.txt",
-        ),
+        *("START.html", "README.md", "LICENSE", "start.py", "constraints.txt"),
+        *(".devcontainer/devcontainer.json", "binder/postBuild", "binder/runtime.txt"),
         *("assignments/01_curves/01_curves.ipynb", "assignments/01_curves/checks.json"),
         "assignments/START_HERE.ipynb",
     }
