@@ -70,7 +70,7 @@ def prose(page: str) -> tuple[str, int]:
     text = DISPLAY.sub(lambda x: f" $={x[1]}$ ", MATH.sub(r"$$\1$$", text))
     read = sum(bool(RELATION.search(x)) for x in FORMULA.findall(text))
     text = FORMULA.sub(lambda x: " F." if x[0].rstrip("$ \n").endswith(".") else " F", text)
-    return NAME.sub("", MARKS.sub("", text)), read
+    return NAME.sub(lambda x: "" if x[0][0] == "]" else "Name", MARKS.sub("", text)), read
 
 
 def page(path: Path) -> tuple[int, float, float, int, float, int]:
