@@ -10,6 +10,7 @@ import os
 import sys
 from collections.abc import Callable, Iterable
 from dataclasses import replace
+from datetime import datetime
 from functools import partial
 from pathlib import Path
 
@@ -179,9 +180,12 @@ def roster(course: Course, file: Path, teams: str) -> int:
     another role is left out, and named. A student keeps the folder of the first list. The students
     of a team share an arm and hand in one report.
     """
-    from .roster import import_list
+    from .roster import FILE, import_list
 
-    _tell(import_list(course, file, teams))
+    found = import_list(course, file, teams)
+    print(f"{FILE}: {how_many(len(found.students), 'student')}, {len(found.new)} of them new")
+    says = {"left out, as they are no students": found.others, "not in this list": found.absent}
+    _tell(f"{what}: {', '.join(who)}" for what, who in says.items() if who)
     return 0
 
 
@@ -213,14 +217,19 @@ def student_zip(
 @_of_assignment
 @click.argument("sources", nargs=-1, required=True, type=PATH, metavar="ZIP|DIR...")
 @click.option("--unverified", is_flag=True, help="Exchange: take what unknown users handed in.")
-@click.option("--at", metavar="TIME", help="Time of the hand-ins, where the download has none.")
+@click.option(
+    "--at",
+    type=click.DateTime(["%Y-%m-%d %H:%M"]),
+    metavar="TIME",
+    help="'2026-11-05 12:00': when it was handed in, where the download has no times.",
+)
 @_course
 def collect(
     course: Course,
     assignment: str,
     sources: tuple[Path, ...],
     unverified: bool,
-    at: str | None,
+    at: datetime | None,
 ) -> int:
     """Collect what students handed in, from any platform.
 
@@ -232,7 +241,7 @@ def collect(
 
     bad = False
     for source in sources:
-        for one in collect(course, assignment, source, at=at, unverified=unverified):
+        for one in collect(course, assignment, source, at, unverified):
             _tell([one], doubtful=not one.fine)
             bad |= not one.fine
     return int(bad)
@@ -410,7 +419,7 @@ def export(
     """
     from .export import LAYOUTS, as_csv, of_term, remarks
     from .marks import marks_of
-    from .roster import idle_extensions
+    from .rules import FILE as RULES
     from .rules import read_rules
 
     if column and layout not in NAMED:
@@ -428,7 +437,7 @@ def export(
         autograder(course, str(assignment), to)
         print(f"written: {to}; it holds the hidden cases, so give it to Gradescope alone")
         return 0
-    doubts, rules = list(idle_extensions(course)), read_rules(course)
+    rules = read_rules(course)
     names = [x.stem for x in sorted(course.bundle.glob("*.json"))]
     all_marks = {}
     for name in [assignment] if assignment else [*names, DEFENCE]:
@@ -448,8 +457,10 @@ def export(
             full = max(mark.points for mark in everybody)
             _tell([f"in Moodle the maximum of {assignment} must be {full:g}"], doubtful=True)
     _write(as_csv(table), to)
-    _tell(doubts, doubtful=True)
-    return int(bool(doubts) or any(mark.missing for mark in everybody))
+    idle = {x.student for x in rules.extensions} - {mark.student for mark in everybody}
+    says = (f"{RULES} has an extension for {x[:60]!a}, whom nobody knows" for x in sorted(idle))
+    _tell(says, doubtful=True)
+    return int(bool(idle) or any(mark.missing for mark in everybody))
 
 
 def _nobody(assignment: str, why: str = "") -> LabkitError:

@@ -21,9 +21,10 @@ from __future__ import annotations
 import os
 import pwd
 import re
-import stat
 import zipfile
-from collections.abc import Callable, Iterable, Iterator, Sequence
+from collections import Counter, defaultdict
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from contextlib import suppress
 from dataclasses import dataclass, replace
 from datetime import UTC, datetime
 from functools import partial
@@ -38,31 +39,24 @@ from ..errors import LabkitError
 from .clean import clean_line
 from .each import Failure, for_student
 from .files import write
-from .roster import Roster, read_roster
+from .roster import Roster, known_as, read_roster
 from .rules import read_rules
 from .submission import NOTEBOOK, TIMESTAMP, check_size, digest, read_file, read_stamp, read_time
 
 SECRET = "submission_secret.txt"
 FOLDER = "attempts"
 PARTICIPANTS = "course_private/lms.json"
-"""Moodle's participants by assignment and student; their numbers go back with marks and pages."""
+"""Moodle's number of each student by assignment; it goes back with their page."""
 LONGEST = 1000
-"""The longest path of a file in a download."""
+"""The longest path in a download of which an owner is read."""
 _MOODLE = re.compile(
-    r"(?P<name>[^_/]*)_(?P<number>0|[1-9][0-9]{0,18})_assignsubmission_"
-    r"(?P<kind>[a-z]+)(?:_?/(?:[^/]+/)*|_)(?P<file>[^/]+)"
+    r"(?P<name>[^_/]*)_(?P<number>[0-9]+)_assignsubmission_"
+    r"[a-z]+(?:_?/(?:[^/]+/)*|_)(?P<file>[^/]+)"
 )
 _CANVAS = re.compile(r"(?<!_LATE)(?=_(?P<late>LATE_)?(?P<user>[0-9]+)_[0-9]{3,}_(?P<file>[^/]+)$)")
 """Each place where a user's and an attachment's number may be; attachments have large numbers."""
-_REPEATED = re.compile(r" ?[(-]\d{1,9}\)?\.ipynb$")
-"""What a browser or a platform adds to the name of a file that is handed in again."""
-
-
-class Participant(NamedTuple):
-    """What Moodle calls a student: the number in one assignment, and the name."""
-
-    number: str
-    name: str
+_NEVER = datetime.min.replace(tzinfo=UTC)
+_UNCLEAR = "whose they are is not clear; for unknown users of the exchange see --unverified"
 
 
 @dataclass(frozen=True)
@@ -73,13 +67,11 @@ class File:
         label: Its name there, safe to show.
         when: When it was handed in, or when the download shows it.
         read: Reads its bytes when called.
-        column: The column of the roster that has its owner, or "name".
+        column: The column of the roster that has its owner, or "name"; "" if nothing is clear.
         value: What the owner's row has there.
         name: The name that the student gave the file.
         exact: Whether ``when`` is the time of the hand-in itself.
-        late: Whether the platform marks it as late.
-        moodle: Moodle's participant; None elsewhere.
-        refused: Why it is not taken; "" if it can be.
+        moodle: The number of Moodle's participant; empty elsewhere.
         folder: The hand-in's folder in the exchange; None elsewhere.
     """
 
@@ -90,9 +82,7 @@ class File:
     value: str = ""
     name: str = ""
     exact: bool = False
-    late: bool = False
-    moodle: Participant | None = None
-    refused: str = ""
+    moodle: str = ""
     folder: Path | None = None
 
 
@@ -109,12 +99,7 @@ class Taken(NamedTuple):
 
 
 def collect(
-    course: Course,
-    assignment: str,
-    source: Path,
-    *,
-    at: str | None = None,
-    unverified: bool = False,
+    course: Course, assignment: str, source: Path, at: datetime | None, unverified: bool
 ) -> Iterator[Taken]:
     """Collect notebooks from a download; collecting it again changes nothing.
 
@@ -122,7 +107,7 @@ def collect(
         course: The course.
         assignment: The assignment.
         source: A zip from Moodle or Canvas, or the inbound folder of nbgrader's exchange.
-        at: When the files were handed in, if the source does not say.
+        at: When the files were handed in, in the course's time zone, if the source does not say.
         unverified: Whether to collect from users of the exchange whom this machine does not know.
 
     Yields:
@@ -132,68 +117,64 @@ def collect(
         LabkitError: There is no roster, or the source is not of these kinds or holds nothing.
     """
     roster, rules = read_roster(course), read_rules(course)
-    when = read_time(at, ZoneInfo(rules.zone)) if at else None
-    if at and (when is None or when > datetime.now(UTC)):
-        raise LabkitError(f"{at!r} is no time, or in the future; write 2026-11-02 23:59")
-    if not roster.students:
+    if not roster:
         raise LabkitError("there is no list of students yet; first type: labkit roster LIST.csv")
-    if not (source.is_file() or source.is_dir()):  # a device or a pipe may never end
-        raise LabkitError(f"{source} is neither a file nor a folder; give the download as it is")
-    read = in_zip(source) if source.is_file() else in_exchange(source, assignment, unverified)
+    read = in_exchange(source, assignment, unverified) if source.is_dir() else in_zip(source)
     if not (files := [*read]):
         raise LabkitError(f"nothing in {source} was handed in for {assignment}")
+    if at:
+        when = at.replace(tzinfo=ZoneInfo(rules.zone)).astimezone(UTC)
+        files = [x if x.exact else replace(x, when=when, exact=True) for x in files]
     mine, left = _by_owner(course, assignment, roster, files)
     for student, theirs in sorted(mine.items()):
-        kept = _keep(course, assignment, student, theirs, when)
+        kept = _keep(course, assignment, student, theirs)
         done: list[Taken] | Failure = for_student(student, list, kept)
         if isinstance(done, Failure):
             done = [Taken(student, "", f"not taken; {done.why}", fine=False)]
         yield from done
     for why, labels in left.items():
         yield Taken("", ", ".join(labels), f"left there; {why}", fine=False)
-    if rules.due(assignment) and not any(x.exact or when for x in files):
+    if rules.due(assignment) and not any(x.exact for x in files):
         yield Taken("", "", "no hand-in times in it, so nobody is late; --at TIME gives one")
 
 
 def _by_owner(
     course: Course, assignment: str, roster: Roster, files: Sequence[File]
-) -> tuple[dict[str, list[File]], dict[str, list[str]]]:
+) -> tuple[Mapping[str, list[File]], Mapping[str, list[str]]]:
     """The files by the id of their owner, and the names of those that are left, by the reason."""
-    known = participants(course)
-    recorded = dict(known.get(assignment, {}))
-    mine: dict[str, list[File]] = {}
-    left: dict[str, list[str]] = {}
+    mine, left = defaultdict[str, list[File]](list), defaultdict[str, list[str]](list)
     for file in files:
-        owner = roster.known_as(file.column, file.value) if file.column else None
-        if owner and not file.refused:
-            mine.setdefault(owner.id, []).append(file)
+        owner = known_as(roster, file.column, file.value) if file.column else None
+        if owner:
+            mine[owner.id].append(file)
         else:
-            why = f"no one student of the roster has this {file.column or 'name'}"
-            left.setdefault(file.refused or why, []).append(file.label)
-    for student, theirs in [*mine.items()]:
-        called = {x.moodle.number: x.moodle for x in theirs if x.moodle}
-        whose = {one.number: name for name, one in recorded.items()}
-        numbers = sorted({*called, *(n for n, name in whose.items() if called and name == student)})
-        if len(numbers) > 1 or any(whose.get(n, student) != student for n in numbers):
-            why = f"Moodle's numbers {', '.join(numbers)} and {student} do not match"
-            left.setdefault(why, []).extend(x.label for x in mine.pop(student))
-        elif called:
-            (recorded[student],) = called.values()
-    if recorded:
-        data = msgspec.json.encode(known | {assignment: recorded}, order="sorted")
+            why = f"no one student of the roster has this {file.column}"
+            left[why if file.column else _UNCLEAR].append(file.label)
+    known = participants(course)
+    recorded = known.setdefault(assignment, {})
+    pairs = {(student, x.moodle) for student in mine for x in mine[student] if x.moodle}
+    people, numbers = (Counter(pair[k] for pair in {*pairs, *recorded.items()}) for k in (0, 1))
+    for student, number in pairs:
+        if people[student] == numbers[number] == 1:
+            recorded[student] = number
+        else:
+            why = f"Moodle knows more than one {student}, or this number as somebody else"
+            left[why] += [x.label for x in mine.pop(student, [])]
+    if pairs:
+        data = msgspec.json.encode(known, order="sorted")
         write(course.root / PARTICIPANTS, msgspec.json.format(data, indent=1) + b"\n")
     return mine, left
 
 
-def participants(course: Course) -> dict[str, dict[str, Participant]]:
-    """Moodle's participants whose work was collected, by assignment and student.
+def participants(course: Course) -> dict[str, dict[str, str]]:
+    """Moodle's number of each student whose work was collected, by assignment.
 
     Raises:
         LabkitError: The record is damaged.
     """
     path = course.root / PARTICIPANTS
     try:
-        return msgspec.json.decode(path.read_bytes(), type=dict[str, dict[str, Participant]])
+        return msgspec.json.decode(path.read_bytes(), type=dict[str, dict[str, str]])
     except FileNotFoundError:
         return {}
     except msgspec.DecodeError:
@@ -201,50 +182,37 @@ def participants(course: Course) -> dict[str, dict[str, Participant]]:
         raise LabkitError(says) from None
 
 
-def _keep(
-    course: Course, assignment: str, student: str, theirs: Sequence[File], at: datetime | None
-) -> Iterator[Taken]:
+def _keep(course: Course, assignment: str, student: str, theirs: Sequence[File]) -> Iterator[Taken]:
     """Keep one student's files, and let the newest count."""
     kept = course.root / FOLDER / student / assignment
     folder = course.submitted / student / assignment
-    if any(x.is_symlink() for x in (folder.parent, folder, kept.parent, kept)):
-        raise LabkitError(f"{folder} or {kept} is a link; put a folder there")
-    read: list[tuple[datetime, bool, File]] = []
-    for file in theirs:
-        if not file.exact and (at or file.late):
-            file = replace(file, when=at or file.when, exact=True)
+    path, newest, data = folder / f"{assignment}.ipynb", None, b""
+    for file in sorted(theirs, key=lambda x: (x.when, x.name.startswith(assignment))):
         if file.name.lower().endswith(".ipynb"):
-            plain = _REPEATED.sub(".ipynb", file.name) == f"{assignment}.ipynb"
-            read.append((file.when, plain, file))
+            newest, data = file, file.read()
+            _store(kept, file.when, data)
         else:
             yield Taken(student, file.name, "not taken; it is no notebook", fine=False)
-    if not read:
+    if newest is None:
         return
-    *earlier, (_, _, file) = sorted(read, key=lambda one: one[:2])
-    for _, _, one in earlier:
-        _store(kept, one.when, one.read())
-        yield Taken(student, one.name, f"kept, but {file.name} counts")
-    data, path = file.read(), folder / f"{assignment}.ipynb"
+    secret = read_secret(newest.folder) if newest.folder else b""
     there = read_file(path) if path.exists() else b""
-    before = (read_time(read_stamp(folder)) or _written(path)) if there else file.when
-    _store(kept, file.when, data)
-    if there and there != data and file.when <= before:
-        yield Taken(student, file.name, f"kept, but the one of {before:%Y-%m-%d %H:%M} UTC counts")
-        return
-    if there != data or (file.folder and file.when >= before):  # students ask about the newest
-        beside = {TIMESTAMP: str(file.when).encode() if file.exact else None}
-        beside[SECRET] = read_secret(file.folder)
+    before = (read_time(read_stamp(folder)) or _written(path)) if there else _NEVER
+    says = "there already"
+    if newest.when > before and (there != data or newest.folder):  # students ask about the newest
         if there:
             _store(kept, before, there)
         write(path, data)
-        os.utime(path, (file.when.timestamp(), file.when.timestamp()))
-        for name, content in beside.items():
-            if content is None:
-                (folder / name).unlink(missing_ok=True)
-            else:
+        os.utime(path, (newest.when.timestamp(),) * 2)
+        stamp = str(newest.when).encode() if newest.exact else b""
+        for name, content in ((TIMESTAMP, stamp), (SECRET, secret)):
+            (folder / name).unlink(missing_ok=True)
+            if content:
                 write(folder / name, content)
-    says = "there already" if there == data else "taken"
-    yield Taken(student, file.name, says + ", late" * file.late)
+        says = "taken"
+    elif there != data:
+        says = f"kept, but the one of {before:%Y-%m-%d %H:%M} UTC counts"
+    yield Taken(student, newest.name, says)
 
 
 def _written(path: Path) -> datetime:
@@ -260,17 +228,17 @@ def _store(kept: Path, when: datetime, data: bytes) -> None:
 
 def reading(entry: str) -> dict[str, Any]:
     """What an entry of Moodle's or Canvas's zip says of its owner; nothing if that is not clear."""
-    moodle, canvas = _MOODLE.fullmatch(entry), [*_CANVAS.finditer(entry)]
-    canvas = [] if "/" in entry else canvas
+    if len(entry) > LONGEST:
+        return {}
+    moodle = _MOODLE.fullmatch(entry)
+    canvas = [] if "/" in entry else [*_CANVAS.finditer(entry)]
     if bool(moodle) + len(canvas) != 1:  # a name or a file that could be read as somebody else's
         return {}
     if moodle:
-        file = clean_line(moodle["file"]) if moodle["kind"] == "file" else moodle["kind"]
-        who = Participant(moodle["number"], clean_line(moodle["name"], 200))
-        return {"column": "name", "value": who.name, "name": file, "moodle": who}
-    (match,) = canvas
-    about = {"column": "lms_user_id", "value": match["user"], "late": bool(match["late"])}
-    return about | {"name": clean_line(match["file"])}
+        owner = {"column": "name", "value": clean_line(moodle["name"], 200)}
+        return owner | {"name": clean_line(moodle["file"]), "moodle": moodle["number"]}
+    about = {"column": "lms_user_id", "value": canvas[0]["user"], "exact": bool(canvas[0]["late"])}
+    return about | {"name": clean_line(canvas[0]["file"])}
 
 
 def in_zip(source: Path) -> Iterator[File]:
@@ -284,34 +252,16 @@ def in_zip(source: Path) -> Iterator[File]:
     except (zipfile.BadZipFile, ValueError, OSError) as error:
         raise LabkitError(f"{source} is no zip, or damaged: {clean_line(str(error))}") from None
     for entry in archive.infolist():
-        name = entry.orig_filename
         if not entry.is_dir():
-            refused = _refused(entry, name)
-            about = {"refused": refused} if refused else reading(name)
-            label, when = clean_line(name[-LONGEST:])[-120:], _when(entry, _written(source))
-            yield File(label, when, partial(_read, archive, entry), **about)
-
-
-def _refused(entry: zipfile.ZipInfo, name: str) -> str:
-    """Why an entry is refused, whoever owns it; "" if it is not."""
-    if stat.S_ISLNK(entry.external_attr >> 16) or entry.flag_bits & 1:
-        return "they are links, or locked with a password"
-    if len(name) > LONGEST or set(name) & set("\\\0") or {"", ".", ".."} & set(name.split("/")):
-        return "their names are too long, or lead out of the download"
-    return ""
-
-
-def _when(entry: zipfile.ZipInfo, made: datetime) -> datetime:
-    """An entry's time, which zips store as local time without a zone; 1980 is none."""
-    try:
-        return datetime(*entry.date_time).astimezone(UTC) if entry.date_time[0] > 1980 else made
-    except ValueError:
-        return made
+            when, name = _written(source), entry.orig_filename
+            with suppress(ValueError):  # some zips have no times
+                when = datetime(*entry.date_time).astimezone(UTC)
+            label = clean_line(name[-LONGEST:])[-120:]
+            yield File(label, when, partial(_read, archive, entry), **reading(name))
 
 
 def _read(archive: zipfile.ZipFile, entry: zipfile.ZipInfo) -> bytes:
     """Unpack an entry in memory up to the size limit, whatever size it states."""
-    check_size(entry.file_size, NOTEBOOK)
     with archive.open(entry) as file:
         data = file.read(NOTEBOOK * 2**20 + 1)
     check_size(len(data), NOTEBOOK)
@@ -326,47 +276,30 @@ def in_exchange(folder: Path, assignment: str, unverified: bool) -> Iterator[Fil
         assignment: The assignment to collect.
         unverified: Whether to take folders of users whom this machine does not know.
     """
-
-    def of(path: Path, user: str, stated: str) -> list[File]:
-        when, label = read_time(stated), clean_line(path.name)
-        _check_owner(user, path, unverified)
-        column, notebooks = "email" if "@" in user else "login", sorted(path.glob("*.ipynb"))
-        if when is None or not notebooks:
-            raise LabkitError("they state no time, or hold no notebook")
-        first = File(label, when, bytes, column, user, exact=True, folder=path)
-        named = [(clean_line(one.name), partial(read_file, one)) for one in notebooks]
-        return [replace(first, name=name, read=read) for name, read in named]
-
     for path in sorted(folder.iterdir()):
         user, name, stated, *_ = (*path.name.rsplit("+", 3), "", "")
         if name == assignment:
-            found = for_student(user, of, path, user, stated)
-            if isinstance(found, Failure):
-                now = datetime.now(UTC)
-                found = [File(clean_line(path.name), now, bytes, refused=found.why)]
-            yield from found
+            try:
+                owned = path.lstat().st_uid == pwd.getpwnam(user).pw_uid
+            except (KeyError, ValueError):
+                owned = unverified
+            file, *_ = *sorted(path.glob("*.ipynb"), key=lambda x: x.stem != name), path
+            when, column = read_time(stated), "email" if "@" in user else "login"
+            if not (owned and when and file != path) or path.is_symlink():
+                column = ""
+            label, read, called = clean_line(path.name), partial(read_file, file), file.name
+            yield File(
+                label, when or _NEVER, read, column, user, clean_line(called), True, "", path
+            )
 
 
-def _check_owner(user: str, path: Path, unverified: bool) -> None:
-    """Raise a LabkitError unless a folder belongs to the user in its name."""
-    if path.is_symlink() or not path.is_dir():
-        raise LabkitError("they are links")
-    try:
-        if path.lstat().st_uid != pwd.getpwnam(user).pw_uid:
-            raise LabkitError("another user than the one in the name owns them")
-    except (KeyError, ValueError):
-        if not unverified:
-            raise LabkitError("this machine does not know these users; see --unverified") from None
-
-
-def read_secret(folder: Path | None) -> bytes | None:
-    """The secret beside a submission; None if it did not come through the exchange.
+def read_secret(folder: Path) -> bytes:
+    """The secret beside a submission; empty if it did not come through the exchange.
 
     Raises:
         LabkitError: The file is a link, or too large.
     """
-    path = folder and folder / SECRET
-    return read_file(path, 1) if path and os.path.lexists(path) else None
+    return read_file(folder / SECRET, 1) if os.path.lexists(folder / SECRET) else b""
 
 
 def for_exchange(course: Course, assignment: str, pages: Iterable[Path]) -> list[bool | Failure]:
@@ -382,14 +315,10 @@ def for_exchange(course: Course, assignment: str, pages: Iterable[Path]) -> list
     """
 
     def lay(page: Path, submitted: Path) -> bool:
-        secret = read_secret(submitted)
-        if secret is not None:
+        if secret := read_secret(submitted):
             (page.parent / SECRET).write_bytes(secret)
             (page.parent / TIMESTAMP).write_text(read_stamp(submitted))
-        return secret is not None
+        return bool(secret)
 
-    of = {page: page.parents[1].name for page in pages}
-    return [
-        for_student(student, lay, page, course.submitted / student / assignment)
-        for page, student in of.items()
-    ]
+    of = [(page.parents[1].name, page) for page in pages]
+    return [for_student(x, lay, page, course.submitted / x / assignment) for x, page in of]

@@ -185,7 +185,7 @@ def _accepted(course: Course, student: str) -> Iterator[Accepted]:
 
 def _check_known(course: Course, student: str) -> None:
     """Raise a LabkitError if nobody has this folder."""
-    listed = [student.id for student in read_roster(course).students]
+    listed = list(read_roster(course))
     folders = [path.name for path in course.submitted.glob("*") if is_name(path.name)]
     if student not in {*folders, *listed}:
         says = f"there is no student {student!r}; give the name of a folder: {few(folders)}"

@@ -69,8 +69,9 @@ def moodle_worksheet(column: str, marks: Sequence[Mark]) -> Table:
     """The grading worksheet for a Moodle assignment: the participants in its download."""
     table: Table = [["Identifier", "Full name", "Grade", "Maximum Grade", "Last modified (grade)"]]
     for r in marks:
-        if who := r.moodle:
-            table.append([f"Participant {who.number}", who.name, r.score, r.points or "", ""])
+        if r.moodle:
+            who = f"Participant {r.moodle}", r.person.name
+            table.append([*who, r.score, r.points or "", ""])
     return table
 
 
@@ -121,7 +122,7 @@ _KEYS: dict[str, tuple[str, Callable[[Mark], str]]] = {
     ),
     "moodle-worksheet": (
         "a participant's number (labkit collect NAME MOODLE.zip)",
-        lambda r: r.moodle.number if r.moodle else "",
+        lambda r: r.moodle,
     ),
 }
 """What identifies a student on each platform, and the command that provides it."""

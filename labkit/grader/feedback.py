@@ -11,7 +11,6 @@ Moodle accepts pages as a zip, and recognises a participant by the number in the
 
 from __future__ import annotations
 
-import re
 import zipfile
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import replace
@@ -192,10 +191,9 @@ def moodle_zip(course: Course, assignment: str, pages: Iterable[Path], to: Path)
         )
     to.parent.mkdir(parents=True, exist_ok=True)
     with zipfile.ZipFile(to, "w", zipfile.ZIP_DEFLATED) as archive:
-        for who, page in mine:
-            name = re.sub(r"[_/\\]", " ", who.name)  # the first underscore ends it
-            folder = f"{name}_{who.number}_assignfeedback_file"
-            archive.write(page, f"{folder}/{page.name}")
+        for number, page in mine:  # Moodle reads the number between the first two underscores
+            name = page.parents[1].name.replace("_", " ")
+            archive.write(page, f"{name}_{number}_assignfeedback_file/{page.name}")
     return len(mine)
 
 

@@ -17,7 +17,7 @@ from ..course.authoring.layout import DEFENCE, Course
 from ..course.notebook import question_of
 from ..errors import LabkitError
 from .clean import clean_text, how_many
-from .collect import Participant, participants
+from .collect import participants
 from .each import Failure, for_student
 from .gradebook import apply_rules, open_gradebook
 from .results import Result, Results
@@ -81,7 +81,7 @@ class Mark:
         penalty: Points deducted for lateness.
         points: Full marks; 0 if neither the gradebook nor the release says what they are.
         late: How late the work was, in words; empty if it was in time.
-        moodle: The student as Moodle's download calls them, or None.
+        moodle: The student's number in Moodle's download, or "".
         result: The result of grading; None if there is no complete one.
         missing: Why no mark counts, and what to do; empty if one does, or nothing was handed in.
         remark: Anything else to know about the mark, such as that the file was rejected.
@@ -96,7 +96,7 @@ class Mark:
     penalty: float = 0.0
     points: float = 0.0
     late: str = ""
-    moodle: Participant | None = None
+    moodle: str = ""
     result: Result | None = None
     missing: str = ""
     remark: str = ""
@@ -158,13 +158,13 @@ def _own_marks(
     submissions = {s.student.id: s for s in book.assignment_submissions(assignment)}
     called, handed_in = participants(course).get(assignment, {}), {*students(course, assignment)}
     results = {one.student: one for one in current_results(course, assignment, only)}
-    listed = {student.id: student for student in read_roster(course).students}
+    listed = read_roster(course)
     full = max((float(s.max_score) for s in submissions.values()), default=0.0)
     full = full or (bundle.points + bundle.by_hand if bundle else 0.0)
     everybody = results.keys() | submissions.keys() | listed.keys()
     for student in sorted(everybody if only is None else everybody & {only}):
         person = listed.get(student) or Student(student, login=student)
-        row = Mark(person, points=full, moodle=called.get(student))
+        row = Mark(person, points=full, moodle=called.get(student, ""))
         if student not in submissions.keys() | results.keys():
             nothing = "no defence yet" if assignment == DEFENCE else "nothing was handed in"
             yield replace(row, remark=nothing)

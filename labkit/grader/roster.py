@@ -14,19 +14,18 @@ import io
 import re
 import unicodedata
 from collections import Counter
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import asdict, dataclass, fields, replace
 from functools import cache
-from itertools import chain, count
+from itertools import zip_longest
 from pathlib import Path
+from typing import NamedTuple
 
 from ..course.authoring.layout import Course
 from ..errors import LabkitError
-from .clean import clean_line, few, from_no_formula, how_many, no_formula, safe_name
+from .clean import clean_line, few, from_no_formula, no_formula, safe_name
 from .files import write
 from .gradebook import open_gradebook
-from .rules import FILE as RULES
-from .rules import read_rules
 
 FILE = "course_private/roster.csv"
 HEADS = {
@@ -42,13 +41,10 @@ HEADS = {
     "role": "role, roles, rolle, rollen, rôles, roles",
 }
 """The headings of each column; what "id" means depends on the others, see `_columns`."""
-_COLUMN = {head: column for column, heads in HEADS.items() for head in heads.split(", ")}
 _STUDENT = re.compile("student|teilnehme|étudiant|estudiante", re.IGNORECASE)
 """What the role of a student says; who has another role is left out."""
 _NO_TEAM = {"no groups", "keine gruppen"}
 """What Moodle writes for a student who is in no group."""
-KEYS = ("login", "email", "lms_user_id", "id_number")
-"""What identifies a student."""
 
 
 @dataclass(frozen=True)
@@ -84,34 +80,32 @@ class Student:
         return f"{self.name} ({self.id})" if self.name else self.id
 
     def agrees(self, other: Student) -> list[bool]:
-        """For each key that both students have, whether the two are alike."""
-        pairs = ((getattr(self, key), getattr(other, key)) for key in KEYS)
+        """For each number or address that both students have, whether the two are alike."""
+        keys = ("login", "email", "lms_user_id", "id_number")
+        pairs = ((getattr(self, key), getattr(other, key)) for key in keys)
         return [a.casefold() == b.casefold() for a, b in pairs if a and b]
 
 
 COLUMNS = tuple(field.name for field in fields(Student))
+Roster = Mapping[str, Student]
+"""The students of a course by their ids."""
 
 
-@dataclass(frozen=True)
-class Roster:
-    """The students of a course, each with an ``id`` of their own."""
+class Imported(NamedTuple):
+    """Who in a list is no student, who is in the roster now, new in it, or not in the list."""
 
-    students: tuple[Student, ...] = ()
-
-    def get(self, id: str) -> Student | None:
-        """The student with this id, which is the name of their folder."""
-        return next((one for one in self.students if one.id == id), None)
-
-    def known_as(self, column: str, value: str) -> Student | None:
-        """The one student with this value in a column, or with this name; None if not one has."""
-        key = _plain(column, value)
-        found = [x for x in self.students if key and _plain(column, getattr(x, column)) == key]
-        return found[0] if len(found) == 1 else None
+    others: list[str]
+    students: list[str]
+    new: list[str]
+    absent: list[str]
 
 
-@cache
-def _plain(column: str, value: str) -> object:
-    return same_name(value) if column == "name" else value.casefold()
+def known_as(roster: Roster, column: str, value: str) -> Student | None:
+    """The one student with this value in a column, or with this name; None if not one has."""
+    plain = same_name if column == "name" else str.casefold
+    key = plain(value)
+    found = [x for x in roster.values() if key and plain(getattr(x, column)) == key]
+    return found[0] if len(found) == 1 else None
 
 
 @cache
@@ -126,7 +120,7 @@ def same_name(name: str) -> tuple[str, ...]:
     return tuple(sorted(filter(None, words)))
 
 
-def import_list(course: Course, file: Path, teams: str = "") -> list[str]:
+def import_list(course: Course, file: Path, teams: str = "") -> Imported:
     """Add the students of a list to the roster; who is there keeps their folder.
 
     Args:
@@ -134,43 +128,52 @@ def import_list(course: Course, file: Path, teams: str = "") -> list[str]:
         file: A CSV file.
         teams: The heading of the column with the teams; "" leaves teams as they are.
 
-    Returns:
-        Sentences on what was done.
-
     Raises:
         LabkitError: The file is no list, or a row could be several students.
     """
     rows, others = read_list(file, teams)
     before = read_roster(course)
-    roster, listed = _merged(before, rows)
-    save_roster(course, roster)
-    tell_gradebook(course, roster)
-    new = [str(one) for one in roster.students if not before.get(one.id)]
-    absent = [str(one) for one in before.students if one.id not in listed]
-    says = [f"{FILE}: {how_many(len(roster.students), 'student')}, {len(new)} of them new"]
-    says += [f"new: {few(new)}"] if new and before.students else []
-    says += [f"left out, as they are no students: {', '.join(others)}"] if others else []
-    says += [f"not in this list, and kept in the roster: {', '.join(absent)}"] if absent else []
-    return says
+    students, listed = {**before}, set[str]()
+    names = Counter(same_name(row.name) for row in rows)
+    for row in rows:
+        name = same_name(row.name)
+        sure = [x for x in students.values() if any(x.agrees(row))]
+        found = sure or [
+            x for x in students.values() if same_name(x.name) == name != () and not x.agrees(row)
+        ]
+        again = found and (found[0].id in listed or (not sure and names[name] > 1))
+        if len(found) > 1 or again:
+            people = few([str(x) for x in found])
+            raise LabkitError(f"{row.name or row.login} could be {people}; correct the list")
+        id = found[0].id if found else safe_name(row.login or row.name)
+        while not found and id.casefold() in {x.casefold() for x in students}:
+            id += "-2"
+        given = {column: cell for column, cell in asdict(row).items() if cell}
+        students[id] = replace(students.get(id, row), **given, id=id)
+        listed.add(id)
+    save_roster(course, students.values())
+    with open_gradebook(course) as book:  # where formgrader reads the names
+        for id, one in students.items():
+            known = {k: getattr(one, k) or None for k in COLUMNS[1:5]}
+            book.update_or_create_student(id, **known)
+    groups = (students, students.keys() - before.keys(), before.keys() - listed)
+    return Imported(others, *([str(students[id]) for id in sorted(x)] for x in groups))
 
 
-def read_list(file: Path, teams: str = "") -> tuple[list[tuple[int, Student]], list[str]]:
-    """The students of a list, each with the number of its line, and who in it is no student.
+def read_list(file: Path, teams: str = "") -> tuple[list[Student], list[str]]:
+    """The students of a list, still without ids, and who in it is no student.
 
     Raises:
         LabkitError: The file is not a table, or a column is missing.
     """
     heads, table = _read_table(file)
-    columns = _columns(heads)
-    if teams:
-        plain = [head.casefold() for head in heads]
-        columns |= {"team": plain.index(teams.casefold())} if teams.casefold() in plain else {}
-    if not columns.keys() & {"login", "name", "last_name"} or (teams and "team" not in columns):
+    columns = _columns(heads) | ({"team": teams} if teams else {})
+    if not columns.keys() & {"login", "name", "last_name"} or teams not in ["", *heads]:
         asked = f"column {teams!r}" if teams else "column 'name' or 'login'"
         raise LabkitError(f"{file} has no {asked}; it has {', '.join(heads)[:300]}")
-    rows, others = list[tuple[int, Student]](), list[str]()
-    for line, row in table:
-        cells = {k: row[at] if at < len(row) else "" for k, at in columns.items()}
+    rows, others = list[Student](), list[str]()
+    for row in table:
+        cells = {column: row[head] for column, head in columns.items()}
         role, name = cells.pop("role", ""), cells.pop("name", "")
         if name and not cells.get("last_name"):
             last, comma, first = name.rpartition(",")  # "Lovelace, Ada", or "Ada Lovelace"
@@ -183,75 +186,41 @@ def read_list(file: Path, teams: str = "") -> tuple[list[tuple[int, Student]], l
         if test or (role and not _STUDENT.search(role)):
             others.append(f"{one.name or one.login} ({role or 'of Canvas'})")
         elif (one.name or one.login) and name.casefold() != "points possible":
-            rows.append((line, one))
+            rows.append(one)
     if not rows:
         raise LabkitError(f"{file} names no student; choose all students, and download it again")
     return rows, others
 
 
-def _columns(heads: Sequence[str]) -> dict[str, int]:
-    """The index of each known column."""
-    plain = [re.sub(r"[\s_]+", " ", head.casefold()).strip(' *"') for head in heads]
-    found = {_COLUMN[head]: at for at, head in reversed([*enumerate(plain)]) if head in _COLUMN}
+def _columns(heads: Sequence[str]) -> dict[str, str]:
+    """The heading of each known column."""
+    plain = {re.sub(r"[\s_]+", " ", x.casefold()).strip(' *"'): x for x in reversed(heads)}
+    found = {k: plain[x] for k, known in HEADS.items() for x in known.split(", ") if x in plain}
     if "id" in plain:
-        canvas = "student" in plain and bool({"section", "sis login id"} & set(plain))
+        canvas = "student" in plain and plain.keys() & {"section", "sis login id"}
         other = "id_number" if "login" in found else "login"
-        found.setdefault("lms_user_id" if canvas else other, plain.index("id"))
+        found.setdefault("lms_user_id" if canvas else other, plain["id"])
     return found
 
 
-def _read_table(path: Path) -> tuple[list[str], list[tuple[int, list[str]]]]:
-    """The first row of a CSV file, cleaned, and the others that are not empty, with their lines.
+def _read_table(path: Path) -> tuple[list[str], list[dict[str, str]]]:
+    """The headings of a CSV file, and its rows that are not empty, by heading, cleaned.
 
     Raises:
         LabkitError: The file is not a table in UTF-8 or UTF-16.
     """
-    if not path.is_file():
-        raise LabkitError(f"there is no file {path}")
-    data = path.read_bytes()
     try:
+        data = path.read_bytes()
         text = data.decode("utf-16" if data[:2] in (b"\xff\xfe", b"\xfe\xff") else "utf-8-sig")
-    except UnicodeDecodeError:
-        raise LabkitError(f"{path} is not in UTF-8; save it as CSV in UTF-8") from None
-    first = text.partition("\n")[0][:10_000]
-    mark = max(",;\t", key=lambda x: len(_columns(first.strip().split(x))))
-    lines = csv.reader(io.StringIO(text, newline=""), delimiter=mark, strict=True)
-    try:
-        rows = [(lines.line_num, [clean_line(cell, 200) for cell in row]) for row in lines]
-    except csv.Error as error:
-        raise LabkitError(f"{path}, line {lines.line_num}: {error}; correct the table") from None
-    (_, heads), *others = rows or [(0, [])]
-    if long := next((line for line, row in others if any(row[len(heads) :])), None):
-        raise LabkitError(f"{path}, line {long} has too many cells; put what has a comma in quotes")
-    return heads, [(line, row) for line, row in others if any(row)]
-
-
-def _merged(before: Roster, rows: Sequence[tuple[int, Student]]) -> tuple[Roster, set[str]]:
-    """The roster with the students of a list, and the ids of these."""
-    students = {one.id: one for one in before.students}
-    names, listed = Counter(same_name(row.name) for _, row in rows), set[str]()
-    for line, row in rows:
-        name = same_name(row.name)
-        found = [x for x in students.values() if any(x.agrees(row))] or [
-            x for x in students.values() if same_name(x.name) == name != () and not x.agrees(row)
-        ]
-        people = [*map(str, found)]
-        if len(found) > 1 or (found and not any(found[0].agrees(row)) and names[name] > 1):
-            raise LabkitError(f"line {line} of the list could be {few(people)}; correct the list")
-        if found and found[0].id in listed:
-            raise LabkitError(f"line {line} of the list is {people[0]} again; correct the list")
-        one = found[0] if found else Student(_folder(row, students))
-        students[one.id] = replace(one, **{k: v for k, v in asdict(row).items() if v})
-        listed.add(one.id)
-    return Roster(tuple(students.values())), listed
-
-
-def _folder(row: Student, students: Mapping[str, Student]) -> str:
-    """The name of a new student's folder: the login or, without one, the name."""
-    there = {id.casefold() for id in students}
-    plain = safe_name(row.login or row.name)
-    found = chain([plain], (f"{plain}-{k}" for k in count(2)))
-    return next(x for x in found if x.casefold() not in there)
+        mark = max(",;\t", key=text.partition("\n")[0].count)
+        lines = csv.reader(io.StringIO(text, newline=""), delimiter=mark, strict=True)
+        rows = [[clean_line(cell, 200) for cell in row] for row in lines]
+    except (OSError, UnicodeError, csv.Error) as error:
+        raise LabkitError(f"{path} is no CSV file in UTF-8: {error}; save it as one") from None
+    heads, *others = rows or [[]]
+    if long := next((row for row in others if any(row[len(heads) :])), None):
+        raise LabkitError(f"{path}: the row of {long[0]!r} is too long; put commas into quotes")
+    return heads, [dict(zip_longest(heads, row, fillvalue="")) for row in others if any(row)]
 
 
 def read_roster(course: Course) -> Roster:
@@ -261,41 +230,19 @@ def read_roster(course: Course) -> Roster:
         LabkitError: The file is damaged.
     """
     path = course.root / FILE
-    if not path.exists():
-        return Roster()
-    heads, rows = _read_table(path)
-    found: dict[str, Student] = {}
-    for line, row in rows:
-        cells = dict(zip(heads, map(from_no_formula, row), strict=False))
-        one = Student(**{column: cells.get(column, "") for column in COLUMNS})
-        if one.id != safe_name(one.id) or one.id.casefold() in found:
-            raise LabkitError(f"{path}, line {line}: the id {one.id!r} is twice there or no folder")
-        found[one.id.casefold()] = one
-    return Roster(tuple(found.values()))
+    _, rows = _read_table(path) if path.exists() else ([], [])
+    cells = [{k: from_no_formula(row.get(k, "")) for k in COLUMNS} for row in rows]
+    seen = Counter(each["id"].casefold() for each in cells)
+    for id in (each["id"] for each in cells):
+        if id != safe_name(id) or seen[id.casefold()] > 1:
+            raise LabkitError(f"{path}: the id {id!r} is there twice, or names no folder")
+    return {each["id"]: Student(**each) for each in cells}
 
 
-def idle_extensions(course: Course) -> Iterator[str]:
-    """A sentence for each extension whose student is neither in the roster nor has handed in."""
-    known = {path.name for path in course.submitted.glob("*")}
-    known |= {one.id for one in read_roster(course).students}
-    for name in sorted({x.student for x in read_rules(course).extensions} - known):
-        yield f"{RULES} has an extension for {name[:60]!a}, whom nobody knows"
-
-
-def save_roster(course: Course, roster: Roster) -> None:
+def save_roster(course: Course, students: Iterable[Student]) -> None:
     """Write the course's roster."""
     out = io.StringIO()
-    table = csv.DictWriter(out, COLUMNS, lineterminator="\n")
-    table.writeheader()
-    for student in roster.students:
-        table.writerow({name: no_formula(cell) for name, cell in asdict(student).items()})
+    table = csv.writer(out, lineterminator="\n")
+    table.writerow(COLUMNS)
+    table.writerows([map(no_formula, asdict(one).values()) for one in students])
     write(course.root / FILE, out.getvalue())
-
-
-def tell_gradebook(course: Course, roster: Roster) -> None:
-    """Write the students into nbgrader's gradebook, where formgrader reads their names."""
-    with open_gradebook(course) as book:
-        for one in roster.students:
-            known = {"lms_user_id": one.lms_user_id or one.id_number, "email": one.email}
-            known |= {"first_name": one.first_name, "last_name": one.last_name}
-            book.update_or_create_student(one.id, **{k: v or None for k, v in known.items()})

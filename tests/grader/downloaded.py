@@ -10,7 +10,7 @@ from courses import synthetic
 from handmade import NAME
 
 from labkit.grader.collect import collect
-from labkit.grader.roster import Roster, Student, save_roster
+from labkit.grader.roster import Student, save_roster
 
 MOODLE = "{}_{}_assignsubmission_file"
 CLASS = (
@@ -22,7 +22,7 @@ CLASS = (
 def bare_course(root, *students):
     """A course without a release, which is enough for collecting, with a roster."""
     course = synthetic(root)
-    save_roster(course, Roster(students or CLASS))
+    save_roster(course, students or CLASS)
     return course
 
 
@@ -65,9 +65,9 @@ def handed_in(inbound, user, data, when="2026-03-01 10:00:00 UTC", name=NAME, ow
     return folder
 
 
-def take(course, source, name=NAME, **options):
+def take(course, source, at=None, unverified=False):
     """Collect a source: what was taken, and the sentences that want a look."""
-    found = list(collect(course, name, source, **options))
+    found = list(collect(course, NAME, source, at, unverified))
     return [str(x) for x in found if x.fine], [str(x) for x in found if not x.fine]
 
 

@@ -19,7 +19,7 @@ from labkit.grader.defence import ASKED, Asked, draw, give_mark, write_page
 from labkit.grader.gradebook import record
 from labkit.grader.marks import marks_of
 from labkit.grader.results import Results
-from labkit.grader.roster import Roster, Student, save_roster
+from labkit.grader.roster import Student, save_roster
 
 
 def accepted(course, student, notebook):
@@ -87,7 +87,7 @@ def test_what_cannot_be_asked_or_marked_is_a_sentence(course, solved, capsys):
     hand_in(course, NAME, "eve", solved)
     hand_in(course, NAME, "bob", solved)
     Results(course, NAME).keep(result_of(course, "bob", share=0.5, data=raw(solved)))
-    save_roster(course, Roster((Student("Ada-Lovelace", "Ada", "Lovelace"),)))
+    save_roster(course, [Student("Ada-Lovelace", "Ada", "Lovelace")])
     for words, sentence in [
         (["Ada-Lovelace"], "handed in nothing, so there is nothing to ask about"),
         (["zoe"], "there is no student 'zoe'"),
@@ -119,7 +119,7 @@ def test_who_has_too_few_accepted_answers_gets_a_page_and_a_mark(course, solved)
 
 def test_a_mark_can_be_given_again(course):
     """To a student of the roster, for whom there is nothing to hand in."""
-    save_roster(course, Roster((Student("ada"), Student("bob"))))
+    save_roster(course, [Student("ada"), Student("bob")])
     for points in ((2, 3, 1), (3, 3, 3)):
         give_mark(course, "ada", points)
         ada, bob = marks_of(course, DEFENCE)

@@ -18,7 +18,7 @@ from handmade import NAME, QUICK, add, put, raw
 from labkit.__main__ import main
 from labkit.grader import batch
 from labkit.grader.gradebook import open_gradebook
-from labkit.grader.roster import Roster, Student, save_roster
+from labkit.grader.roster import Student, save_roster
 
 TIMES = (
     *("US", "9" * 100_000, "0001-01-01 00:00:00 UTC", "9999-12-31T23:59:59-23:59", "٢٠٢٦-١١-٠٦"),
@@ -45,7 +45,7 @@ def _people(dice):
     odd = [Student(x, dice.choice(NAMES), dice.choice(NAMES), f"{x}@x.test", f"7{x[3:]}", x)
            for x in HOSTILE]  # fmt: skip
     me = Student("me", "M", "E", login=pwd.getpwuid(os.getuid()).pw_name)
-    return Roster((CLASS[0], me, *odd))
+    return [CLASS[0], me, *odd]
 
 
 def _notebook(dice, solved):

@@ -14,12 +14,11 @@ from made import NAME, changed, graded, handed_in, notebook_of, result_of
 from labkit.__main__ import main
 from labkit.course.authoring.layout import DEFENCE
 from labkit.grader.batch import common_failures
-from labkit.grader.collect import Participant
 from labkit.grader.export import LAYOUTS, as_csv, of_term, remarks, unmatched
 from labkit.grader.gradebook import open_gradebook
 from labkit.grader.marks import Mark, MarkLine, marks_of
 from labkit.grader.results import Results
-from labkit.grader.roster import Roster, Student, save_roster
+from labkit.grader.roster import Student, save_roster
 
 
 @pytest.fixture
@@ -83,7 +82,7 @@ FAULTS = [ungraded, unrecorded, half_recorded, recorded_otherwise, damaged, hand
 def test_a_mark_that_is_missing_is_an_empty_cell(marked, capsys, fault):
     """No table says 0; page and report do the others, name the one with a remedy, and exit 1."""
     remedy = f"type: labkit grade {NAME} --student ada"
-    save_roster(marked, Roster(tuple(Student(x, login=x) for x in ("ada", "bob", "carl"))))
+    save_roster(marked, [Student(x, login=x) for x in ("ada", "bob", "carl")])
     tables = {layout: [NAME, "--layout", layout] for layout in LAYOUTS} | {"term": []}
     fault(marked)
     ada, bob, carl = marks_of(marked, NAME)
@@ -183,7 +182,7 @@ def test_many_failures_of_one_test_are_named(course):
 
 
 def of(name, **about):
-    known = about.pop("moodle", None)
+    known = about.pop("moodle", "")
     who, line = Student(name, **about), MarkLine("q", 2.0, 1.0)
     return Mark(who, lines=(line,), raw=1.0, points=2.0, moodle=known)
 
@@ -191,13 +190,13 @@ def of(name, **about):
 def test_platforms_tables():
     """Canvas' columns in its order; Moodle's users by address, its worksheet by its numbers."""
     ada = of("ada", lms_user_id="42", first_name="A", last_name="L", email="a@x.org", login="a1",
-             moodle=Participant("101", "Ada L"))  # fmt: skip
+             moodle="101")  # fmt: skip
     carl = of("carl")
     canvas = LAYOUTS["canvas"]("Paths (4711)", [ada, carl])
     assert canvas[0] == ["Student", "ID", "SIS User ID", "SIS Login ID", "Section", "Paths (4711)"]
     assert canvas[1][5] == 2.0 and canvas[2] == ["L, A", "42", "", "a1", "", 1.0]
     sheet = LAYOUTS["moodle-worksheet"]("Paths", [ada, carl])
-    assert sheet[1:] == [["Participant 101", "Ada L", 1.0, 2.0, ""]]
+    assert sheet[1:] == [["Participant 101", "A L", 1.0, 2.0, ""]]
     moodle = LAYOUTS["moodle"]("Paths", [ada, carl])
     assert moodle[1:] == [["A", "L", "", "a1", "a@x.org", 1.0]], "nobody's mark stays out"
     for layout in LAYOUTS:

@@ -14,7 +14,7 @@ from labkit.errors import UnknownName
 from labkit.grader import seeds, term
 from labkit.grader.gradebook import open_gradebook
 from labkit.grader.release import prepared, release
-from labkit.grader.roster import Roster, Student, save_roster
+from labkit.grader.roster import Student, save_roster
 
 PURPOSES = ("hidden cases", "arms", "defence")
 CURVES, ESSAYS = "01_curves", "02_essays"
@@ -87,7 +87,7 @@ def test_one_student_is_forgotten_in_every_folder(course, capsys):
         path.write_text("{}")
     (course.root / "feedback/bob/01_curves/01_curves.html").write_text("Handed in by ada.")
     (course.root / "course.toml").write_text('[[extensions]]\nstudent = "ada"\ndays = 3\n')
-    save_roster(course, Roster((Student("ada", "Ada"), Student("bob", "Bob"))))
+    save_roster(course, [Student("ada", "Ada"), Student("bob", "Bob")])
     shutil.copytree(term.archive(course), course.root, dirs_exist_ok=True)
     words = ["term", "forget", "--course", str(course.root)]
     assert main([*words, "ada"]) == 0
@@ -109,7 +109,7 @@ def test_a_term_with_students_does_not_end_by_mistake(course, capsys):
     words = ["term", "new", ESSAYS, "--course", str(course.root)]
     assert main(words) == 0
     record = course.term.read_text()
-    save_roster(course, Roster((Student("ada", "Ada"), Student("bob", "Bob"))))
+    save_roster(course, [Student("ada", "Ada"), Student("bob", "Bob")])
     hand_in = course.submitted / f"ada/{ESSAYS}/{ESSAYS}.ipynb"
     result = course.results / f"{ESSAYS}/ada.json"
     for file in (hand_in, result):

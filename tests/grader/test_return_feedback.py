@@ -11,7 +11,7 @@ from handmade import hand_in, nbgrader, raw
 
 from labkit.__main__ import main
 from labkit.grader.collect import SECRET
-from labkit.grader.roster import Roster, Student, save_roster
+from labkit.grader.roster import Student, save_roster
 
 NAME = "01_curves"
 
@@ -37,7 +37,7 @@ def test_the_exchange_carries_work_and_feedback(course, tmp_path, capsys):
     step(home, "fetch_assignment", "--course=trajectory_tracking")
     step(home, "submit", "--course=trajectory_tracking")
     me = pwd.getpwuid(os.getuid()).pw_name
-    save_roster(course, Roster((Student(me, login=me),)))
+    save_roster(course, [Student(me, login=me)])
     inbound = exchange / "trajectory_tracking" / "inbound"
     ours("collect", inbound)
     ours("grade")
@@ -63,7 +63,7 @@ def test_moodle_gets_each_page_back_under_its_participants_number(course, blank,
     with zipfile.ZipFile(download, "w") as archive:
         archive.writestr(f"Ada Lovelace_101_assignsubmission_file/{NAME}.ipynb", raw(blank))
     where = ["--course", str(course.root)]
-    save_roster(course, Roster((Student("ada", "Ada", "Lovelace"),)))
+    save_roster(course, [Student("ada", "Ada", "Lovelace")])
     assert main(["collect", NAME, str(download), *where]) == 0
     hand_in(course, NAME, "brought-by-hand", blank)
     assert main(["grade", NAME, *where]) == 0
@@ -72,7 +72,7 @@ def test_moodle_gets_each_page_back_under_its_participants_number(course, blank,
     assert "for Moodle, 1 of 2" in capsys.readouterr().out
     with zipfile.ZipFile(back) as archive:
         (name,) = archive.namelist()
-        assert name == f"Ada Lovelace_101_assignfeedback_file/{NAME}.html"
+        assert name == f"ada_101_assignfeedback_file/{NAME}.html"
         assert archive.read(name).startswith(b"<!doctype html")
     (course.root / "course_private" / "lms.json").unlink()
     assert main(["feedback", NAME, "--moodle", str(back), *where]) == 2
