@@ -14,4 +14,3 @@ export UV_PYTHON_INSTALL_DIR=/opt/python
 install="/opt/uv/bin/uv pip install --quiet --compile-bytecode --python /opt/labkit/bin/python"
 $install --require-hashes --requirement hashes.txt
 $install --no-deps ./labkit-*.whl
-./run_autograder --try
