@@ -111,9 +111,8 @@ def _limits(joint: _Element, file: str) -> dict[str, Any]:
     )
     if not (-np.inf < lower < upper < np.inf and 0.0 < speed < np.inf and 0.0 < effort < np.inf):
         raise LabkitError(
-            f"{what} needs limits, and has a range from {lower:g} to {upper:g} rad, {speed:g} "
-            f"rad/s and {effort:g} N m; write its own numbers into it, such as "
-            '<limit lower="-3" upper="3" velocity="2" effort="50"/>'
+            f"{what} has limits {lower:g} to {upper:g} rad, {speed:g} rad/s and {effort:g} N m; "
+            'write, for example, <limit lower="-3" upper="3" velocity="2" effort="50"/>'
         )
     name = joint.get("name")
     return {"joint": name, "lower": lower, "upper": upper, "speed": speed, "effort": effort}
@@ -182,10 +181,8 @@ def _lump(parts: list[tuple[_Element, Array]], limit: dict[str, Any], file: str)
     (a, b, c), axes = np.linalg.eigh(inertia)
     if not (total > 0.0 and a > 0.0 and a + b >= ROUNDED * c):
         raise LabkitError(
-            f"the links that joint {limit['joint']} of {file} moves have a mass of {total:g} kg "
-            f"and moments of inertia of {a:.3g}, {b:.3g} and {c:.3g} kg m^2; each must be greater "
-            "than 0, and none greater than the sum of the other two: correct their <inertial>, or "
-            "write one into a link that has none"
+            f"joint {limit['joint']} of {file} moves {total:g} kg with moments of inertia {a:.3g}, "
+            f"{b:.3g}, {c:.3g} kg m^2, which no body has; correct its links' <inertial>"
         )
     inertia -= max(0.0, c - a - b) * np.outer(axes[:, 2], axes[:, 2])
     return {"mass": total, "com": com.tolist(), "inertia": inertia.tolist()}
