@@ -89,6 +89,7 @@ class Arm:
         """The joints as the arm reports them now, with the delay and the noise of the plant."""
         if not self._reports.every:
             return self.truth()
+        self.check_open()
         if self._reports.due(self.world.steps):
             self._report()
         return self._reports.newest(self.world.t)
@@ -244,11 +245,9 @@ class Arm:
         late: list[bool] = (self._random.random(ticks) < self.plant.lost_ticks).tolist()
         return late
 
-    def observe(self) -> tuple[State, State, Array]:
-        """What `run` records: the true state, the reported state and `torque`, all read at once."""
-        truth = self.truth()
-        seen = self.state() if self._reports.every else truth
-        return truth, seen, self._torque
+    def observe(self) -> tuple[Array, Array, Array, State]:
+        """What `run` records: true angles and speeds, not copied, `torque` and `state`."""
+        return self._q, self._dq, self._torque, self.state()
 
     # For the world, once per physics step
 
@@ -274,7 +273,9 @@ class Arm:
         self._engine.close()
 
     def _report(self) -> None:
-        self._reports.send(self.truth(), self.world.steps)
+        steps = self.world.steps
+        felt = self._sensors.felt(self._dq, steps)
+        self._reports.send(self.world.t, self._q, self._dq, felt, steps)
 
     def _hold(self) -> None:
         """Hold the current position after a command timeout (Rethink's arm does so after 0.2 s)."""

@@ -200,6 +200,7 @@ class Joints:
         signs = [float(STICK - k) for k in states]
         self._signs, self._sign = signs, np.array(signs)
         self._held = np.array([k == STICK for k in states])
+        self._any_held = STICK in states
         self._rows = self._held[:, None]
         self._clear_of_stops = LOW not in states and HIGH not in states
 
@@ -222,33 +223,30 @@ class Joints:
                 return JointStep(self._nothing, tau, None)
             if self._sticking:  # held by their motors: common, and cheap to compute
                 a = (drive.speed - dq) / self._dt
-                y = self._dynamics.inverse_dynamics(q, dq, a) - tau
+                needed = self._dynamics.inverse_dynamics(q, dq, a)
+                y = needed - tau
                 if all(map(le, map(abs, y.tolist()), drive.bound.tolist())):
-                    return JointStep(y, tau + y, a)
+                    return JointStep(y, needed, a)
             if self._clear_of_stops:
                 return self._slide(q, dq, drive, tau)
         return self._solve(q, dq, drive, touches, tau)
 
     def _slide(self, q: Array, dq: Array, drive: Drive, tau: Array) -> JointStep:
         """Solve a step far from the stops, assuming first that all joints keep their states."""
-        bound, dt = drive.bound, self._dt
-        wanted = (drive.speed - dq) / dt
-        free, inverse = self._dynamics.free_motion(q, dq, tau)
-        target = np.where(self._held, wanted - free, self._sign * bound)
-        y = _gesv()(np.where(self._rows, inverse, self._unit), target)[2]
-        a = free + inverse.dot(y)
-        slack = _ROUNDING / dt
+        y, wanted = self._sign * drive.bound, (drive.speed - dq) / self._dt
+        if self._any_held:
+            a, inverse = self._dynamics.free_motion(q, dq, tau + y)
+            rows = np.where(self._rows, inverse, self._unit)
+            holding = _gesv()(rows, np.where(self._held, wanted - a, 0.0))[2]
+            y, a = y + holding, a + inverse.dot(holding)
+        else:
+            a = self._dynamics.acceleration(q, dq, tau + y)
+        slack = _ROUNDING / self._dt
         for sign, torque, most, made, meant in zip(
-            self._signs, y.tolist(), bound.tolist(), a.tolist(), wanted.tolist(), strict=True
+            self._signs, y.tolist(), drive.bound.tolist(), a.tolist(), wanted.tolist(), strict=True
         ):
             if (meant - made) * sign < -slack if sign else not -most <= torque <= most:
-                ends = np.full(len(y), inf)
-                G, u = dt * inverse, dq + dt * free
-                problem = G, u, drive.speed, bound, -ends, ends
-                y, states = joint_torques(*problem, self._states)
-                self._set_states(states)
-                a = free + inverse @ y
-                break
+                return self._solve(q, dq, drive, [], tau)
         return JointStep(y, tau + y, a)
 
     def _solve(
@@ -293,6 +291,7 @@ class Motors:
             own: The arm's model of itself, which includes its own weight but not its payload.
         """
         self._dt, self._plant, self._own = dt, plant, own
+        self._share = min(1.0, dt / plant.velocity_lag) if plant.velocity_lag else 1.0
         self._effort, self._speed = own.robot.effort.tolist(), own.robot.speed.tolist()
         self._nothing = own.robot.zeros
         self._stiction = plant.each("stiction", own.robot.n)
@@ -326,9 +325,8 @@ class Motors:
         if self.kind is JointPosition:
             speed = self._approach(q)
         elif self._plant.velocity_lag:
-            share = min(1.0, self._dt / self._plant.velocity_lag)
             before = dq if self._lagged is None else self._lagged
-            self._lagged = speed = before + (self._wanted - before) * share
+            self._lagged = speed = before + (self._wanted - before) * self._share
         else:
             speed = self._wanted
         self._fresh = False

@@ -141,38 +141,37 @@ def _read(about: dict[str, Any], columns: dict[str, Any]) -> dict[str, Any]:
 
 
 class Recorder:
-    """Records a log while a run goes on, each tick as a row of one table."""
+    """Records a log while a run goes on, each tick as the bytes of one row of a table."""
 
     kind: type = type(None)
     """The type of the run's commands."""
 
-    def __init__(
-        self, robot: Robot, plant: Plant, controller: str, first: AnySample, ticks: int
-    ) -> None:
-        """Record at most ``ticks`` of ``controller``, whose target's samples are like ``first``."""
+    def __init__(self, robot: Robot, plant: Plant, controller: str, first: AnySample) -> None:
+        """Record a run of ``controller``, whose target's samples are like ``first``."""
         self._robot, self._plant, self._controller = robot, plant, controller
         self._sample = type(first)
         # q, dq, torque, q, dq and tau_ext as reported, the target's sample, command
         self._shapes = [(robot.n,)] * 6 + [part.shape for part in first] + [(robot.n,)]
-        self._table = np.empty((ticks, sum(map(prod, self._shapes))))
-        self._next: tuple[float, float] = (0.0, 0.0)
+        self._next: tuple[float, float, bytes] = (0.0, 0.0, b"")
+        self._rows: list[bytes] = []
         self._times: list[tuple[float, float]] = []
         self._cut: list[bool] = []
 
     def __len__(self) -> int:
         return len(self._times)
 
-    def keep(self, t: float, truth: State, torque: Array, seen: State, sample: AnySample) -> None:
+    def keep(
+        self, t: float, q: Array, dq: Array, torque: Array, seen: State, sample: AnySample
+    ) -> None:
         """Record the arm and its target at ``t`` [s], before the controller gets them."""
-        row, n = self._table[len(self._times)], self._robot.n
-        parts = (truth.q, truth.dq, torque, seen.q, seen.dq, seen.tau_ext, *sample)
-        np.concatenate(parts, axis=None, out=row[:-n])
-        self._next = t, seen.t
+        parts: Any = (q, dq, torque, seen.q, seen.dq, seen.tau_ext, *sample)
+        self._next = t, seen.t, b"".join(parts)
 
     def commanded(self, command: Command) -> None:
         """Record the controller's command, with which the tick counts."""
-        self._table[len(self._times), -self._robot.n :] = command.value
-        self._times.append(self._next)
+        t, reported, row = self._next
+        self._rows.append(row + command.value.tobytes())
+        self._times.append((t, reported))
 
     def cut(self, saturated: bool) -> None:
         """Record whether a limit cut the command after the latest tick."""
@@ -182,7 +181,8 @@ class Recorder:
         """The log of the ticks recorded so far, read-only."""
         n = len(self)
         ends = np.cumsum([prod(shape) for shape in self._shapes])[:-1]
-        parts = zip(np.split(self._table[:n], ends, axis=1), self._shapes, strict=True)
+        table = np.frombuffer(b"".join(self._rows)).reshape(n, -1)
+        parts = zip(np.split(table, ends, axis=1), self._shapes, strict=True)
         q, dq, torque, *others, command = (
             locked(np.array(x).reshape(n, *shape)) for x, shape in parts
         )

@@ -77,25 +77,19 @@ class Driven:
     def __init__(self, arm: Arm, rate: Any) -> None:
         """Drive ``arm`` at ``rate`` [Hz]."""
         arm.check_open()
-        self._arm, self.robot, self.plant = arm, arm.robot, arm.plant
+        self.arm = arm
         self._steps = whole_steps(as_number(rate, "rate", above=0.0), arm.world.dt, "rate")
         self.period = self._steps * arm.world.dt
-        self.apply, self.observe, self.recover = arm.follow, arm.observe, arm.recover
-        self.lost_ticks = arm.lost_ticks
-
-    def begin(self) -> float:
-        """Begin the run; the time since then."""
-        return 0.0
 
     def advance(self, k: int) -> tuple[int, float, bool]:
         """Go on to the next tick; its number and time, and whether a limit cut the last command."""
-        self._arm.world.step(self._steps)
-        return k + 1, (k + 1) * self.period, self._arm.saturated
+        self.arm.world.step(self._steps)
+        return k + 1, (k + 1) * self.period, self.arm.saturated
 
     def stop(self) -> None:
         """Leave the arm at rest."""
-        if not self._arm.world.closed:
-            self._arm.stop()
+        if not self.arm.world.closed:
+            self.arm.stop()
 
 
 def check_order(target: object, *controllers: object) -> None:
@@ -126,7 +120,8 @@ def run_driven(
     """Do the same as `run` for a driven arm."""
     last = _ticks(target, duration, driven.period) - 1
     samples = _Samples(target)
-    recorder = Recorder(driven.robot, driven.plant, name_of(controller), samples.first, last + 1)
+    arm = driven.arm
+    recorder = Recorder(arm.robot, arm.plant, name_of(controller), samples.first)
     try:
         _loop(driven, controller, last, samples, recorder)
         log = recorder.log()
@@ -141,18 +136,17 @@ def _loop(
     driven: Driven, controller: Controller, last: int, samples: _Samples, recorder: Recorder
 ) -> None:
     """Go through the ticks up to the ``last`` one, and leave the arm at rest."""
-    robot, name = driven.robot, name_of(controller)
-    lost = driven.lost_ticks(last + 1)
-    kind, k, running = None, 0, name
-    t = driven.begin()
+    arm, robot, name = driven.arm, driven.arm.robot, name_of(controller)
+    lost = arm.lost_ticks(last + 1)
+    kind, k, t, running = None, 0, 0.0, name
     try:
         if reset := getattr(controller, "reset", None):
             reset()
         while True:
             running = samples.name
-            truth, seen, torque = driven.observe()
+            q, dq, torque, seen = arm.observe()
             sample = samples.at(t)
-            recorder.keep(t, truth, torque, seen, sample)
+            recorder.keep(t, q, dq, torque, seen, sample)
             running = name
             command = controller(seen, sample)
             if type(command) is not kind:
@@ -160,19 +154,19 @@ def _loop(
             if command.value.shape != robot.zeros.shape:
                 raise ShapeError(kind.__name__, robot.zeros.shape, command.value.shape)
             recorder.commanded(command)
-            if not truth.dq.dot(truth.dq) <= RUNAWAY**2:  # a NaN runs away too
-                raise Diverged(_runaway(robot, truth.dq, name, t))
+            if not dq.dot(dq) <= RUNAWAY**2:  # a NaN runs away too
+                raise Diverged(_runaway(robot, dq, name, t))
             if k >= last:
                 break
             if not lost[k]:
-                driven.apply(command)
+                arm.follow(command)
             k, t, cut = driven.advance(k)
             recorder.cut(cut)
     except KeyboardInterrupt:
         if not len(recorder):
             raise
     except Diverged:
-        driven.recover()
+        arm.recover()
         raise
     except (ControllerError, Closed):
         raise
@@ -207,7 +201,7 @@ class _Samples:
         """The sample at time ``t`` [s]; whether its numbers are finite is asked later."""
         sample: Any = self._target(t)
         try:
-            a, b, c = [np.array(part, np.float64) for part in sample]
+            a, b, c = [np.array(part, np.float64, order="C") for part in sample]
             good = type(sample) is self._kind and (a.shape, b.shape, c.shape) == self._shapes
         except (TypeError, ValueError):
             good = False

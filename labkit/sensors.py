@@ -52,10 +52,9 @@ class Reports:
         """Whether a report is to be sent at this physics step."""
         return self.every > 0 and steps % self.every == 0 and steps != self._last
 
-    def send(self, truth: State, steps: int) -> None:
+    def send(self, t: float, q: Array, dq: Array, felt: Array, steps: int) -> None:
         """Send a report of the true state, with offset, resolution and noise applied."""
         self._last = steps
-        t, q, dq, felt = truth
         if self._noisy:
             dq = dq + self._noise * self._random.standard_normal(dq.size)
             felt = felt + self._torque_noise * self._random.standard_normal(dq.size)

@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 from .errors import NotFinite, OutOfRange, ShapeError, TypeMismatch
 
 Array = NDArray[np.float64]
+FLOAT = np.dtype(np.float64)
 
 
 def as_array(x: Any, shape: tuple[int, ...], name: str) -> Array:
@@ -32,7 +33,7 @@ def as_array(x: Any, shape: tuple[int, ...], name: str) -> Array:
         NotFinite: An entry is NaN or infinite.
     """
     a: Array = x
-    if type(x) is not np.ndarray or x.dtype != np.float64:
+    if type(x) is not np.ndarray or x.dtype != FLOAT:
         a = _converted(x, shape, name)
     if a.shape != shape:
         raise ShapeError(name, shape, a.shape)

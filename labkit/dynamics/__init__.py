@@ -40,8 +40,11 @@ class Dynamics(Protocol):
     def bias(self, q: Array, dq: Array) -> Array: ...
     def inverse_dynamics(self, q: Array, dq: Array, ddq: Array) -> Array: ...
 
+    def acceleration(self, q: Array, dq: Array, tau: Array) -> Array:
+        """The accelerations that torques cause, shape (n,) in [rad/s^2]."""
+
     def free_motion(self, q: Array, dq: Array, tau: Array) -> tuple[Array, Array]:
-        """The accelerations that torques cause, in [rad/s^2], and the inverse of M(q)."""
+        """The same, and the inverse of M(q)."""
 
 
 class PerThread(threading.local):

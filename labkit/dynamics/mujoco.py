@@ -71,6 +71,9 @@ class MuJoCo:
         mujoco.mj_rne(self._model, data, 1, tau)
         return tau + self._rotors * ddq
 
+    def acceleration(self, q: Array, dq: Array, tau: Array) -> Array:
+        return self.free_motion(q, dq, tau)[0]
+
     def free_motion(self, q: Array, dq: Array, tau: Array) -> tuple[Array, Array]:
         data, inverse = self._at(q), np.empty_like(self._each)
         bias = self._bias(data, dq)

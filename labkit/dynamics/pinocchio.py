@@ -57,6 +57,9 @@ class Pinocchio:
     def inverse_dynamics(self, q: Array, dq: Array, ddq: Array) -> Array:
         return pin.rnea(self._model, self._own.data, q, dq, ddq)
 
+    def acceleration(self, q: Array, dq: Array, tau: Array) -> Array:
+        return pin.aba(self._model, self._own.data, q, dq, tau)
+
     def free_motion(self, q: Array, dq: Array, tau: Array) -> tuple[Array, Array]:
         m, data = self._model, self._own.data
         ddq = pin.aba(m, data, q, dq, tau, pin.Convention.WORLD)

@@ -272,7 +272,7 @@ class LiveSession(Driven):
     ) -> None:
         """Make a session that has not begun; ``show`` receives each picture as numbers."""
         super().__init__(arm, rate)
-        self.arm, self._show, self._q0 = arm, show, arm.truth().q.copy()
+        self._show, self._q0 = show, arm.truth().q
         self.law, self.around, self.hand = Law(laws, dials), Surroundings(arm, target), Hand(arm)
         self._inbox: SimpleQueue[dict[str, Any]] = SimpleQueue()
         self._thread, self.state, self.note = threading.Thread(), "ready", ""
@@ -307,7 +307,7 @@ class LiveSession(Driven):
         try:
             while self.state == "running":  # reset, a dial or another controller begins a new run
                 t0, self._again = world.t, False
-                self.plant, self._began = self.arm.plant, time.monotonic()
+                self._began = time.monotonic()
                 run_driven(self, self.around.target, self.law, LONGEST)
                 if not self._again:
                     self.around.since += world.t - t0

@@ -53,7 +53,7 @@ class PyBullet:
     def step(self, tau: Array, ddq: Array | None) -> tuple[Array, Array]:
         if self._geared is not None:  # PyBullet has no rotors: subtract their torque
             if ddq is None:
-                ddq, _ = self._geared.free_motion(self._q, self._dq, tau)
+                ddq = self._geared.acceleration(self._q, self._dq, tau)
             tau = tau - self._rotors * ddq
         bullet.setJointMotorControlArray(
             self._arm, self._joints, bullet.TORQUE_CONTROL, forces=tau.tolist(),
