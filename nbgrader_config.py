@@ -27,8 +27,7 @@ c.HTMLExporter.filters = {
     "clean_html": "labkit.grader.feedback.clean",
 }
 
-# formgrader's button and nbgrader's command write the pages that `labkit feedback` writes.
-c.GenerateFeedback.exporter_class = "labkit.grader.feedback.StudentPage"
-
-# Students' code never runs in nbgrader's own process: `labkit grade` grades, in a sandbox.
+# Students' code never runs in nbgrader's own process: `labkit grade` grades, in a sandbox, and
+# `labkit feedback` writes the pages.
 c.Autograde.sanitize_preprocessors = ["labkit.grader.gradebook.Refused"]
+c.GenerateFeedback.preprocessors = ["labkit.grader.gradebook.Refused"]

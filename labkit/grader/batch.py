@@ -2,10 +2,9 @@
 
 from __future__ import annotations
 
-import time
 from collections import Counter, defaultdict
-from collections.abc import Callable, Iterable, Iterator, Sequence
-from concurrent.futures import FIRST_COMPLETED, wait
+from collections.abc import Iterable, Iterator, Sequence
+from concurrent.futures import as_completed
 from dataclasses import dataclass, field
 
 from ..course.authoring.bundle import Bundle
@@ -17,7 +16,7 @@ from .files import locked
 from .grade import hashes
 from .results import Result, Results
 from .sandbox.launch import Isolation, NoIsolation
-from .sandbox.limits import Limits, slowness
+from .sandbox.limits import Limits
 from .submission import Submission
 from .worker import Task, grade_submission
 
@@ -25,8 +24,6 @@ FAILURE_RATE_ALERT = 0.3
 """If a larger share of those who tried fails a test, the run asks whether the test is to blame."""
 MIN_FAILURES = 5
 """Fewer failures of a test are no pattern."""
-PROGRESS_INTERVAL = 15.0
-"""Seconds between two progress reports."""
 
 
 @dataclass(frozen=True)
@@ -38,18 +35,14 @@ class GradeOptions:
         isolation: What isolates the submissions.
         dask: The address of a Dask scheduler; None for this machine.
         again: Whether to grade a submission again although its result is up to date.
-        lower: Whether the mark of an unchanged submission may fall.
         limits: What a submission may use on a fast machine.
-        tell: Called every `PROGRESS_INTERVAL` seconds with a sentence that reports progress.
     """
 
     jobs: int = 1
     isolation: Isolation = Isolation.BUBBLEWRAP
     dask: str | None = None
     again: bool = False
-    lower: bool = False
     limits: Limits = field(default_factory=Limits)
-    tell: Callable[[str], object] = lambda _: None
 
 
 @dataclass(frozen=True)
@@ -57,28 +50,19 @@ class GradedSubmission:
     """A graded submission.
 
     Attributes:
-        now: The result of grading.
+        result: The result of grading.
         before: The result that counted before; None if there was none.
-        kept: Whether that one still counts, as the mark would have become lower.
     """
 
-    now: Result
+    result: Result
     before: Result | None = None
-    kept: bool = False
-
-    @property
-    def result(self) -> Result:
-        """The result that counts."""
-        return self.before if self.before and self.kept else self.now
 
     @property
     def says(self) -> str:
         """What became of the previous mark; "" if there was none or it is the same."""
-        now, before = self.now, self.before
+        now, before = self.result, self.before
         if before is now:
             return "as before"
-        if self.kept:
-            return f"kept; --lower lets the mark fall to {now.score:g} of {now.points:g}"
         if before is None or (before.score, before.points) == (now.score, now.points):
             return ""
         return f"was {before.score:g} of {before.points:g}"
@@ -122,11 +106,8 @@ def grade_class(
             if isinstance(result, Failure):
                 yield result
                 continue
-            before = results.get(result.student)
-            lower = before is not None and result.falls_from(before)
-            one = GradedSubmission(result, before, kept=lower and not options.lower)
-            keeps = change and not one.kept
-            failed = for_student(result.student, results.keep, result) if keeps else None
+            one = GradedSubmission(result, results.get(result.student))
+            failed = for_student(result.student, results.keep, result) if change else None
             yield failed or one
 
 
@@ -138,21 +119,8 @@ def _graded(
         key = bundle.data["hash"]
         tasks = [Task(course, x, key, options.isolation, options.limits) for x in submissions]
         whose = {pool.submit(grade_submission, x): x.submission.student for x in tasks}
-        began = said = last = time.monotonic()
-        left = set(whose)
-        while left:
-            done, left = wait(left, PROGRESS_INTERVAL, FIRST_COMPLETED)
-            for future in done:
-                yield for_student(whose[future], future.result, of_all=(NoIsolation,))
-            now, count = time.monotonic(), len(tasks) - len(left)
-            last = now if done else last
-            if left and now >= said + PROGRESS_INTERVAL:
-                said, waited = now, now - last
-                seconds = (now - began) / max(1, count) * len(left) * bool(count)
-                if waited >= PROGRESS_INTERVAL:  # those that run may take all that they may
-                    seconds += options.limits.scaled(slowness()).worker - waited
-                minutes = max(1, round(seconds / 60))
-                options.tell(f"{count} of {len(tasks)} graded, about {minutes} min left")
+        for future in as_completed(whose):
+            yield for_student(whose[future], future.result, of_all=(NoIsolation,))
 
 
 def _is_up_to_date(before: Result, submission: Submission, bundle: Bundle) -> bool:
@@ -164,16 +132,14 @@ def _is_up_to_date(before: Result, submission: Submission, bundle: Bundle) -> bo
 def changes(found: Sequence[GradedSubmission]) -> Iterator[str]:
     """A sentence for each mark that a new release moves, and one that counts them."""
     old = [(x, x.before) for x in found if x.before]
-    moved = [(x, was) for x, was in old if x.kept or x.now.score != was.score]
-    for x, was in moved:
-        points = x.now.earned
+    moved = [(x.result, was) for x, was in old if x.result.score != was.score]
+    for now, was in moved:
         parts = [
-            f"{name} {was.earned.get(name, 0.0):g} -> {points[name]:g}"
-            for name in points
-            if points[name] != was.earned.get(name, 0.0)
+            f"{name} {was.earned.get(name, 0.0):g} -> {points:g}"
+            for name, points in now.earned.items()
+            if points != was.earned.get(name, 0.0)
         ]
-        only = "; only with --lower" if x.kept else ""
-        yield f"{x.now.student}: {was.score:g} -> {x.now.score:g} ({', '.join(parts)}){only}"
+        yield f"{now.student}: {was.score:g} -> {now.score:g} ({', '.join(parts)})"
     yield f"{len(moved)} of {len(old)} marks would change; {len(found) - len(old)} new"
 
 

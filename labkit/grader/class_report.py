@@ -5,7 +5,7 @@ from __future__ import annotations
 import ast
 import re
 from collections import Counter, defaultdict
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from statistics import mean, median
 from typing import Any
 
@@ -22,8 +22,6 @@ from .marks import Mark
 from .pages import render
 from .results import Result
 
-FEWEST = 5
-"""A report without names does not give counts of fewer students than this."""
 COUNTED = (Outcome.RIGHT, Outcome.WRONG, Outcome.ERROR, Outcome.NOT_COUNTED, Outcome.NOT_ATTEMPTED)
 """Outcomes that have a column of the table."""
 _Row = dict[str, Any]
@@ -34,26 +32,21 @@ def report(
     assignment: str,
     marks: Sequence[Mark],
     problems: Mapping[str, Problem],
-    called: Callable[[str], str],
-    fewest: int = 1,
     asked: Sequence[Question] = (),
     truths: Mapping[str, Any] | None = None,
 ) -> str:
-    """The class report, in Markdown.
+    """The class report, in Markdown; it names nobody.
 
     Args:
         assignment: The name of the assignment.
         marks: The marks of the class; students who did not hand in are left out.
         problems: The problems by name, for what to say in the lecture.
-        called: Returns the name of a student in the report, as ``str`` or `pseudonyms` do.
-        fewest: Counts of fewer students are not given, as they could show who the students are.
         asked: The questions of the assignment, for their texts, outcomes and predictions.
         truths: The right value of each prediction, by name.
     """
     marks = [mark for mark in marks if not mark.absent]
     counted = [mark for mark in marks if mark.result and (mark.lines or not mark.missing)]
     results = [mark.result for mark in counted if mark.result]
-    who = {r.student: _escape(called(r.student)) for r in results}
     graded = [r for r in results if not r.rejected]
     full = [m for m in counted if m.raw is not None and m.result in graded]
     verdicts: dict[str, list[Verdict]] = defaultdict(list)
@@ -71,7 +64,7 @@ def report(
         handed_in=len(marks),
         left_out=len(marks) - len(counted),
         open=sum(bool(mark.open) for mark in counted),
-        rejected=[f"{who[r.student]}: {_escape(r.rejected)}" for r in results if r.rejected],
+        rejected=len(results) - len(graded),
         graded=len(graded),
         scores=sorted(float(m.score) for m in full),
         points=max((mark.points for mark in counted), default=0.0),
@@ -84,15 +77,14 @@ def report(
         hidden=sum(test.hidden for test in tests),
         outcomes=list(_outcome_rows(shares, asked)),
         texts={q.name: _short_question(q) for q in asked},
-        predictions=list(_prediction_rows(graded, asked, fewest, truths or {})),
+        predictions=list(_prediction_rows(graded, asked, truths or {})),
         mistakes=list(_mistake_rows(verdicts, problems)),
-        count=lambda n: f"<{fewest}" if 0 < n < fewest else n,
-        tools=[
-            f"{who[r.student]}: {v.name} {why_not_counted(v.withheld)}"
-            for r in graded
-            for v in (answer.verdict for answer in r.questions)
+        tools=Counter(
+            f"{v.name} {why_not_counted(v.withheld)}"
+            for found in verdicts.values()
+            for v in found
             if v.withheld
-        ],
+        ),
         doubtful=list(common_failures(graded)),
     )
     return text.rstrip() + "\n"
@@ -108,9 +100,9 @@ def _outcome_rows(shares: Mapping[str, float], asked: Sequence[Question]) -> Ite
 
 
 def _prediction_rows(
-    graded: Sequence[Result], asked: Sequence[Question], fewest: int, truths: Mapping[str, Any]
+    graded: Sequence[Result], asked: Sequence[Question], truths: Mapping[str, Any]
 ) -> Iterator[_Row]:
-    """For each prediction, the truth and what the class committed to, most common first."""
+    """For each prediction, the truth and what at least two committed to, most common first."""
     sources = [(x.student, {q.verdict.name: q.source for q in x.questions}) for x in graded]
     for question in asked:
         form = question.judge
@@ -118,7 +110,7 @@ def _prediction_rows(
             told = [for_student(who, _said, form, x.get(question.name, "")) for who, x in sources]
             counts = Counter(x for x in told if isinstance(x, str))
             truth = _escape(form.words(truths[question.name])) if question.name in truths else ""
-            said = [(n, _escape(words)) for words, n in counts.most_common() if n >= fewest]
+            said = [(n, _escape(words)) for words, n in counts.most_common() if n > 1]
             rest = len(sources) - sum(n for n, _ in said)
             asks = " ".join(question.asks.split())
             yield {"name": question.name, "asks": asks, "truth": truth, "said": said, "rest": rest}

@@ -11,7 +11,6 @@ import sys
 from collections.abc import Callable, Iterable
 from dataclasses import replace
 from datetime import datetime
-from functools import partial
 from pathlib import Path
 
 import click
@@ -23,7 +22,7 @@ from .each import Failures
 
 PATH = click.Path(path_type=Path)
 VERBS: list[click.Command] = []
-LAYOUTS = ("questions", "canvas", "moodle", "moodle-worksheet", "gradescope")
+LAYOUTS = ("questions", "canvas", "moodle", "gradescope")
 NAMED = ("canvas", "moodle")
 """Layouts with a column whose name a platform must know."""
 _DEFENCE = f"{DEFENCE} is marked by: labkit defence STUDENT --mark A,B,C"
@@ -108,7 +107,7 @@ def doctor() -> int:
     bad = False
     for finding in examine():
         print(finding, flush=True)
-        bad |= finding.needed and not finding.fine
+        bad |= not finding.fine
     return int(bad)
 
 
@@ -169,20 +168,18 @@ def release(course: Course, names: tuple[str, ...], plain: Path | None) -> int:
     return failures.code
 
 
-@verb("participants.csv --teams Groups")
+@verb("participants.csv")
 @click.argument("file", type=PATH, metavar="LIST.csv")
-@click.option("--teams", metavar="COLUMN", default="", help="The column of LIST.csv with teams.")
 @_course
-def roster(course: Course, file: Path, teams: str) -> int:
+def roster(course: Course, file: Path) -> int:
     """Add the students of a list to the roster.
 
     The list comes from Moodle or Canvas, or is any table with a row for each student. Who has
-    another role is left out, and named. A student keeps the folder of the first list. The students
-    of a team share an arm and hand in one report.
+    another role is left out, and named. A student keeps the folder of the first list.
     """
     from .roster import FILE, import_list
 
-    found = import_list(course, file, teams)
+    found = import_list(course, file)
     print(f"{FILE}: {how_many(len(found.students), 'student')}, {len(found.new)} of them new")
     says = {"left out, as they are no students": found.others, "not in this list": found.absent}
     _tell(f"{what}: {', '.join(who)}" for what, who in says.items() if who)
@@ -255,7 +252,6 @@ def collect(
 )
 @click.option("--again", is_flag=True, help="Also grade what is already graded.")
 @click.option("--diff", is_flag=True, help="Change no mark; list the marks that would change.")
-@click.option("--lower", is_flag=True, help="Also record marks that become lower.")
 @click.option("--dask", metavar="ADDRESS", help="A Dask scheduler whose workers see this folder.")
 @click.option(
     "--isolation",
@@ -271,27 +267,25 @@ def grade(
     jobs: int | None,
     again: bool,
     diff: bool,
-    lower: bool,
     dask: str | None,
     isolation: str,
 ) -> int:
     """Grade every submission that is not graded yet.
 
     Each submission is graded in a sandbox of its own. After you have changed a test and released
-    the assignment, all submissions are graded again. No mark is lowered unless you add --lower; if
-    a question has other points since, its share of them is compared.
+    the assignment, all submissions are graded again, and a mark may fall: look with --diff first.
+    A mark that you gave by hand in formgrader stays.
     If a file is rejected, such as the notebook of another assignment, the exit code is 1.
     """
     from ..course.authoring.bundle import Bundle
-    from .batch import GradeOptions, changes, common_failures, grade_class
+    from .batch import GradeOptions, changes, grade_class
     from .gradebook import record
-    from .results import Results
     from .rules import read_rules
     from .sandbox.launch import Isolation
     from .submission import misnamed, none_of, students
 
-    jobs, say = jobs or len(os.sched_getaffinity(0)), partial(print, file=sys.stderr, flush=True)
-    options = GradeOptions(jobs, Isolation(isolation), dask, again, lower, tell=say)
+    jobs = jobs or len(os.sched_getaffinity(0))
+    options = GradeOptions(jobs, Isolation(isolation), dask, again)
     with Failures() as failures:
         read_rules(course)  # an error in them stops here, not after an hour
         found = students(course, assignment)
@@ -313,8 +307,6 @@ def grade(
             print(f"[{number}/{len(who)}] {one.result}{says}", flush=True)
         written = record(course, assignment, results)
         _tell(failures.sift(written, "not in the gradebook"))
-        everybody = results if student else list(Results(course, assignment))
-        _tell(f"ATTENTION: {says}" for says in common_failures(everybody))
         if by_hand := Bundle.of(course, assignment).by_hand:
             print(f"not included: {how_many(by_hand, 'point')}, marked in formgrader")
         if results:
@@ -322,32 +314,29 @@ def grade(
     return failures.code or int(any(result.rejected for result in results))
 
 
-@verb("01_paths --names")
+@verb("01_paths --to report.md")
 @_of_assignment
-@click.option("--names", is_flag=True, help="Show real names; for your eyes only.")
 @_to
 @_course
-def class_report(course: Course, assignment: str, names: bool, to: Path | None) -> int:
+def class_report(course: Course, assignment: str, to: Path | None) -> int:
     """Report what the class got right and wrong.
 
-    The report counts mistakes by their names. Students have pseudonyms unless you add --names.
+    The report counts mistakes by their names, and names no student.
     """
     from ..course.authoring.bundle import Bundle
-    from .class_report import FEWEST, report
+    from .class_report import report
     from .marks import marks_of
-    from .seeds import pseudonyms
 
     with Failures() as failures:
-        marks = [mark for mark in marks_of(course, assignment) if not mark.author]
+        marks = marks_of(course, assignment)
         if not any(mark.result for mark in marks):
             raise _nobody(assignment, next((m.missing for m in marks if m.missing), ""))
         out = [mark for mark in marks if mark.missing and not mark.lines]
         failures += [f"left out: {mark.student}: {mark.missing}" for mark in out]
         problems = {p.name: p for p in course.problems(assignment)}
-        called, fewest = (str, 1) if names else (pseudonyms(course), FEWEST)
         asked = Bundle.of(course, assignment).questions
         truths = {p.name: p.truth for p in course.predictions(assignment)}
-        _write(report(assignment, marks, problems, called, fewest, asked, truths), to)
+        _write(report(assignment, marks, problems, asked, truths), to)
     return failures.code
 
 
@@ -379,7 +368,7 @@ def feedback(
         marks = [mark for mark in everybody if not student or mark.student in student]
         if not marks or {*student} - {mark.student for mark in marks}:
             raise _nobody(assignment)
-        waiting = {mark.author or mark.student: ", ".join(mark.open) for mark in marks if mark.open}
+        waiting = {mark.student: ", ".join(mark.open) for mark in marks if mark.open}
         if waiting and not unmarked:
             who = few([f"{student} ({names})" for student, names in waiting.items()])
             raise LabkitError(f"not marked yet in formgrader: {who}; add --unmarked not to wait")
@@ -413,8 +402,7 @@ def export(
     """Write marks.
 
     The marks are those of an assignment or, without ASSIGNMENT, of the term: every assignment that
-    was graded, and the total with the weights of course.toml. The layout moodle is for Moodle's
-    gradebook, moodle-worksheet for the assignment's page in Moodle; gradescope is the zip with
+    was graded, and the total with the weights of course.toml. The layout gradescope is the zip with
     which Gradescope grades ASSIGNMENT itself.
     """
     from .export import LAYOUTS, as_csv, of_term, remarks
@@ -453,7 +441,7 @@ def export(
         table = of_term(all_marks, {name: rules.weight(name) for name in all_marks})
     else:
         table = LAYOUTS[layout](column or assignment, all_marks[assignment])
-        if layout.startswith("moodle"):
+        if layout == "moodle":
             full = max(mark.points for mark in everybody)
             _tell([f"in Moodle the maximum of {assignment} must be {full:g}"], doubtful=True)
     _write(as_csv(table), to)
@@ -501,7 +489,6 @@ def defence(course: Course, student: str, mark: list[int] | None) -> int:
     The second side has the answers. Which functions and mistakes follows from a key of the term.
     """
     from .defence import ASKED, draw, give_mark, write_page
-    from .seeds import public_warning
 
     if mark is not None:
         give_mark(course, student, mark)
@@ -515,5 +502,4 @@ def defence(course: Course, student: str, mark: list[int] | None) -> int:
             f"only {how_many(len(asked), 'accepted answer')} can be asked about; choose more work "
             f"of theirs, and give {ASKED} numbers: labkit defence {student} --mark A,B,C"
         )
-    _tell(filter(None, [public_warning(course)]))
     return 0

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import errno
 import sys
 from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass
@@ -12,8 +11,6 @@ from ..errors import LabkitError
 from .clean import clean_line
 
 T = TypeVar("T")
-_OF_THE_MACHINE = {errno.ENOSPC, errno.EDQUOT, errno.EROFS, errno.EMFILE, errno.ENFILE}
-"""Errors that every student's step would meet, such as a full or read-only disk."""
 
 
 @dataclass(frozen=True)
@@ -48,9 +45,6 @@ def for_student(
 
     Returns:
         What the step returned, or why it failed.
-
-    Raises:
-        OSError: The disk is full or cannot be written, so it would fail for everybody.
     """
     try:
         return step(*arguments)
@@ -59,8 +53,6 @@ def for_student(
     except Exception as error:
         says = str(error) if isinstance(error, LabkitError) else f"{type(error).__name__}: {error}"
         if isinstance(error, OSError):
-            if error.errno in _OF_THE_MACHINE:
-                raise
             says = f"{error.filename or type(error).__name__}: {error.strerror or error}"
         return Failure(student, clean_line(says))
 

@@ -1,8 +1,7 @@
 """Executors, which call functions in worker processes of this machine or of a Dask cluster.
 
-Both kinds are a `concurrent.futures.Executor`.  A call whose worker dies is tried once more by
-another worker, and no other call is affected.  Arguments and results are pickled, which is safe
-because they are the grader's own.
+Both kinds are a `concurrent.futures.Executor`.  A worker that dies affects no call but its own.
+Arguments and results are pickled, which is safe because they are the grader's own.
 """
 
 from __future__ import annotations
@@ -21,9 +20,6 @@ from queue import SimpleQueue
 from typing import Any
 
 from ..errors import LabkitError
-
-TRIES = 2
-"""How often a call is tried if its worker dies; in each worker `worker.TRIES` counts anew."""
 
 
 @contextmanager
@@ -51,7 +47,6 @@ def executor(workers: int, dask: str | None = None) -> Iterator[Executor]:
                 raise LabkitError("Dask is missing; type: pip install 'labkit[cluster]'") from None
             except (OSError, ValueError) as error:
                 raise LabkitError(f"no Dask scheduler at {dask}: {error}") from None
-            client.run_on_scheduler(_allow_one_failure)
             pool = client.get_executor(pure=False)
         try:
             yield pool
@@ -59,11 +54,6 @@ def executor(workers: int, dask: str | None = None) -> Iterator[Executor]:
             pool.shutdown(wait=False)
             raise
         pool.shutdown()
-
-
-def _allow_one_failure(dask_scheduler: Any) -> None:
-    """Try a task twice if its worker dies, and not four times, which is the default."""
-    dask_scheduler.allowed_failures = TRIES - 1
 
 
 class LocalExecutor(Executor):
@@ -81,20 +71,19 @@ class LocalExecutor(Executor):
         self._end, self._open = Pipe(duplex=False)
 
     def submit(self, function: Callable[..., Any], /, *args: Any, **kwargs: Any) -> Future[Any]:
-        """Call a function in one of the processes, and once more if that process dies."""
+        """Call a function in one of the processes."""
         return self._threads.submit(self._call, partial(function, *args, **kwargs))
 
     def _call(self, task: Callable[[], Any]) -> Any:
-        for _ in range(TRIES):
-            pool = self._idle.get()
-            try:
-                pool = pool or self._start()
-                return pool.submit(task).result()
-            except BrokenProcessPool:
-                pool = None
-            finally:
-                self._idle.put(pool)
-        raise LabkitError(f"its worker died {TRIES} times, or took too long; look at it yourself")
+        pool = self._idle.get()
+        try:
+            pool = pool or self._start()
+            return pool.submit(task).result()
+        except BrokenProcessPool:
+            pool = None
+            raise LabkitError("its worker died, or took too long; grade it again") from None
+        finally:
+            self._idle.put(pool)
 
     def _start(self) -> ProcessPoolExecutor:
         if self._open.closed:

@@ -59,8 +59,6 @@ def explain(course: Course, assignment: str, student: str, question: str) -> str
         raise LabkitError(f"there is no mark to explain: {why}")
     if mark.result.rejected:
         raise LabkitError(f"{assignment} of {student} was rejected: {mark.result.rejected}")
-    if question not in mark.result.asked:
-        raise LabkitError(f"{question} is newer than the mark; type: labkit grade {assignment}")
     return "\n".join(_explained(course, bundle, question, mark, mark.result))
 
 
@@ -83,8 +81,7 @@ def _explained(
     yield from (wrapped(f"Note: {note}.") for note in before.notes)
     yield from map(wrapped, summary(was))
     hidden = {test.name for test in was.tests if test.hidden}
-    made = bundle.data["hash"], again.hashes["engine"]
-    if made != (result.hashes["bundle"], result.hashes["engine"]):
+    if now.earned != was.earned:
         says = "Since this mark was made, the release or labkit has changed: now it earns"
         yield "\n" + wrapped(f"{says} {now.earned:g} of {now.points:g}.")
     elif hidden:

@@ -7,11 +7,8 @@ Canvas does not know creates an assignment (github.com/instructure/canvas-lms,
 ``lib/gradebook_importer.rb``; the columns also at
 teaching.resources.osu.edu, "Import CSV File to Carmen Grades").
 
-Moodle has two imports.  The gradebook's import (docs.moodle.org/en/Grade_import) asks which column
-identifies users: "Email address" goes to ``useremail``, "ID number" to ``useridnumber``.  The
-assignment's own grading worksheet needs the columns Identifier, Grade and Last modified (grade);
-the identifier is "Participant" and the number in the download of submissions
-(github.com/moodle/moodle, ``mod/assign/feedback/offline/importgradeslib.php``).
+Moodle's gradebook (docs.moodle.org/en/Grade_import) asks which column identifies users: "Email
+address" goes to ``useremail``, "ID number" to ``useridnumber``.
 
 Names, addresses and numbers come from the roster, if there is one.
 """
@@ -65,21 +62,10 @@ def moodle(column: str, marks: Sequence[Mark]) -> Table:
     return table
 
 
-def moodle_worksheet(column: str, marks: Sequence[Mark]) -> Table:
-    """The grading worksheet for a Moodle assignment: the participants in its download."""
-    table: Table = [["Identifier", "Full name", "Grade", "Maximum Grade", "Last modified (grade)"]]
-    for r in marks:
-        if r.moodle:
-            who = f"Participant {r.moodle}", r.person.name
-            table.append([*who, r.score, r.points or "", ""])
-    return table
-
-
 LAYOUTS: dict[str, Callable[[str, Sequence[Mark]], Table]] = {
     "questions": questions,
     "canvas": canvas,
     "moodle": moodle,
-    "moodle-worksheet": moodle_worksheet,
 }
 
 
@@ -120,10 +106,6 @@ _KEYS: dict[str, tuple[str, Callable[[Mark], str]]] = {
         "an address, ID number or login (labkit roster LIST.csv)",
         lambda r: r.person.email or r.person.id_number or r.person.login,
     ),
-    "moodle-worksheet": (
-        "a participant's number (labkit collect NAME MOODLE.zip)",
-        lambda r: r.moodle,
-    ),
 }
 """What identifies a student on each platform, and the command that provides it."""
 
@@ -133,10 +115,8 @@ def remarks(layout: str, marks: Sequence[Mark], assignment: str = "") -> Iterato
     for mark in marks:
         if mark.missing:
             yield f"no mark: {mark.student}: {mark.missing}"
-        elif mark.remark and not (mark.absent or mark.author):
+        elif mark.remark and not mark.absent:
             yield f"{mark.student}: {mark.remark}"
-    if team := [f"{mark.student} ({mark.author})" for mark in marks if mark.author]:
-        yield f"marks of a report that their team handed in: {len(team)}: {few(team)}"
     if absent := [mark.student for mark in marks if mark.absent]:
         nothing = "with no defence yet" if assignment == DEFENCE else "handed in nothing"
         yield f"{len(absent)} {nothing}: {few(absent)}"

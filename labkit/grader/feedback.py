@@ -13,7 +13,6 @@ from __future__ import annotations
 
 import zipfile
 from collections.abc import Iterable, Iterator, Mapping
-from dataclasses import replace
 from html import escape
 from pathlib import Path
 from typing import Any, NamedTuple
@@ -33,7 +32,7 @@ from ..replay.motion import unpack
 from .collect import participants
 from .each import Failure, for_student
 from .files import write
-from .marks import Mark, mark_of, marks_of
+from .marks import Mark, mark_of
 from .pages import render_page
 from .results import Result
 from .rules import read_rules
@@ -110,8 +109,7 @@ def write_feedback(course: Course, assignment: str, marks: Iterable[Mark]) -> li
         if mark.result is None or (mark.missing and not mark.lines):
             raise LabkitError(mark.missing or "there is no result of theirs; grade again")
         path = course.root / "feedback" / mark.student / assignment / f"{assignment}.html"
-        result = replace(mark.result, student=mark.student)  # a report has one for the team
-        write(path, page(result, mark, name))
+        write(path, page(mark.result, mark, name))
         return path
 
     return [for_student(mark.student, make, mark) for mark in marks]
@@ -195,27 +193,6 @@ def moodle_zip(course: Course, assignment: str, pages: Iterable[Path], to: Path)
             name = page.parents[1].name.replace("_", " ")
             archive.write(page, f"{name}_{number}_assignfeedback_file/{page.name}")
     return len(mine)
-
-
-class StudentPage(HTMLExporter):
-    """Turns an autograded notebook into the page that `labkit feedback` writes."""
-
-    def from_filename(  # type: ignore[override]
-        self, filename: str, resources: dict[str, Any] | None = None, **_: Any
-    ) -> tuple[str, dict[str, Any]]:
-        """The page of a student, and the resources for nbconvert's writer.
-
-        Raises:
-            LabkitError: The student has no mark.
-        """
-        about = dict(resources or {})
-        course, known = Course.here(Path.cwd()), about["nbgrader"]
-        for mark in marks_of(course, known["assignment"], known["student"]):
-            if mark.result is not None and (mark.lines or not mark.missing):
-                about |= {"output_extension": ".html", "outputs": {}}
-                return page(mark.result, mark, read_rules(course).name), about
-            raise LabkitError(f"{mark.student}: {mark.missing}")
-        raise LabkitError(f"there is no mark of {known['student']}")
 
 
 _TAGS = (

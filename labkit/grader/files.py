@@ -5,7 +5,6 @@ from __future__ import annotations
 import fcntl
 import glob
 import os
-import time
 from collections.abc import Iterator
 from contextlib import contextmanager
 from functools import partial
@@ -31,30 +30,21 @@ def write(path: Path, content: str | bytes) -> None:
         new.unlink(missing_ok=True)
 
 
-PATIENCE = 2.0
-"""Seconds to wait for another run, such as one that was stopped and is about to end."""
-
-
 @contextmanager
 def locked(file: Path, busy: str) -> Iterator[None]:
     """Hold a lock for the length of a block; the lock ends with its process.
 
     Args:
         file: The lock file; it is made if needed, with its folder.
-        busy: The message of the error if the lock is not free after `PATIENCE`.
+        busy: The message of the error if the lock is not free.
 
     Raises:
         LabkitError: Another process holds the lock.
     """
     file.parent.mkdir(parents=True, exist_ok=True)
     with open(file, "w") as mine:
-        until = time.monotonic() + PATIENCE
-        while True:
-            try:
-                fcntl.flock(mine, fcntl.LOCK_EX | fcntl.LOCK_NB)
-                break
-            except OSError:
-                if time.monotonic() > until:
-                    raise LabkitError(busy) from None
-            time.sleep(0.1)
+        try:
+            fcntl.flock(mine, fcntl.LOCK_EX | fcntl.LOCK_NB)
+        except OSError:
+            raise LabkitError(busy) from None
         yield

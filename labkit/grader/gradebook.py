@@ -205,19 +205,14 @@ def _write_scores(
     for notebook in submission.notebooks:
         for grade in notebook.grades:
             score, given = scores.get(grade.name, missing), grade.manual_score
-            name, why = question_of(grade.name), ""
+            other = score is not None and grade.auto_score not in {None, score}
             if given is None:
                 grade.needs_manual_grade = score is None
-            elif grade.name in changed:
-                why = "the answer has changed since"
-            elif score is not None and grade.auto_score not in {None, score}:
-                why = f"the grader gives {score:g} now"
-            elif grade.needs_manual_grade:
-                why = "the answer, its full points or the grader's mark has changed since"
-            if why:
+            elif grade.name in changed or other or grade.needs_manual_grade:
                 grade.needs_manual_grade = True
-                says = f"was marked {given:g} by hand, and {why}; look at it again"
-                yield f"{result.student}: {name} {says}"
+                says = "the answer, its full points or the grader's mark has changed since"
+                name = question_of(grade.name)
+                yield f"{result.student}: {name} was marked {given:g} by hand, and {says}"
             grade.auto_score = score
 
 
@@ -301,8 +296,6 @@ def release_source(course: Course, assignment: str) -> Notebook:
 def nbgrader_api(course: Course) -> Any:
     """The interface of nbgrader, configured by ``nbgrader_config.py``.
 
-    An archived term has none, so that of the course in which it lies is used.
-
     Raises:
         LabkitError: That file cannot be run.
     """
@@ -314,9 +307,8 @@ def nbgrader_api(course: Course) -> Any:
     here = str(Path(sys.executable).parent)  # nbgrader calls programs that lie beside Python
     if here not in os.environ["PATH"].split(os.pathsep):
         os.environ["PATH"] = os.pathsep.join([here, os.environ["PATH"]])
-    homes = [x for x in (course.root, *course.root.parents[:2]) if (x / _CONFIG).exists()]
     try:
-        config = PyFileConfigLoader(_CONFIG, path=str([*homes, course.root][0])).load_config()
+        config = PyFileConfigLoader(_CONFIG, path=str(course.root)).load_config()
     except (Exception, SystemExit) as error:  # it is a program that the instructor wrote
         why = clean_line(f"{type(error).__name__}: {error}")
         says = f"{_CONFIG}, which reads {RULES}, cannot be run: {why}; correct it"
@@ -338,8 +330,12 @@ def reason(result: dict[str, Any]) -> str:
 
 
 class Refused(NbGraderPreprocessor):  # type: ignore[misc]
-    """Refuses nbgrader's own autograde, which would run students' code in its own process."""
+    """Refuses nbgrader's own autograde, which would run students' code in its own process.
+
+    Its own feedback is refused as well, which would take the place of labkit's pages.
+    """
 
     def preprocess(self, nb: Any, resources: dict[str, Any]) -> tuple[Any, dict[str, Any]]:
         """Raise a LabkitError."""
-        raise LabkitError(f"type: labkit grade {resources['nbgrader']['assignment']}")
+        name = resources["nbgrader"]["assignment"]
+        raise LabkitError(f"type: labkit grade {name}, and then: labkit feedback {name}")

@@ -17,7 +17,6 @@ from ..course.authoring.layout import DEFENCE, Course
 from ..course.notebook import question_of
 from ..errors import LabkitError
 from .clean import clean_text, how_many
-from .collect import participants
 from .each import Failure, for_student
 from .gradebook import apply_rules, open_gradebook
 from .results import Result, Results
@@ -74,33 +73,25 @@ class Mark:
 
     Attributes:
         person: The student, as described by the roster.
-        when: When the work was handed in, as text.
-        due: When the work was due, as text.
         lines: One for each question; none if no mark counts.
         raw: Points before deductions for lateness; None if no mark counts.
         penalty: Points deducted for lateness.
         points: Full marks; 0 if neither the gradebook nor the release says what they are.
         late: How late the work was, in words; empty if it was in time.
-        moodle: The student's number in Moodle's download, or "".
         result: The result of grading; None if there is no complete one.
         missing: Why no mark counts, and what to do; empty if one does, or nothing was handed in.
         remark: Anything else to know about the mark, such as that the file was rejected.
-        author: Who handed in the team's report, if that was another member of the team.
     """
 
     person: Student
-    when: str = ""
-    due: str = ""
     lines: tuple[MarkLine, ...] = ()
     raw: float | None = None
     penalty: float = 0.0
     points: float = 0.0
     late: str = ""
-    moodle: str = ""
     result: Result | None = None
     missing: str = ""
     remark: str = ""
-    author: str = ""
 
     @property
     def student(self) -> str:
@@ -132,8 +123,7 @@ def marks_of(course: Course, assignment: str, only: str | None = None) -> list[M
     Args:
         course: The course.
         assignment: The assignment.
-        only: The one student to read, without a team's report that another handed in; by default
-            all students.
+        only: The one student to read; by default all students.
 
     Raises:
         LabkitError: The gradebook, the roster or the rules cannot be used.
@@ -141,8 +131,7 @@ def marks_of(course: Course, assignment: str, only: str | None = None) -> list[M
     bundle = _released(course, assignment)
     with open_gradebook(course) as book:
         apply_rules(course, book, assignment)
-        rows = list(_own_marks(course, assignment, book, bundle, only))
-    return list(_of_teams(rows)) if bundle and bundle.is_report and not only else rows
+        return list(_marks(course, assignment, book, bundle, only))
 
 
 def _released(course: Course, assignment: str) -> Bundle | None:
@@ -151,12 +140,11 @@ def _released(course: Course, assignment: str) -> Bundle | None:
     return Bundle.of(course, assignment) if there else None
 
 
-def _own_marks(
+def _marks(
     course: Course, assignment: str, book: Any, bundle: Bundle | None, only: str | None
 ) -> Iterator[Mark]:
-    """The mark of each student for what they handed in themselves."""
     submissions = {s.student.id: s for s in book.assignment_submissions(assignment)}
-    called, handed_in = participants(course).get(assignment, {}), {*students(course, assignment)}
+    handed_in = {*students(course, assignment)}
     results = {one.student: one for one in current_results(course, assignment, only)}
     listed = read_roster(course)
     full = max((float(s.max_score) for s in submissions.values()), default=0.0)
@@ -164,7 +152,7 @@ def _own_marks(
     everybody = results.keys() | submissions.keys() | listed.keys()
     for student in sorted(everybody if only is None else everybody & {only}):
         person = listed.get(student) or Student(student, login=student)
-        row = Mark(person, points=full, moodle=called.get(student, ""))
+        row = Mark(person, points=full)
         if student not in submissions.keys() | results.keys():
             nothing = "no defence yet" if assignment == DEFENCE else "nothing was handed in"
             yield replace(row, remark=nothing)
@@ -183,21 +171,6 @@ def _own_marks(
             yield replace(done, remark="" if student in handed_in else gone)
 
 
-def _of_teams(rows: Sequence[Mark]) -> Iterator[Mark]:
-    """A team member's hand-in counts for each of the others who handed in nothing."""
-    reports: dict[str, Mark] = {}
-    for row in rows:
-        if row.person.team and not row.absent:
-            reports.setdefault(row.person.team, row)
-    for row in rows:
-        report = reports.get(row.person.team) if row.absent else None
-        if report:
-            remark = f"the team's report, handed in by {report.student}"
-            row = replace(report, person=row.person, moodle=row.moodle, author=report.student,
-                          remark=remark)  # fmt: skip
-        yield row
-
-
 def mark_of(result: Result) -> Mark:
     """The mark for a result by itself, without the gradebook."""
     verdicts = [question.verdict for question in result.questions]
@@ -212,12 +185,7 @@ def _marked(row: Mark, submission: Any, one: Result | Failure | None, assignment
     row = replace(row, missing=one.why) if isinstance(one, Failure) else replace(row, result=one)
     if submission is None:
         return replace(row, missing=row.missing or f"graded, but not in the gradebook; {how}")
-    row = replace(
-        row,
-        when=str(submission.timestamp or ""),
-        due=str(submission.duedate or ""),
-        points=float(submission.max_score),
-    )
+    row = replace(row, points=float(submission.max_score))
     lines = tuple(_lines(submission))
     if other := row.result and _other(row.result, lines):
         row = replace(row, missing=f"the gradebook has other points for {other}; {how}")
@@ -301,10 +269,7 @@ def _current_result(
         raise LabkitError(f"handed in again but not graded since; {how}")
     asked = {q["name"]: q["points"] for q in bundle.data["questions"]} if bundle else result.asked
     if submission and not result.rejected and result.asked != asked:
-        raise LabkitError(
-            f"graded before the last release; type: labkit grade {assignment}, and add --lower "
-            "if that keeps the old mark"
-        )
+        raise LabkitError(f"graded before the last release; {how}")
     return result
 
 

@@ -21,9 +21,6 @@ from .clean import clean_data, clean_line
 from .files import write
 
 _LABKIT = Path(labkit.__file__).parent
-_OF_A_WORKER = {"sandbox", "clean.py", "each.py", "evidence.py", "files.py", "grade.py",
-                "plan.py", "results.py", "submission.py", "worker.py"}  # fmt: skip
-"""The parts of the grader that a worker loads."""
 
 
 class Run(TypedDict):
@@ -77,12 +74,12 @@ class Result:
         score: The points earned; 0 if the submission was rejected.
         points: The points for a perfect submission.
         seed: The seed of the hidden cases.
-        hashes: Hashes of the submission, of the release's bundle and of the engine, which is the
-            code that grades.
+        hashes: Hashes of the submission, of the release's bundle and of the engine, which is
+            labkit's code.
         rejected: Why the submission could not be graded, in a sentence; empty if it was.
         questions: An answer for each question.
         notes: What was unusual about the whole submission.
-        cells: For each cell that failed, its number from 0, and its kind, error, output, seconds.
+        cells: For each cell that failed, its number from 0, its kind and its error.
         own: The student's own cells: type, source, and the cell of the release that it is after.
         written: The text of each cell that a person marks, by the name of the cell.
         isolation: What isolated the submission while it ran.
@@ -144,19 +141,6 @@ class Result:
         """The points that each question earned."""
         return {question.verdict.name: question.verdict.earned for question in self.questions}
 
-    def falls_from(self, before: Result) -> bool:
-        """Whether this submission had a higher mark in an earlier result.
-
-        A release can change the points of a question, so the earlier share of the points is applied
-        to the points of today.
-        """
-        if before.hashes["submission"] != self.hashes["submission"]:
-            return False
-        full, had, now = before.asked, before.earned, self.earned
-        was = sum(self.asked.get(k, 0.0) * had[k] / x for k, x in full.items() if x)
-        has = sum(now.get(k, 0.0) for k, x in full.items() if x)
-        return before.score > 0.0 if self.rejected else has < was - 0.01 * len(now)
-
 
 class Results:
     """The result files of one assignment."""
@@ -202,21 +186,8 @@ class Results:
 
 @cache
 def engine() -> str:
-    """A hash of the code that grades, as other code may give other marks."""
+    """A hash of labkit's code, as other code may give other marks."""
     whole = hashlib.sha256()
-    for path in engine_files():
+    for path in sorted(_LABKIT.rglob("*.py")):
         whole.update(str(path.relative_to(_LABKIT)).encode() + path.read_bytes())
     return whole.hexdigest()
-
-
-def engine_files() -> Iterator[Path]:
-    """The files of code that a mark can depend on.
-
-    They are the lab and the course without the replay viewer, and the parts of the grader that a
-    worker loads.  Pages and commands cannot change a mark, so a change to them does not make
-    anybody be graded again.
-    """
-    for path in sorted(_LABKIT.rglob("*.py")):
-        first, *more = path.relative_to(_LABKIT).parts
-        if first not in {"replay", "__main__.py", "grader"} or (more and more[0] in _OF_A_WORKER):
-            yield path

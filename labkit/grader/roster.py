@@ -43,8 +43,6 @@ HEADS = {
 """The headings of each column; what "id" means depends on the others, see `_columns`."""
 _STUDENT = re.compile("student|teilnehme|étudiant|estudiante", re.IGNORECASE)
 """What the role of a student says; who has another role is left out."""
-_NO_TEAM = {"no groups", "keine gruppen"}
-"""What Moodle writes for a student who is in no group."""
 
 
 @dataclass(frozen=True)
@@ -59,7 +57,6 @@ class Student:
         lms_user_id: Canvas's number for the user.
         login: Login name.
         id_number: Student number at the university.
-        team: Name of the team; the students of a team share an arm.
     """
 
     id: str
@@ -69,7 +66,6 @@ class Student:
     lms_user_id: str = ""
     login: str = ""
     id_number: str = ""
-    team: str = ""
 
     @property
     def name(self) -> str:
@@ -120,18 +116,17 @@ def same_name(name: str) -> tuple[str, ...]:
     return tuple(sorted(filter(None, words)))
 
 
-def import_list(course: Course, file: Path, teams: str = "") -> Imported:
+def import_list(course: Course, file: Path) -> Imported:
     """Add the students of a list to the roster; who is there keeps their folder.
 
     Args:
         course: The course.
         file: A CSV file.
-        teams: The heading of the column with the teams; "" leaves teams as they are.
 
     Raises:
         LabkitError: The file is no list, or a row could be several students.
     """
-    rows, others = read_list(file, teams)
+    rows, others = read_list(file)
     before = read_roster(course)
     students, listed = {**before}, set[str]()
     names = Counter(same_name(row.name) for row in rows)
@@ -160,17 +155,17 @@ def import_list(course: Course, file: Path, teams: str = "") -> Imported:
     return Imported(others, *([str(students[id]) for id in sorted(x)] for x in groups))
 
 
-def read_list(file: Path, teams: str = "") -> tuple[list[Student], list[str]]:
+def read_list(file: Path) -> tuple[list[Student], list[str]]:
     """The students of a list, still without ids, and who in it is no student.
 
     Raises:
         LabkitError: The file is not a table, or a column is missing.
     """
     heads, table = _read_table(file)
-    columns = _columns(heads) | ({"team": teams} if teams else {})
-    if not columns.keys() & {"login", "name", "last_name"} or teams not in ["", *heads]:
-        asked = f"column {teams!r}" if teams else "column 'name' or 'login'"
-        raise LabkitError(f"{file} has no {asked}; it has {', '.join(heads)[:300]}")
+    columns = _columns(heads)
+    if not columns.keys() & {"login", "name", "last_name"}:
+        there = ", ".join(heads)[:300]
+        raise LabkitError(f"{file} has no column 'name' or 'login'; it has {there}")
     rows, others = list[Student](), list[str]()
     for row in table:
         cells = {column: row[head] for column, head in columns.items()}
@@ -179,8 +174,6 @@ def read_list(file: Path, teams: str = "") -> tuple[list[Student], list[str]]:
             last, comma, first = name.rpartition(",")  # "Lovelace, Ada", or "Ada Lovelace"
             first, last = (first, last) if comma else (*name.rpartition(" ")[::2],)
             cells |= {"first_name": first.strip(), "last_name": last.strip()}
-        if cells.get("team", "").casefold() in _NO_TEAM:
-            cells["team"] = ""
         one = Student("", **cells)
         test = one.name == "Test Student" and bool(one.lms_user_id)
         if test or (role and not _STUDENT.search(role)):

@@ -8,12 +8,9 @@ from __future__ import annotations
 
 import hmac
 import json
-import secrets
-from collections.abc import Callable
 
 from ..course.authoring.layout import PUBLIC_SEED, Course
 from ..errors import LabkitError
-from .files import write
 
 
 def key_of(course: Course, purpose: str) -> str:
@@ -53,19 +50,6 @@ def public_warning(course: Course) -> str:
         f"hidden cases made with the public seed {PUBLIC_SEED} are public: anyone can compute "
         "them; begin a term with: labkit term new"
     )
-
-
-PSEUDONYMS = "course_private/pseudonyms.key"
-"""The key that links pseudonyms to students; it is archived with the term."""
-
-
-def pseudonyms(course: Course) -> Callable[[str], str]:
-    """A function that gives each student a name, which nobody can compute without the key."""
-    file = course.root / PSEUDONYMS
-    if not file.exists():
-        write(file, secrets.token_hex(16))
-    key = file.read_text()
-    return lambda student: f"S-{rank(key, student).hex()[:8]}"
 
 
 def rank(key: str, *what: str) -> bytes:

@@ -16,13 +16,13 @@ from . import collect, roster
 from .files import write
 from .release import release
 from .rules import FILE as RULES
-from .seeds import PSEUDONYMS, seed_of
+from .seeds import seed_of
 from .submission import is_name
 
 PERSONAL_FILES = (
     *("submitted", "autograded", "feedback", "results", "gradebook.db", "build/course/bundle"),
     *("build/course/defence", "build/course/explain"),
-    *(collect.FOLDER, roster.FILE, collect.PARTICIPANTS, PSEUDONYMS),
+    *(collect.FOLDER, roster.FILE, collect.PARTICIPANTS),
 )
 """The files that belong to one term, with students' names or keys to them, and hidden cases.
 
@@ -34,10 +34,7 @@ _OF_A_STUDENT = (
     *("results/*/{}.json", "build/course/defence/{}.html", "build/course/explain/{}"),
 )
 """One student's files and folders within a term."""
-_OF_THE_CLASS = (
-    *(RULES, "gradebook.db", "course_private/*.*"),
-    "feedback/*/*/*.html",
-)
+_OF_THE_CLASS = (RULES, "gradebook.db", "course_private/*.*")
 """Files that may name a student beside others."""
 
 

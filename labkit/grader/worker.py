@@ -16,17 +16,13 @@ from ..errors import LabkitError
 from .grade import grade, rejection
 from .plan import imports
 from .results import Result
-from .sandbox.launch import Isolation, NoIsolation, Sandbox, SandboxLost
+from .sandbox.launch import Isolation, Sandbox, SandboxLost
 from .sandbox.limits import Limits, limit_memory, slowness
 from .submission import Submission
 
 T = TypeVar("T")
 TRIES = 2
-"""How often a worker tries a submission if its sandbox is lost.
-
-If the worker itself dies, `executor.TRIES` gives the submission to another worker, so a submission
-is tried four times at most.
-"""
+"""How often a worker tries a submission if its sandbox is lost."""
 
 
 @dataclass(frozen=True)
@@ -68,17 +64,12 @@ def grade_submission(task: Task) -> Result:
         signal.setitimer(signal.ITIMER_REAL, limits.worker)
         try:
             return Result.read(_grade(task, limits).text())  # as its file will be read
-        except NoIsolation:
+        except LabkitError:
             raise
-        except MemoryError:
-            why = "judging it takes too much memory; look at it yourself"
-        except LabkitError as error:
-            why = str(error)
-        except Exception as error:
-            why = f"the grader failed: {type(error).__name__}: {error}"
+        except Exception as error:  # too little memory, too
+            raise LabkitError(f"the grader failed: {type(error).__name__}: {error}") from None
         finally:
             signal.setitimer(signal.ITIMER_REAL, 0.0)
-        raise LabkitError(why)
 
 
 def _grade(task: Task, limits: Limits) -> Result:

@@ -253,7 +253,7 @@ mine = lk.my_arm(HANDLE)
 #
 # Run everything once more from the top (*Kernel, Restart Kernel and Run All Cells*) and save the file. Then
 # run only the last cell once more: it prints a receipt for the saved file; keep it. `!labkit submit-check 08_report.ipynb`
-# in a new cell runs a copy of that file and says what is missing. One member hands in the file for the team, without renaming it, in the way your course asks.
+# in a new cell runs a copy of that file and says what is missing. Each member of the team hands in the same file, without renaming it, in the way your course asks.
 
 # %% setup=true
 lk.hand_in("08_report")

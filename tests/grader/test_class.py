@@ -11,18 +11,17 @@ import signal
 import subprocess
 import sys
 import threading
-from dataclasses import replace
 
 import pytest
 from handmade import FULL, QUICK, ROOT, add, hand_in, timeless
 from made import handed_in
-from processes import below, child, wait_until_gone
+from processes import below, wait_until_gone
 
 from labkit.__main__ import main
 from labkit.course.authoring.layout import OUTCOMES, Course
 from labkit.course.serialize import encode
 from labkit.errors import LabkitError
-from labkit.grader import batch, files
+from labkit.grader import batch
 from labkit.grader.batch import GradedSubmission, GradeOptions, changes, grade_class
 from labkit.grader.class_report import report
 from labkit.grader.feedback import page
@@ -32,9 +31,7 @@ from labkit.grader.marks import mark_of, marks_of
 from labkit.grader.release import release
 from labkit.grader.results import Results
 from labkit.grader.sandbox.launch import Isolation
-from labkit.grader.seeds import pseudonyms
 from labkit.grader.submission import students
-from labkit.grader.term import archive
 from tests.synthetic import differences, make_class
 
 pytestmark = [pytest.mark.slow, pytest.mark.xdist_group("class")]  # a whole class is graded
@@ -106,23 +103,6 @@ def test_what_is_done_is_not_done_again(graded, capsys):
     assert done[second].result.rejected and Results(graded, NAME).get(first) is not None
 
 
-def test_killed_worker(course, solved):
-    """A worker that is killed loses nothing: its submission goes to the next one."""
-    for student in ("ada", "bob"):
-        hand_in(course, NAME, student, solved)
-
-    def kill_one():
-        worker = child(os.getpid(), "spawn_main")
-        below(worker, at_least=4)
-        os.kill(worker, signal.SIGKILL)
-
-    thread = threading.Thread(target=kill_one)
-    thread.start()
-    done = grade_all(course)
-    thread.join()
-    assert [one.result.score for one in done] == [FULL] * 2
-
-
 STOPS = [
     ("SIGTERM", 7),
     pytest.param("SIGINT", 7, marks=pytest.mark.soak),
@@ -164,8 +144,8 @@ def test_a_run_that_is_stopped_leaves_nothing_running_and_loses_nothing(
     assert {one.result.score for one in done} == {FULL}
 
 
-def test_marks_fall_only_if_asked(graded):
-    """--diff changes nothing and names whose mark would fall; marks fall only with --lower."""
+def test_what_a_release_moves_is_told_before(graded):
+    """--diff changes nothing and names whose mark would fall."""
     before = {r.student: r.score for r in Results(graded, NAME)}
     path = graded.bundle / f"{NAME}.json"
     data = json.loads(path.read_text())
@@ -174,14 +154,13 @@ def test_marks_fall_only_if_asked(graded):
     hidden["expected"] = [0.0, 0.1, 0.0]  # so that the right answer is wrong
     path.write_text(json.dumps(data | {"hash": "0" * 64}))
     moved = grade_all(graded, change=False, jobs=2)
-    lose = {m.now.student for m in moved if m.now.score < m.before.score}
-    assert lose and {m.result.student for m in moved if m.kept} == lose
+    lose = {m.result.student for m in moved if m.result.score < m.before.score}
     *each, last = changes(moved)
-    assert len(each) == len(lose) and last.startswith(f"{len(lose)} of {PART} marks")
+    assert lose and len(each) == len(lose) and last.startswith(f"{len(lose)} of {PART} marks")
     assert {r.student: r.score for r in Results(graded, NAME)} == before
-    assert not any(one.kept for one in grade_all(graded, lower=True, jobs=2))
+    grade_all(graded, jobs=2)
     assert {r.student: r.score for r in Results(graded, NAME)} == {
-        m.now.student: m.now.score for m in moved
+        m.result.student: m.result.score for m in moved
     }
 
 
@@ -207,7 +186,7 @@ def test_manual_grades_and_comments_survive(graded):
     assert record(graded, NAME, done) == []
 
 
-def test_one_writer_and_one_run(graded, monkeypatch, capsys):
+def test_one_writer_and_one_run(graded, capsys):
     """A second writer of the gradebook waits; a second run of an assignment is refused."""
     second = threading.Thread(target=record, args=(graded, NAME, []))
     with open_gradebook(graded):
@@ -216,7 +195,6 @@ def test_one_writer_and_one_run(graded, monkeypatch, capsys):
         assert second.is_alive()
     second.join(60.0)
     assert not second.is_alive()
-    monkeypatch.setattr(files, "PATIENCE", 0.0)
     handed_in(graded, "ada")
     with locked(graded.results / NAME / ".running", ""):
         for words in (["grade"], ["grade", "--diff"]):
@@ -271,10 +249,10 @@ def test_feedback_lies_where_nbgrader_looks_and_has_no_hidden_case(graded, bundl
 
 
 def test_class_report(graded, capsys):
-    """It counts mistakes by name and tests that a hidden case decided, and names nobody unasked."""
+    """It counts mistakes by name and tests that a hidden case decided, and names nobody."""
     results = list(Results(graded, NAME))
     problems = {p.name: p for p in graded.problems(NAME)}
-    text = report(NAME, list(map(mark_of, results)), problems, pseudonyms(graded))
+    text = report(NAME, list(map(mark_of, results)), problems)
     verdicts = [q.verdict for r in results for q in r.questions]
     mistakes = [v.mistake.name for v in verdicts if v.mistake]
     assert mistakes and all(name in text for name in mistakes)
@@ -282,21 +260,11 @@ def test_class_report(graded, capsys):
     tests = [test for v in verdicts for test in v.tests]
     decided = sum(test.hidden for test in tests)
     assert f"Of {len(tests)} tests, hidden cases decided {decided}." in text
-    assert main(["class-report", NAME, "--names", "--course", str(graded.root)]) == 0
+    assert main(["class-report", NAME, "--course", str(graded.root)]) == 0
     told = capsys.readouterr().out
     assert OUTCOMES["motion"] in told and "`bang_bang`" in told
     believed = told.partition("**`twice_the_time`**")[2].partition("\n## ")[0]
     assert sum(map(int, re.findall(r"^- (\d+) x", believed, re.M))) == PART
-    named = report(NAME, [mark_of(replace(r, rejected="x")) for r in results], problems, str)
-    assert all(r.student in named for r in results)
-
-
-def test_pseudonyms_last_a_term_and_are_nobody_elses(course):
-    """A student keeps a pseudonym until the term ends; another course cannot make it again."""
-    first = pseudonyms(course)("ada")
-    assert pseudonyms(course)("ada") == first != pseudonyms(course)("bob")
-    archive(course)
-    assert pseudonyms(course)("ada") != first
 
 
 def test_the_marks_are_those_of_the_results(graded):

@@ -14,7 +14,7 @@ from labkit.__main__ import main
 from labkit.errors import LabkitError
 from labkit.grader import batch, gradebook
 from labkit.grader import feedback as feedback
-from labkit.grader.each import Failure, Failures, for_student
+from labkit.grader.each import Failure, Failures
 from labkit.grader.gradebook import open_gradebook, record
 from labkit.grader.results import Results
 
@@ -62,7 +62,7 @@ def test_a_lone_surrogate_costs_nobody_a_mark(course, solved, capsys, monkeypatc
     assert verb(course, capsys, "grade")[0] == 0
     assert scores(course) == {"ada": 22.0, "bob": 22.0}
     assert verb(course, capsys, "feedback", "--unmarked")[0] == 0
-    assert verb(course, capsys, "class-report", "--names")[0] == 0
+    assert verb(course, capsys, "class-report")[0] == 0
     written = course.root / "autograded" / "bob" / NAME / f"{NAME}.ipynb"
     page = course.root / "feedback" / "bob" / NAME / f"{NAME}.html"
     assert written.read_text("utf-8").count("\ufffd") == 2
@@ -106,21 +106,6 @@ def test_a_page_that_fails_is_named_and_the_others_are_written(marked, capsys, m
     assert (code, err) == (1, "no page: bob: OverflowError: cannot convert float infinity\n")
     pages = (marked.root / "feedback").glob(f"*/{NAME}/{NAME}.html")
     assert {x.parents[1].name for x in pages} == {"ada", "carl"}
-
-
-def test_what_concerns_everybody_is_raised():
-    """A full disk ends the verb at once, and one file that cannot be read does not."""
-
-    def fails(number):
-        def step():
-            raise OSError(number, "words", "file")
-
-        return step
-
-    with pytest.raises(OSError, match="words"):
-        for_student("ada", fails(errno.ENOSPC))
-    assert str(for_student("ada", fails(errno.EACCES))) == "ada: file: words"
-    assert for_student("ada", lambda: 3) == 3
 
 
 def test_failures_are_told_at_the_end(capsys):
@@ -177,7 +162,7 @@ def test_no_name_of_a_folder_reaches_a_terminal(marked, capsys, monkeypatch):
     with open_gradebook(marked) as book:  # nbgrader's autograde adds whom it then refuses
         book.update_or_create_student(HOSTILE[0].decode())
         book.update_or_create_submission(NAME, HOSTILE[0].decode())
-    for words in (["grade"], ["feedback", "--unmarked"], ["export"], ["class-report", "--names"]):
+    for words in (["grade"], ["feedback", "--unmarked"], ["export"], ["class-report"]):
         code, out, err = verb(marked, capsys, *words)
         assert code == 1, words
         assert err.count("rename the folder and grade again") == len(HOSTILE), words

@@ -43,8 +43,8 @@ class Here:
             try:
                 exec(step.source, self.names)
             except Exception as error:
-                about = {"kind": type(error).__name__, "error": str(error), "output": ""}
-                self.reports.append({"cell": step.number, "seconds": 0.0, **about})
+                about = {"kind": type(error).__name__, "error": str(error)}
+                self.reports.append({"cell": step.number, **about})
             self.names |= mine
             self.answers |= {x: self.names[x] for x in step.answers if x in self.names}
 

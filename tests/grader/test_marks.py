@@ -9,7 +9,7 @@ import shutil
 from dataclasses import replace
 
 import pytest
-from made import NAME, changed, graded, handed_in, notebook_of, result_of
+from made import NAME, graded, handed_in, notebook_of, result_of
 
 from labkit.__main__ import main
 from labkit.course.authoring.layout import DEFENCE
@@ -94,10 +94,10 @@ def test_a_mark_that_is_missing_is_an_empty_cell(marked, capsys, fault):
         (line,) = [x for x in err.splitlines() if "no mark: ada: " in x]
         assert line.endswith(remedy)
         assert not [x for x in out.splitlines() if x.startswith("ada") and "22.0" in x]
-    for words, says in ((["feedback"], "no page: "), (["class-report", "--names"], "left out: ")):
+    for words, says in ((["feedback"], "no page: "), (["class-report"], "left out: ")):
         code, out, err = verb(marked, capsys, *words)
         assert (code, err.count(f"{says}ada: ")) == (1, 1) and err.strip().endswith(remedy)
-    assert "3 handed in, 1 graded, 1 rejected, 1 left out" in out and "the file is empty" in out
+    assert "3 handed in, 1 graded, 1 rejected, 1 left out" in out
     assert sorted(x.name for x in (marked.root / "feedback").iterdir()) == ["bob", "carl"]
 
 
@@ -116,22 +116,6 @@ def test_a_mark_of_an_earlier_release_is_an_empty_cell(marked, capsys, change):
     assert [mark.score for mark in marks_of(marked, NAME)] == ["", "", 0.0]
     code, _, err = verb(marked, capsys, "feedback")
     assert (code, err.count("no page: ")) == (1, 2)
-
-
-def test_a_mark_falls_by_the_share_of_what_both_releases_ask(course):
-    """Other points are no fall; a rejection is one, and another file never."""
-    full, half = result_of(course, "ada"), result_of(course, "ada", share=0.5)
-    assert half.falls_from(full) and not full.falls_from(half)
-    cheaper = changed(full, 0, {"points": 1.0, "earned": 1.0})
-    dearer = changed(full, 0, {"points": 9.0, "earned": 9.0})
-    for one in (cheaper, dearer):
-        assert not one.falls_from(full) and not full.falls_from(one)
-    assert changed(dearer, 0, {"earned": 8.0}).falls_from(full)
-    before = changed(full, 1, {"points": 0.0, "earned": 0.0})  # it hides no fall of another
-    assert changed(full, 0, {"earned": 0.0}).falls_from(before)
-    rejected = result_of(course, "ada", rejected="the file is empty")
-    assert rejected.falls_from(full) and not full.falls_from(rejected)
-    assert not result_of(course, "ada", share=0.5, data=b"another").falls_from(full)
 
 
 def test_a_class_that_is_whole(marked, capsys):
@@ -182,21 +166,17 @@ def test_many_failures_of_one_test_are_named(course):
 
 
 def of(name, **about):
-    known = about.pop("moodle", "")
     who, line = Student(name, **about), MarkLine("q", 2.0, 1.0)
-    return Mark(who, lines=(line,), raw=1.0, points=2.0, moodle=known)
+    return Mark(who, lines=(line,), raw=1.0, points=2.0)
 
 
 def test_platforms_tables():
-    """Canvas' columns in its order; Moodle's users by address, its worksheet by its numbers."""
-    ada = of("ada", lms_user_id="42", first_name="A", last_name="L", email="a@x.org", login="a1",
-             moodle="101")  # fmt: skip
+    """Canvas' columns in its order; Moodle's users by address."""
+    ada = of("ada", lms_user_id="42", first_name="A", last_name="L", email="a@x.org", login="a1")
     carl = of("carl")
     canvas = LAYOUTS["canvas"]("Paths (4711)", [ada, carl])
     assert canvas[0] == ["Student", "ID", "SIS User ID", "SIS Login ID", "Section", "Paths (4711)"]
     assert canvas[1][5] == 2.0 and canvas[2] == ["L, A", "42", "", "a1", "", 1.0]
-    sheet = LAYOUTS["moodle-worksheet"]("Paths", [ada, carl])
-    assert sheet[1:] == [["Participant 101", "A L", 1.0, 2.0, ""]]
     moodle = LAYOUTS["moodle"]("Paths", [ada, carl])
     assert moodle[1:] == [["A", "L", "", "a1", "a@x.org", 1.0]], "nobody's mark stays out"
     for layout in LAYOUTS:

@@ -151,15 +151,6 @@ def test_what_everybody_writes_is_shown(show):
     assert ("a", {"href": "https://x.org"}) in page.found
 
 
-def test_the_class_report_has_no_markup_of_students(course, capsys):
-    """Names of files and reasons of a rejection are text in Markdown, too."""
-    why = "which notebook counts? there is <script>a</script>.ipynb, [b](javascript:c).ipynb"
-    graded(course, result_of(course, "ada"), result_of(course, "bob", rejected=why))
-    assert main(["class-report", NAME, "--names", "--course", str(course.root)]) == 0
-    said = capsys.readouterr().out
-    assert r"\<script\>" in said and r"\[b\](javascript" in said
-
-
 def test_a_report_on_its_authors_page_does_not_run(released):
     """What a person marks is rendered on the student's own page, too, and nothing in it acts."""
     for source in MARKDOWN:

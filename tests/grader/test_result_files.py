@@ -7,14 +7,12 @@ import os
 import stat
 import subprocess
 import sys
-from pathlib import Path
 
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 from made import NAME, changed, graded, result_of, saying
 
-import labkit
 from labkit.course.authoring.bundle import Bundle
 from labkit.errors import LabkitError
 from labkit.formats import FORMAT, stamp
@@ -23,7 +21,7 @@ from labkit.grader.clean import clean_data, clean_line, clean_text, how_many
 from labkit.grader.each import Failure
 from labkit.grader.files import write
 from labkit.grader.marks import current_results
-from labkit.grader.results import Result, Results, engine_files
+from labkit.grader.results import Result, Results
 
 WRONG = [
     {"hashes": []},
@@ -70,21 +68,6 @@ def test_a_bundle_that_is_not_whole_or_of_another_version_is_refused(course):
         path.write_text(text)
         with pytest.raises(LabkitError, match=f"labkit release {NAME}$"):
             Bundle.of(course, NAME)
-
-
-def test_a_key_hashes_what_a_worker_loads_and_no_page_or_command():
-    """All that can change a mark, but for what shows replays; a word in a page changes none."""
-    code = (
-        "import sys, labkit.grader.worker; from labkit.grader.sandbox import forkserver\n"
-        "print(*(m.__file__ for k, m in sys.modules.items() if k.startswith('labkit')))"
-    )
-    asked = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
-    root, hashed = Path(labkit.__file__).parent, set(engine_files())
-    loaded = set(map(Path, asked.stdout.split()))
-    assert {x for x in loaded - hashed if "replay" not in x.parts} <= {root / "grader/__init__.py"}
-    names = {x.relative_to(root).as_posix() for x in hashed}
-    assert "course/marking.py" in names
-    assert not names & {"__main__.py", "grader/feedback.py", "grader/marks.py", "grader/cli.py"}
 
 
 ANY = st.text(alphabet=st.characters(exclude_categories=()), max_size=40)  # lone surrogates too

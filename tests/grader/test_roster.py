@@ -51,22 +51,14 @@ def imported(course, text, encoding="utf-8", **options):
 @pytest.mark.parametrize("encoding", ["utf-8", "utf-8-sig", "utf-16"])
 @pytest.mark.parametrize("mark", [",", ";", "\t"])
 def test_a_list_of_moodles(course, encoding, mark):
-    """Teachers are left out by their role and named; groups are no teams unless that is said."""
+    """Teachers are left out by their role and named."""
     found = imported(course, MOODLE.replace(",", mark), encoding)
     assert found.others == ["Alan Turing (Non-editing teacher)"]
     ada, grace = read_roster(course).values()
     assert ada == Student("Ada-Lovelace", "Ada", "Lovelace", "ada@x.test", id_number="4711")
-    assert (grace.id, grace.team) == ("Grace-Hopper", "")
+    assert grace.id == "Grace-Hopper"
     with open_gradebook(course) as book:
         assert {x.id: x.email for x in book.students} == {ada.id: ada.email, grace.id: grace.email}
-
-
-def test_teams_come_from_the_column_that_is_named(course):
-    """Who is in no group has none; a column that is not there is an error."""
-    imported(course, MOODLE, teams="Groups")
-    assert [x.team for x in read_roster(course).values()] == ["Monday", ""]
-    with pytest.raises(LabkitError, match="has no column 'Team'"):
-        imported(course, MOODLE, teams="Team")
 
 
 def test_canvas_adds_its_numbers_to_who_is_there(course):

@@ -58,11 +58,6 @@ class Bundle:
         return float(sum(q["points"] for q in self.data["questions"]))
 
     @property
-    def is_report(self) -> bool:
-        """Whether a person gives most of the points; one member then hands in for the team."""
-        return self.by_hand > self.points
-
-    @property
     def by_hand(self) -> float:
         """Points that a person gives, besides `points`."""
         return float(sum(cell.get("points", 0.0) for cell in self.data["cells"]))

@@ -53,7 +53,6 @@ class Limits:
         patience: How many times longer code may wait than compute, for a busy machine.
         memory: The memory of each process, in addition to what was loaded before.
         files: The size of the temporary folder, and of one file.
-        output: The number of characters that all cells together may print.
         processes: The number of processes at the same time.
     """
 
@@ -67,7 +66,6 @@ class Limits:
     patience: float = 2.5
     memory: int = 1024
     files: int = 64
-    output: int = 100_000
     processes: int = 32
 
     @property

@@ -28,7 +28,7 @@ from labkit.grader.sandbox.limits import Limits
 LIMITS = Limits(cell=2.0, call=1.0, question=8.0, wall=40.0)
 HONEST = ("adam", "s0", VICTIM)
 """Honest students before, among and after the attackers; the last is a victim of some attacks."""
-MORE = {"feedback": ["--unmarked"], "class-report": ["--names"]}
+MORE = {"feedback": ["--unmarked"]}
 """Options of the commands, because attacks leave texts that nobody marks."""
 COMMANDS = re.compile(
     r"[\x00-\x08\x0b-\x1f\x7f-\x9f\u2028-\u202e\u2066-\u2069]|^\[9/9\] everybody", re.M
@@ -54,7 +54,7 @@ class Class:
         failed: The grader's messages about students whom it could not grade.
         codes: The exit codes of the commands.
         printed: The whole output of the commands.
-        report: The class report, with names.
+        report: The class report.
         left: The processes that outlived the grader.
         loot: The data that was taken out.
         stolen: Whether a file of an honest student was changed.
