@@ -41,7 +41,7 @@ def test_the_list_of_verbs_says_what_each_does(capsys):
     "words",
     [
         *([], ["dance"], ["grade", "01_paths", "--jobs", "0"]),
-        ["defence", "ada", "--mark", f"{'9' * 5000},1,1"],
+        ["defence", "ada", "--mark", "9" * 5000, "1", "1"],
     ],
 )
 def test_wrong_words_end_with_code_two(words, capsys):
@@ -61,7 +61,6 @@ def test_wrong_words_end_with_code_two(words, capsys):
         (["grade"], "01_paths"),
         (["grade", "09_defence"], "--mark"),
         (["export", "--layout", "moodle"], "labkit export ASSIGNMENT"),
-        (["export", "01_paths", "--layout", "questions", "--column", "Paths"], "canvas or moodle"),
         (["export", "99_dance"], "'01_paths'"),
         (["export", "--course", "/"], "nbgrader_config.py"),
     ],

@@ -9,7 +9,6 @@ from __future__ import annotations
 import os
 import sys
 from collections.abc import Callable, Iterable
-from dataclasses import replace
 from datetime import datetime
 from pathlib import Path
 
@@ -20,12 +19,15 @@ from ..errors import LabkitError
 from .clean import clean_text, few, how_many
 from .each import Failures
 
+Paths = tuple[Path, ...]
 PATH = click.Path(path_type=Path)
 VERBS: list[click.Command] = []
 LAYOUTS = ("questions", "canvas", "moodle", "gradescope")
-NAMED = ("canvas", "moodle")
-"""Layouts with a column whose name a platform must know."""
-_DEFENCE = f"{DEFENCE} is marked by: labkit defence STUDENT --mark A,B,C"
+TIME = click.DateTime(["%Y-%m-%d %H:%M"])
+_DEFENCE = f"{DEFENCE} is marked by: labkit defence STUDENT --mark A B C"
+_PUBLIC = (
+    "no term is begun, so anyone can compute the hidden cases; begin one with: labkit term new"
+)
 
 
 def verb(example: str) -> Callable[[Callable[..., int]], click.Command]:
@@ -54,13 +56,6 @@ def _assignment(context: click.Context, _: click.Parameter, name: str | None) ->
     return name
 
 
-def _points(_: click.Context, __: click.Parameter, text: str | None) -> list[int] | None:
-    words = text.split(",") if text else []
-    if not all(word.strip().isdecimal() and len(word) < 9 for word in words):
-        raise click.BadParameter(f"{text} is not a mark; write whole numbers, such as 2,3,1")
-    return [int(word) for word in words] if text else None
-
-
 _course = click.option(
     "--course",
     type=PATH,
@@ -71,9 +66,7 @@ _course = click.option(
 )
 _of_assignment = click.argument("assignment", required=False, callback=_assignment)
 _names = click.argument("names", nargs=-1, metavar="[NAME]...")
-_students = click.option(
-    "--student", multiple=True, metavar="S", help="Only this student; can be given again."
-)
+_students = click.option("--student", multiple=True, metavar="S", help="Only this one, or these.")
 _to = click.option("--to", type=PATH, metavar="FILE", help="Write to FILE, not to the screen.")
 
 
@@ -128,9 +121,21 @@ def term(course: Course, action: str, names: tuple[str, ...], yes: bool) -> int:
 
     The law may say how long marks must be kept.
     """  # noqa: D301
+    from .rules import FILE
     from .term import forget, new_term
 
-    _tell(new_term(course, names, yes) if action == "new" else forget(course, names, yes))
+    if action == "new":
+        old, made = new_term(course, names, yes)
+        _tell([*[f"archived: {old}"] * bool(old), *made])
+        print(f"change the dates in {FILE}, and keep a copy of {course.term.parent}")
+        return 0
+    for student in names or [""]:
+        theirs, others = forget(course, student, yes)
+        for what, paths in (("deleted" if yes else "would go", theirs), ("also has it", others)):
+            _tell(f"{student}: {what}: {path.relative_to(course.root)}" for path in paths)
+    print("delete by hand what also has the name, and downloads, tables, zips, backups")
+    if not yes:
+        print("nothing is deleted yet; add --yes")
     return 0
 
 
@@ -147,7 +152,7 @@ def release(course: Course, names: tuple[str, ...], plain: Path | None) -> int:
     """
     from .plain import write_plain
     from .release import release
-    from .seeds import public_warning, seed_of
+    from .seeds import seed_of
 
     names, made = names or course.names(), list[str]()
     for name in names:
@@ -160,7 +165,7 @@ def release(course: Course, names: tuple[str, ...], plain: Path | None) -> int:
             except LabkitError as error:
                 failures.append(f"{name} is not released: {error}")
         if made:
-            _tell(filter(None, [public_warning(course)]))
+            _tell([_PUBLIC] * (not course.term.exists()))
             print(f"for students: {course.release}\nfor graders, with hidden cases: {course.build}")
         if plain and made:
             write_plain(course, made, plain)
@@ -214,12 +219,7 @@ def student_zip(
 @_of_assignment
 @click.argument("sources", nargs=-1, required=True, type=PATH, metavar="ZIP|DIR...")
 @click.option("--unverified", is_flag=True, help="Exchange: take what unknown users handed in.")
-@click.option(
-    "--at",
-    type=click.DateTime(["%Y-%m-%d %H:%M"]),
-    metavar="TIME",
-    help="'2026-11-05 12:00': when it was handed in, where the download has no times.",
-)
+@click.option("--at", type=TIME, metavar="TIME", help="'2026-11-05 12:00', if it has no times.")
 @_course
 def collect(
     course: Course,
@@ -247,18 +247,11 @@ def collect(
 @verb("01_paths --student ada")
 @_of_assignment
 @_students
-@click.option(
-    "--jobs", type=click.IntRange(1), metavar="N", help="Workers; one a core if not given."
-)
+@click.option("--jobs", type=click.IntRange(1), metavar="N", help="By default one a core.")
 @click.option("--again", is_flag=True, help="Also grade what is already graded.")
 @click.option("--diff", is_flag=True, help="Change no mark; list the marks that would change.")
 @click.option("--dask", metavar="ADDRESS", help="A Dask scheduler whose workers see this folder.")
-@click.option(
-    "--isolation",
-    type=click.Choice(["bubblewrap", "user"]),
-    default="bubblewrap",
-    help="As root, in a container without bubblewrap: a user id and limits alone.",
-)
+@click.option("--isolation", type=click.Choice(["bubblewrap", "user"]), default="bubblewrap")
 @_course
 def grade(
     course: Course,
@@ -276,6 +269,8 @@ def grade(
     the assignment, all submissions are graded again, and a mark may fall: look with --diff first.
     A mark that you gave by hand in formgrader stays.
     If a file is rejected, such as the notebook of another assignment, the exit code is 1.
+
+    With --isolation user, for root in a container without bubblewrap, a user id and limits isolate.
     """
     from ..course.authoring.bundle import Bundle
     from .batch import GradeOptions, changes, grade_class
@@ -347,11 +342,7 @@ def class_report(course: Course, assignment: str, to: Path | None) -> int:
 @click.option("--unmarked", is_flag=True, help="Write pages before all is marked by hand.")
 @_course
 def feedback(
-    course: Course,
-    assignment: str,
-    student: tuple[str, ...],
-    moodle: Path | None,
-    unmarked: bool,
+    course: Course, assignment: str, student: tuple[str, ...], moodle: Path | None, unmarked: bool
 ) -> int:
     """Write a feedback page for each student.
 
@@ -388,16 +379,10 @@ def feedback(
 @click.argument("assignment", required=False)
 @click.option("--layout", type=click.Choice(LAYOUTS), default="questions", help="For whom.")
 @click.option("--column", metavar="NAME", help="canvas, moodle: its name there: 'Paths (4711)'.")
-@click.option("--absent-zero", is_flag=True, help="Write 0 where nothing was handed in.")
 @_to
 @_course
 def export(
-    course: Course,
-    assignment: str | None,
-    layout: str,
-    column: str | None,
-    absent_zero: bool,
-    to: Path | None,
+    course: Course, assignment: str | None, layout: str, column: str | None, to: Path | None
 ) -> int:
     """Write marks.
 
@@ -410,12 +395,8 @@ def export(
     from .rules import FILE as RULES
     from .rules import read_rules
 
-    if column and layout not in NAMED:
-        raise LabkitError(f"--column is for --layout {' or '.join(NAMED)}, not for {layout}")
     if assignment is None and layout != "questions":
-        raise LabkitError(
-            f"--layout is for one assignment: labkit export ASSIGNMENT --layout {layout}"
-        )
+        raise LabkitError(f"name the assignment: labkit export ASSIGNMENT --layout {layout}")
     if assignment not in (None, DEFENCE):
         course.notebook_source(assignment)
     if layout == "gradescope":
@@ -432,8 +413,7 @@ def export(
         marks = marks_of(course, name)
         if not all(mark.absent for mark in marks):
             _tell((f"{name}: {says}" for says in remarks(layout, marks, name)), doubtful=True)
-            zero = [replace(m, raw=0.0) if m.absent and absent_zero else m for m in marks]
-            all_marks[name] = zero
+            all_marks[name] = marks
     if not all_marks:
         raise _nobody(assignment or "any assignment")
     everybody = [mark for marks in all_marks.values() for mark in marks]
@@ -477,11 +457,11 @@ def explain(course: Course, assignment: str, student: str, question: str) -> int
     return 0
 
 
-@verb("ada --mark 2,3,1")
+@verb("ada --mark 2 3 1")
 @click.argument("student")
-@click.option("--mark", metavar="A,B,C", callback=_points, help="Record 0 to 3 points a question.")
+@click.option("--mark", nargs=3, type=click.IntRange(0, 3), help="Record the points.")
 @_course
-def defence(course: Course, student: str, mark: list[int] | None) -> int:
+def defence(course: Course, student: str, mark: tuple[int, ...] | None) -> int:
     """Print the page of a student's oral examination.
 
     It asks about three functions of theirs that were accepted, each with a mistake put into it, or
@@ -498,8 +478,5 @@ def defence(course: Course, student: str, mark: list[int] | None) -> int:
     path = write_page(course, student, asked)
     print(f"{', '.join(one.of.question.name for one in asked) or 'no function'}: {path}")
     if len(asked) < ASKED:
-        print(
-            f"only {how_many(len(asked), 'accepted answer')} can be asked about; choose more work "
-            f"of theirs, and give {ASKED} numbers: labkit defence {student} --mark A,B,C"
-        )
+        print(f"ask about more work of theirs; what is recorded are {ASKED} numbers")
     return 0

@@ -318,7 +318,7 @@ def write_page(course: Course, student: str, asked: Sequence[Asked]) -> Path:
         rubric=RUBRIC,
         full=FULL,
         count=ASKED,
-        command=f"labkit defence {shlex.quote(student)} --mark {','.join(['?'] * ASKED)}",
+        command=f"labkit defence {shlex.quote(student)} --mark {' '.join(['?'] * ASKED)}",
         error_over_time=error_over_time,
         measures=measures,
         farthest=farthest,
@@ -332,10 +332,8 @@ def give_mark(course: Course, student: str, points: Sequence[int]) -> None:
     """Write the points of a defence that was held into the gradebook, a number for each question.
 
     Raises:
-        LabkitError: There are too few or too many numbers, one is too high, or nobody is so called.
+        LabkitError: Nobody is so called.
     """
-    if len(points) != ASKED or not all(0 <= x <= FULL for x in points):
-        raise LabkitError(f"give {ASKED} whole numbers from 0 to {FULL}, such as --mark 2,3,1")
     _check_known(course, student)
     with open_gradebook(course) as book:
         book.update_or_create_assignment(DEFENCE)

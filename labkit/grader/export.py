@@ -72,14 +72,16 @@ LAYOUTS: dict[str, Callable[[str, Sequence[Mark]], Table]] = {
 def of_term(marks: Mapping[str, Sequence[Mark]], weights: Mapping[str, float]) -> Table:
     """All assignments side by side, with the total in percent.
 
-    Without a defence yet, the percentage is that of everything else.
+    What was not handed in counts as 0.  Without a defence yet, the percentage is that of everything
+    else.
 
     Args:
         marks: The marks by assignment; the students may differ between assignments.
         weights: The weight of each assignment in the total.
     """
     known = {mark.student: mark.person for each in marks.values() for mark in each}
-    cells = {(name, m.student): m.score for name, each in marks.items() for m in each}
+    rows = [(name, m) for name, each in marks.items() for m in each]
+    cells = {(k, m.student): 0.0 if m.absent and k != DEFENCE else m.score for k, m in rows}
     full = {name: max((m.points for m in each), default=0.0) for name, each in marks.items()}
     table: Table = [["student", "first", "last", "email", "id", *marks, "percent"]]
     table.append(["(full marks)", "", "", "", "", *full.values(), 100])

@@ -42,16 +42,6 @@ def seed_of(course: Course) -> int:
     return int(key_of(course, "hidden cases"), 16) if course.term.exists() else PUBLIC_SEED
 
 
-def public_warning(course: Course) -> str:
-    """A warning about what is drawn with the public seed; "" in a term."""
-    if course.term.exists():
-        return ""
-    return (
-        f"hidden cases made with the public seed {PUBLIC_SEED} are public: anyone can compute "
-        "them; begin a term with: labkit term new"
-    )
-
-
 def rank(key: str, *what: str) -> bytes:
     """What is drawn by lot for things of a student: HMAC-SHA256 under a key."""
     return hmac.digest(key.encode(), "/".join(what).encode(), "sha256")

@@ -6,7 +6,7 @@ import glob
 import json
 import secrets
 import shutil
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 from datetime import UTC, datetime
 from pathlib import Path
 
@@ -14,7 +14,7 @@ from ..course.authoring.layout import Course
 from ..errors import LabkitError
 from . import collect, roster
 from .files import write
-from .release import release
+from .release import Released, release
 from .rules import FILE as RULES
 from .seeds import seed_of
 from .submission import is_name
@@ -22,13 +22,12 @@ from .submission import is_name
 PERSONAL_FILES = (
     *("submitted", "autograded", "feedback", "results", "gradebook.db", "build/course/bundle"),
     *("build/course/defence", "build/course/explain"),
-    *(collect.FOLDER, roster.FILE, collect.PARTICIPANTS),
+    *(collect.FOLDER, roster.FILE, collect.PARTICIPANTS, "course_private/term.json"),
 )
 """The files that belong to one term, with students' names or keys to them, and hidden cases.
 
 Git ignores all of them.
 """
-_TERM = "course_private/term.json"
 _OF_A_STUDENT = (
     *("submitted/{}", "attempts/{}", "autograded/{}", "feedback/{}"),
     *("results/*/{}.json", "build/course/defence/{}.html", "build/course/explain/{}"),
@@ -38,7 +37,9 @@ _OF_THE_CLASS = (RULES, "gradebook.db", "course_private/*.*")
 """Files that may name a student beside others."""
 
 
-def new_term(course: Course, names: Sequence[str] = (), even_with_work: bool = False) -> list[str]:
+def new_term(
+    course: Course, names: Sequence[str] = (), even_with_work: bool = False
+) -> tuple[Path | None, list[Released]]:
     """Begin a term: archive the last one, and release with a new secret of 128 random bits.
 
     Args:
@@ -47,7 +48,7 @@ def new_term(course: Course, names: Sequence[str] = (), even_with_work: bool = F
         even_with_work: Whether the last term may have students, submissions or marks.
 
     Returns:
-        Sentences on what was done, with the full marks of each assignment.
+        The archive of the last term, if there was one, and what was released.
 
     Raises:
         UnknownName: There is no such assignment.
@@ -61,11 +62,7 @@ def new_term(course: Course, names: Sequence[str] = (), even_with_work: bool = F
     old = archive(course)
     record = {"secret": secrets.token_hex(16), "begun": datetime.now(UTC).date().isoformat()}
     write(course.term, json.dumps(record) + "\n")  # first: a failed release keeps this secret
-    made = [release(course, name, seed_of(course)) for name in names or course.names()]
-    says = [f"archived: {old}"] if old else []
-    says += [f"released: {one.name}, maximum {one.points:g}" for one in made]
-    says += [f"{RULES} is as it was; change its dates"] * (course.root / RULES).exists()
-    return [*says, f"the term's secret is in {_TERM}; keep a copy of course_private/"]
+    return old, [release(course, name, seed_of(course)) for name in names or course.names()]
 
 
 def archive(course: Course) -> Path | None:
@@ -78,7 +75,7 @@ def archive(course: Course) -> Path | None:
         return None
     now = datetime.now(UTC)
     folder = course.root / "course_private" / now.strftime("archive-%Y-%m-%d-%H%M%S-%f")
-    for name in (*there, *[_TERM] * course.term.exists()):
+    for name in there:
         (folder / name).parent.mkdir(parents=True, exist_ok=True)
         shutil.move(course.root / name, folder / name)
     if (course.root / RULES).exists():
@@ -86,42 +83,20 @@ def archive(course: Course) -> Path | None:
     return folder
 
 
-def forget(course: Course, names: Sequence[str], delete: bool = False) -> Iterator[str]:
-    """List, or delete, the files named after students in all terms; list what else names them.
-
-    Args:
-        course: The course.
-        names: The names of the students' folders.
-        delete: Whether to delete, and not only to list.
-
-    Yields:
-        A sentence for each file or folder.
+def forget(course: Course, student: str, delete: bool) -> tuple[list[Path], list[Path]]:
+    """Find, or delete, the files named after a student in all terms; and those that name them.
 
     Raises:
-        LabkitError: No name is given, or no student can have it.
+        LabkitError: No student can have this name.
     """
-    if not names or any(not is_name(x) or "/" in x or x[:1] in {"", "."} for x in names):
-        raise LabkitError("name the folders of the students, as in submitted/")
-    for student in names:
-        theirs, others = of_student(course, student)
-        for path in theirs:
-            if delete:
-                shutil.rmtree(path) if path.is_dir() and not path.is_symlink() else path.unlink()
-            yield f"{'deleted' if delete else 'would go'}: {path.relative_to(course.root)}"
-        for path in others:
-            yield f"names {student}, delete that by hand: {path.relative_to(course.root)}"
-    yield "delete by hand what lies elsewhere: downloads, tables, zips, backups, the platform"
-    if not delete:
-        yield "nothing is deleted yet; add --yes"
-
-
-def of_student(course: Course, student: str) -> tuple[list[Path], list[Path]]:
-    """What all terms hold about a student: files named after them, and files that name them."""
+    if not is_name(student) or "/" in student or student[:1] in {"", "."}:
+        raise LabkitError(f"{student!r} names no folder in submitted/")
     theirs, others = list[Path](), list[Path]()
     for term in (course.root, *sorted((course.root / "course_private").glob("archive-*"))):
         for pattern in _OF_A_STUDENT:
             theirs += sorted(term.glob(pattern.format(glob.escape(student))))
-        shared = [x for pattern in _OF_THE_CLASS for x in sorted(term.glob(pattern))]
-        shared = [x for x in shared if not set(theirs) & {x, *x.parents}]
-        others += [x for x in shared if student.encode() in x.read_bytes()]
+        shared = {x for pattern in _OF_THE_CLASS for x in term.glob(pattern)}
+        others += sorted(x for x in shared if student.encode() in x.read_bytes())
+    for path in theirs if delete else ():
+        shutil.rmtree(path) if path.is_dir() and not path.is_symlink() else path.unlink()
     return theirs, others

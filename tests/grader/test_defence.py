@@ -59,7 +59,7 @@ def test_a_defence_from_the_draw_to_the_term_s_table(course, solved, capsys):
     before = page.read_text()
     students, _, examiners = before.partition("For the examiner only")
     assert "handed in</th>" not in students and examiners.count("handed in</th>") == ASKED
-    assert says(course, "defence", "ada", "--mark", "2,3,1") == 0
+    assert says(course, "defence", "ada", "--mark", "2", "3", "1") == 0
     assert says(course, "defence", "ada") == 0
     assert page.read_text() == before
     (mark,) = marks_of(course, DEFENCE)
@@ -92,10 +92,9 @@ def test_what_cannot_be_asked_or_marked_is_a_sentence(course, solved, capsys):
         (["Ada-Lovelace"], "handed in nothing, so there is nothing to ask about"),
         (["zoe"], "there is no student 'zoe'"),
         (["eve"], "01_curves: handed in but not graded"),
-        (["bob", "--mark", "2,3"], "give 3 whole numbers from 0 to 3"),
-        (["bob", "--mark", "2,3,4"], "give 3 whole numbers from 0 to 3"),
-        (["bob", "--mark", "2,3,x"], "2,3,x is not a mark"),
-        (["zoe", "--mark", "2,3,1"], "there is no student 'zoe'"),
+        (["bob", "--mark", "2", "x", "3"], "not a valid integer"),
+        (["bob", "--mark", "2", "3", "4"], "4 is not in the range"),
+        (["zoe", "--mark", "2", "3", "1"], "there is no student 'zoe'"),
     ]:
         assert says(course, "defence", *words) == 2
         assert sentence in capsys.readouterr().err
@@ -112,8 +111,8 @@ def test_who_has_too_few_accepted_answers_gets_a_page_and_a_mark(course, solved)
     assert students.count("work of yours that the examiner chooses") == ASKED
     assert "Three functions" not in students
     assert examiners.count("no other accepted function") == ASKED
-    assert says(course, "defence", "bob", "--mark", "0,0,1") == 0
-    assert says(course, "defence", "bob", "--mark", "2,0,1") == 0
+    assert says(course, "defence", "bob", "--mark", "0", "0", "1") == 0
+    assert says(course, "defence", "bob", "--mark", "2", "0", "1") == 0
     assert [mark.score for mark in marks_of(course, DEFENCE)] == [3.0]
 
 

@@ -129,7 +129,7 @@ def test_nothing_in_a_students_hand_reaches_another(course, solved, tmp_path, mo
     for student in ("ada", *HOSTILE):
         run(course, "explain", NAME, student, "bang_bang")
         run(course, "defence", student)
-        run(course, "defence", student, "--mark", "1,1,1")
+        run(course, "defence", student, "--mark", 1, 1, 1)
     assert handed_in_files(course) == before
     for name in {*HOSTILE, *NAMES} - {"ada"}:
         run(course, "term", "forget", "--yes", "--", name)

@@ -192,7 +192,7 @@ def test_nothing_becomes_a_formula():
 
 
 def test_who_had_no_defence_yet_has_the_percentage_of_all_else():
-    """The first defence takes nobody else's, and gives nobody a 0; --absent-zero gives one."""
+    """The first defence takes nobody else's, and gives nobody a 0; no hand-in is a 0."""
     ada, bob, eve = (Mark(Student(name), points=10.0, raw=5.0) for name in ("ada", "bob", "eve"))
     held, waits = replace(ada, raw=8.0), replace(bob, raw=None, missing="no mark for question_1")
     absent, nothing = replace(eve, raw=None), Mark(Student("zoe"), points=10.0)
@@ -202,7 +202,7 @@ def test_who_had_no_defence_yet_has_the_percentage_of_all_else():
         table = of_term({NAME: [ada, bob, eve, nothing], DEFENCE: defences}, weights)
         return [row[-1] for row in table[3:]]
 
-    assert percent(held, waits, absent, nothing) == [70.0, 50.0, 50.0, ""]
+    assert percent(held, waits, absent, nothing) == [70.0, 50.0, 50.0, 0.0]
     assert percent(held, waits, replace(absent, raw=0.0))[2] == 16.67
     assert list(remarks("questions", [held, absent], DEFENCE)) == ["1 with no defence yet: eve"]
 

@@ -33,7 +33,7 @@ def test_a_term_has_a_secret_of_its_own(course, capsys):
     assert bundle.data["seed"] == seeds.seed_of(course) != PUBLIC_SEED
     assert len(bytes.fromhex(record["secret"])) == 16
     said = capsys.readouterr().out
-    assert f"{CURVES}, maximum {bundle.points + bundle.by_hand:g}" in said
+    assert f"{bundle.points + bundle.by_hand:g} points" in said
     assert str(seeds.seed_of(course)) not in said, "the terminal may be projected"
     term.new_term(course, (ESSAYS,))
     other = json.loads(course.term.read_text())
@@ -58,7 +58,7 @@ def test_a_public_seed_is_said_to_be_public(course, capsys):
     words = ["release", ESSAYS, "--course", str(course.root)]
     for public in (True, False):
         assert main(words) == 0
-        assert ("public seed 2019" in capsys.readouterr().out) == public
+        assert ("without a term" in capsys.readouterr().out) == public
         term.new_term(course, (ESSAYS,))
 
 
@@ -94,7 +94,7 @@ def test_one_student_is_forgotten_in_every_folder(course, capsys):
     assert first.count("would go: ") == 2 * len(names)
     assert main([*words, "ada", "--yes"]) == 0
     said = capsys.readouterr().out
-    named = {x.rpartition(": ")[2] for x in said.splitlines() if x.startswith("names ada")}
+    named = {x.rpartition(": ")[2] for x in said.splitlines() if "also has it" in x}
     here = {"course.toml", "course_private/roster.csv"}
     assert here < named and len(named) == 2 * len(here)
     assert not [*course.root.rglob("ada*")]
