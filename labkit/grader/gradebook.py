@@ -210,9 +210,9 @@ def _write_scores(
                 grade.needs_manual_grade = score is None
             elif grade.name in changed or other or grade.needs_manual_grade:
                 grade.needs_manual_grade = True
-                says = "the answer, its full points or the grader's mark has changed since"
-                name = question_of(grade.name)
-                yield f"{result.student}: {name} was marked {given:g} by hand, and {says}"
+                says = f"{question_of(grade.name)} was marked {given:g} by hand, and the answer or "
+                says += "its points have changed since; look at it again"
+                yield f"{result.student}: {says}"
             grade.auto_score = score
 
 

@@ -113,6 +113,12 @@ import os
 for place, folders, files in os.walk("/", followlinks=False):
     if "left-here" in files:
         print("found", place)
+    for name in files if place == "/dev" else ():
+        try:
+            os.utime(os.path.join(place, name))
+            print("touched", name)
+        except OSError:
+            pass
     try:
         open(os.path.join(place, "left-here"), "x").close()
         print("written", place)
