@@ -16,7 +16,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from . import se3
-from .errors import OutOfRange, UnknownName
+from .errors import OutOfRange
 from .joints import TipForce
 from .shapes import Array, as_number, lock_vectors, locked
 from .world import World
@@ -150,21 +150,19 @@ class Table(_Slab):
 
 @dataclass(frozen=True, eq=False)
 class Push:
-    """A scripted hand: a constant wrench on the tip during a window of time.
+    """A scripted hand: a constant wrench on each arm's tip during a window of time.
 
     Attributes:
         force: Force on the arm at the tip's origin, world axes, shape (3,) in [N].
         moment: Moment on the arm, world axes, shape (3,) in [N m].
         start: When it begins, in [s] on the world's clock.
         duration: How long it lasts, in [s].
-        side: Whose tip, by the name of its robot; None where the world has only one arm.
     """
 
     force: Any = (0.0, 0.0, 0.0)
     moment: Any = (0.0, 0.0, 0.0)
     start: float = 0.0
     duration: float = np.inf
-    side: str | None = None
 
     def __post_init__(self) -> None:
         lock_vectors(self, 3, "force", "moment")
@@ -175,7 +173,8 @@ class Push:
     def act(self, world: World) -> None:
         """Push during the window."""
         if self.start - 0.5 * world.dt < world.t < self.start + self.duration - 0.5 * world.dt:
-            _arm_of(world, self.side).push(self.force, self.moment)
+            for arm in world.arms:
+                arm.push(self.force, self.moment)
 
 
 @dataclass(frozen=True, eq=False)
@@ -186,13 +185,11 @@ class Spring:
         anchor: Point to which it pulls the tip, world axes, shape (3,) in [m].
         stiffness: k in [N/m].
         damping: d in [N s/m].
-        side: Whose tip, by the name of its robot; None where the world has only one arm.
     """
 
     anchor: Any
     stiffness: float
     damping: float = 0.0
-    side: str | None = None
 
     def __post_init__(self) -> None:
         lock_vectors(self, 3, "anchor")
@@ -205,18 +202,10 @@ class Spring:
 
     def act(self, world: World) -> None:
         """Pull with the force of the end of the step."""
-        arm = _arm_of(world, self.side)
         give = self.damping + self.stiffness * world.dt
-        pull = self.stiffness * (self.anchor - arm.tip()[0])
-        arm.touch(TipForce(np.append(pull, np.zeros(3)), give * np.eye(3)))
-
-
-def _arm_of(world: World, side: str | None) -> Arm:
-    arms = [arm for arm in world.arms if side in (None, arm.robot.name)]
-    if len(arms) != 1:
-        names = [arm.robot.name for arm in world.arms]
-        raise UnknownName("single arm of this world called", str(side), names)
-    return arms[0]
+        for arm in world.arms:
+            pull = self.stiffness * (self.anchor - arm.tip()[0])
+            arm.touch(TipForce(np.append(pull, np.zeros(3)), give * np.eye(3)))
 
 
 def _check_slab(thing: Any) -> None:

@@ -137,8 +137,7 @@ REFUSED = {
     UnknownName: (
         lambda: lk.Arm("middle"), lambda: lk.Model("Left"), lambda: lk.Arm(lk.BAXTER),
         lambda: recordings.load("bsaeline"), lambda: recordings.error_map("x"),
-        lambda: act(lk.Push(A), "left", "right"), lambda: act(lk.Spring(A, 100.0)),
-        lambda: act(lk.Push(A, side="right"), "left"), lambda: lk.World(engine="bulet"),
+        lambda: lk.World(engine="bulet"),
     ),
     JointLimitExceeded: (
         lambda: MODEL.within_limits(np.degrees(READY)), lambda: lk.Arm(q0=np.degrees(READY)),

@@ -12,7 +12,7 @@ from IPython.display import HTML
 
 import labkit as lk
 from labkit.replay import motion_of
-from labkit.tags.detection import detect_tags, find_tag
+from labkit.tags.detection import detect_tags
 from solutions.study.gains import course_controllers
 from solutions.study.sensing import Setup, consistency
 from solutions.study.tag_scenes import circling_board
@@ -38,7 +38,7 @@ def seen() -> HTML:
     """A picture of the simulated camera with the detected tag."""
     scene = circling_board(noise=2.0, seed=SEED)
     image, lens = scene.camera.image(), scene.camera.intrinsics
-    found = find_tag(detect_tags(image, scene.camera, scene.board.tag.size), scene.board.tag.id)
+    (found,) = detect_tags(image, scene.camera, scene.board.tag.size)
     truth = lk.se3.inverse(scene.camera.T_wc) @ scene.board.T_wm
     off = 1e3 * np.linalg.norm(found.T_cm[:3, 3] - truth[:3, 3])
     turned = np.degrees(lk.se3.angle_between(truth[:3, :3], found.T_cm[:3, :3]))

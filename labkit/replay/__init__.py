@@ -4,6 +4,6 @@ from __future__ import annotations
 
 from .motion import Motion, motion_of
 from .player import figure_html, show, viewer_scripts
-from .view import live
+from .session import live
 
 __all__ = ["Motion", "figure_html", "live", "motion_of", "show", "viewer_scripts"]

@@ -2,14 +2,12 @@
 
 from __future__ import annotations
 
-from .board import Board
 from .camera import Camera, looking_at
-from .detection import detect_tags, find_tag
+from .detection import detect_tags
 from .drawing import Intrinsics
 from .stream import TagStream, TagTarget
-from .tag import Tag
+from .tag import Board, Tag
 
 __all__ = [
-    "Board", "Camera", "Intrinsics", "Tag", "TagStream", "TagTarget", "detect_tags", "find_tag",
-    "looking_at",
+    "Board", "Camera", "Intrinsics", "Tag", "TagStream", "TagTarget", "detect_tags", "looking_at",
 ]  # fmt: skip

@@ -18,9 +18,8 @@ from ..errors import Closed, OutOfRange, TypeMismatch
 from ..shapes import Array, as_number, as_random, as_vector, locked, shown
 from ..world import World
 from . import drawing
-from .board import Board
 from .drawing import FAR, NEAR, Intrinsics, RobotVisuals, Surface, Window
-from .tag import Picture, Tag
+from .tag import Board, Picture, Tag
 
 BACKGROUND = 255
 """Grey level of the empty background."""

@@ -33,7 +33,7 @@ errors; where the corners are not those of a square, C is larger, as a lens's er
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cache
 from typing import TYPE_CHECKING, Any, NamedTuple
@@ -42,7 +42,7 @@ import cv2
 import numpy as np
 
 from .. import se3
-from ..errors import LabkitError, OutOfRange, TypeMismatch
+from ..errors import OutOfRange, TypeMismatch
 from ..shapes import Array, as_array, as_number, locked, shown
 from .drawing import Intrinsics
 from .tag import CELLS, PATTERNS, Picture, Tag, as_picture, tag_corners
@@ -71,14 +71,6 @@ _LEAST = 0.002  # [px]; corners without noise are off by this
 _SPARE = 1.8  # by which the variance is larger, as rendered pictures say
 _FAINT = 10.0  # grey levels from black to white
 _EXPLAINED = 0.6  # least share of the variance of the grey levels
-
-
-class TagNotFound(LabkitError, LookupError):
-    """The tag asked for is not in the picture."""
-
-
-class DuplicateTag(LabkitError, ValueError):
-    """Two tags in the picture have the same number."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -137,32 +129,6 @@ def detect_tags(
         if side is not None:
             seen.append(_detection(number, outline, lens, float(side)))  # type: ignore[arg-type]
     return tuple(sorted(seen, key=lambda d: (d.id, d.error)))
-
-
-def find_tag(detections: Sequence[Detection], id: int) -> Detection:
-    """The detection of the tag with a given number.
-
-    Args:
-        detections: Result of `detect_tags`.
-        id: Number of the tag.
-
-    Raises:
-        TagNotFound: The tag is not among them.
-        DuplicateTag: The tag is among them more than once.
-    """
-    hits = [d for d in detections if d.id == id]
-    if not hits:
-        others = ", ".join(str(d.id) for d in detections) or "none at all"
-        raise TagNotFound(
-            f"tag {id} is not in the picture (found: {others}); is it in view, large enough, not "
-            "hidden, and of AprilTag 36h11?"
-        )
-    if len(hits) > 1:
-        raise DuplicateTag(
-            f"tag {id} is in the picture {len(hits)} times, so its pose is anyone's guess; give "
-            "each board a number of its own"
-        )
-    return hits[0]
 
 
 def tag_poses(corners: Any, camera: Camera | Intrinsics, size: float) -> list[Array]:

@@ -14,11 +14,11 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from ..errors import OutOfRange
+from ..errors import LabkitError, OutOfRange
 from ..shapes import Array, as_array, as_number, as_random, locked
 from ..trajectory import AnySample
 from .camera import Camera
-from .detection import detect_tags, find_tag
+from .detection import detect_tags
 from .tag import Tag
 
 
@@ -86,7 +86,7 @@ class TagStream:
         """Take a picture if one is due; the readings that arrived since the last call, by stamp.
 
         Raises:
-            DuplicateTag: The tag is in the picture twice.
+            LabkitError: The tag is in the picture twice.
         """
         now = self.camera.world.t
         self._due = now if self._due is None else self._due
@@ -105,7 +105,11 @@ class TagStream:
         if not seen:
             self.unseen += 1
             return None
-        found, T_wc = find_tag(seen, tag.id), camera.T_wc
+        if len(seen) > 1:
+            raise LabkitError(
+                f"tag {tag.id} is in the picture {len(seen)} times; number them apart"
+            )
+        (found,), T_wc = seen, camera.T_wc
         turn = np.kron(np.eye(2), T_wc[:3, :3])
         C = locked(turn @ found.covariance @ turn.T)
         return Reading(now, now + self._delay, locked(T_wc @ found.T_cm), C)

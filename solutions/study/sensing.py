@@ -16,11 +16,10 @@ import numpy as np
 from labkit import Sample, se3
 from labkit.errors import OutOfRange, ShapeError
 from labkit.shapes import Array, as_number, as_numbers, locked
-from labkit.tags.board import Board
 from labkit.tags.camera import Camera, looking_at
 from labkit.tags.detection import detect_tags
 from labkit.tags.drawing import Intrinsics
-from labkit.tags.tag import Tag
+from labkit.tags.tag import Board, Tag
 from labkit.world import World
 
 _T_WC = looking_at((3.0, 3.0, 1.0), (4.0, 4.0, 1.0))  # far from the robot, looking away from it

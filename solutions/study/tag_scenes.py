@@ -9,9 +9,8 @@ import numpy as np
 
 from labkit import IDEAL, Arm, Log, Plant, Sample, World, metrics, se3
 from labkit.shapes import Array
-from labkit.tags.board import Board
 from labkit.tags.camera import Camera, looking_at
-from labkit.tags.tag import Tag
+from labkit.tags.tag import Board, Tag
 
 RADIUS, SPEED = 0.15, 0.1
 """The radius of the board's circle in [m], and its speed in [m/s]."""

@@ -34,10 +34,9 @@ from labkit import (
 from labkit.control import Controller
 from labkit.paths import Spline
 from labkit.shapes import Array
-from labkit.tags.board import Board
 from labkit.tags.camera import Camera, looking_at
 from labkit.tags.stream import TagStream, TagTarget
-from labkit.tags.tag import Tag
+from labkit.tags.tag import Board, Tag
 
 from ..tags.following import TagFollower
 from .tasks import Task, ready_pose

@@ -9,8 +9,6 @@ import labkit as lk
 from labkit import se3
 from labkit.errors import LabkitError, OutOfRange, TypeMismatch
 from labkit.tags.detection import (
-    DuplicateTag,
-    TagNotFound,
     pose_covariance,
     reprojection_error,
     tag_pose,
@@ -72,7 +70,7 @@ def test_corners_have_no_bias():
 def test_the_pose_in_a_picture_made_without_the_renderer_is_the_true_one(tilt):
     """At 0, 0.4 and 0.9 rad of tilt the tag is found to 1.5 mm and 1 degree."""
     tag, T_cm = lk.Tag(11), tilted(tilt)
-    found = lk.tags.find_tag(lk.detect_tags(painted(tag, T_cm), LENS, 0.1), 11)
+    (found,) = lk.detect_tags(painted(tag, T_cm), LENS, 0.1)
     np.testing.assert_allclose(found.T_cm[:3, 3], T_cm[:3, 3], rtol=0, atol=1.5e-3)
     assert np.degrees(se3.angle_between(found.T_cm[:3, :3], T_cm[:3, :3])) < 1.0
 
@@ -86,7 +84,7 @@ def test_the_better_of_the_two_poses_comes_first_and_their_ratio_is_told():
     lean = [se3.inverse(T)[2, 1] for T in (best, other)]
     assert lean[0] * lean[1] < 0.0
     assert reprojection_error(other, pixels, LENS, 0.1) > 1.0
-    found = lk.tags.find_tag(lk.detect_tags(painted(tag, T_cm), LENS, 0.1), 0)
+    (found,) = lk.detect_tags(painted(tag, T_cm), LENS, 0.1)
     assert found.ratio > 5.0 and found.error < 0.1
 
 
@@ -125,27 +123,20 @@ def test_the_covariance_is_what_noise_on_the_corners_does():
                                rtol=0, atol=0.12)  # fmt: skip
 
 
-def test_no_tag_in_view_is_an_empty_answer_and_a_named_error():
-    """Detection gives an empty tuple, and asking it for tag 4 is a TagNotFound."""
-    blank = np.full((480, 640), 200, np.uint8)
-    found = lk.detect_tags(blank, LENS, 0.1)
-    assert found == ()
-    with pytest.raises(TagNotFound, match=r"tag 4 is not in the picture .found: none at all."):
-        lk.tags.find_tag(found, 4)
+def test_no_tag_in_view_is_an_empty_answer():
+    """Detection gives an empty tuple."""
+    assert lk.detect_tags(np.full((480, 640), 200, np.uint8), LENS, 0.1) == ()
 
 
-def test_two_tags_with_one_number_are_a_named_error():
-    """Both are detected, with one size or one for each number, and asking for 7 is refused."""
+def test_two_tags_with_one_number_are_both_detected():
+    """With one size or one for each number."""
     left, right = (
         painted(lk.Tag(7), se3.pose(tilted(0.3)[:3, :3], np.array([x, 0.0, 0.7])))
         for x in (-0.15, 0.15)
     )
     both = np.hstack([left[:, :320], right[:, 320:]])
     for size in (0.1, {7: 0.1}):
-        found = lk.detect_tags(both, LENS, size)
-        assert [d.id for d in found] == [7, 7]
-        with pytest.raises(DuplicateTag, match="tag 7 is in the picture 2 times"):
-            lk.tags.find_tag(found, 7)
+        assert [d.id for d in lk.detect_tags(both, LENS, size)] == [7, 7]
 
 
 def test_tags_of_other_numbers_are_passed_over_when_sizes_are_named():
