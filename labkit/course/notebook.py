@@ -257,9 +257,8 @@ def source_notebook(
         elif name is not None:
             stub = "question" in cell.metadata
             listed = "PROBLEMS of problems.py" if stub else "PREDICTIONS of predictions.py"
-            raise LabkitError(
-                f"{path.name} asks {name!r}, which is not in {listed}; write it and add it there"
-            )
+            tests = ", nor has tests below its cell" if stub else ""
+            raise LabkitError(f"{path.name} asks {name!r}, which is not in {listed}{tests}")
         else:
             setup = cell.metadata.get("setup", False)
             meta = _nbgrader(f"setup-{len(cells)}", locked=True) if setup else {}

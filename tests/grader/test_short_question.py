@@ -68,6 +68,7 @@ def test_one_file_is_released_checked_and_graded(tmp_path, monkeypatch, sandbox,
         ("### BEGIN HIDDEN", "### "),  # no hidden case
         ("# %% tests", "# %% test"),
         ("sin(angle", "sin(angel"),
+        (" points=2", ""),
     ],
 )
 def test_what_is_not_right_yet_is_refused(tmp_path, old, new):

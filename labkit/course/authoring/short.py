@@ -29,7 +29,7 @@ def short_problems(path: Path) -> tuple[Problem, ...]:
     """The problems whose answers and tests are cells of a notebook's text.
 
     Raises:
-        LabkitError: A cell of theirs raises an error.
+        LabkitError: A cell of theirs raises an error, or tests follow another question.
     """
     if "\n# %% tests" not in path.read_text(encoding="utf-8"):
         return ()
@@ -38,9 +38,13 @@ def short_problems(path: Path) -> tuple[Problem, ...]:
     found, name, code = dict[str, Problem](), "", ""
     for cell in jupytext.read(path, fmt="py:percent").cells:
         meta, source = cell.metadata, re.sub(r"\n *### (BEGIN|END) SOLUTION", "", cell.source)
-        name = meta.get("question", name)
+        name, tests = meta.get("question", name), meta.get("title") == "tests"
+        if tests and name not in found:
+            raise LabkitError(
+                f"{path.name}: tests follow {name!r}, which has no points=... in its cell"
+            )
         try:
-            if meta.get("title") == "tests":
+            if tests:
                 trials = (*found[name].trials, _trial(found[name], code, cell))
                 found[name] = replace(found[name], trials=trials)
             elif cell.cell_type == "code":
