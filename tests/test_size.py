@@ -15,10 +15,10 @@ ROOT = Path(__file__).parents[1]
 STOREYS = {
     "lab": (r"labkit/(?!course/|grader/|__main__).*\.py", 4610),
     "course": (r"labkit/(course/|__main__).*\.py", 3700),
-    "grader": (r"labkit/grader/.*\.py", 4250),
+    "grader": (r"labkit/grader/.*\.py", 4100),
     "solutions": (r"solutions/.*\.py", 11400),
     "book": (r"book/.*\.py", 6100),
-    "tests": (r"tests/.*\.py", 15250),
+    "tests": (r"tests/.*\.py", 15150),
     "JavaScript, styles": (r".*\.(js|mjs|css)", 4700),
     "templates, texts": (r".*\.(j2|html|toml|yml|yaml)|solutions/.*\.(md|txt)", 990),
     "commands": (r"Makefile|Dockerfile|nbgrader_config.py|.*\.sh|\.ci/(?!.*(toml|yml|md)$).*", 620),

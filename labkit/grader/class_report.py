@@ -9,7 +9,6 @@ from collections.abc import Iterator, Mapping, Sequence
 from statistics import mean, median
 from typing import Any
 
-from ..course.authoring.layout import OUTCOMES
 from ..course.authoring.problem import Problem
 from ..course.judges import Form
 from ..course.messages import why_not_counted
@@ -41,7 +40,7 @@ def report(
         assignment: The name of the assignment.
         marks: The marks of the class; students who did not hand in are left out.
         problems: The problems by name, for what to say in the lecture.
-        asked: The questions of the assignment, for their texts, outcomes and predictions.
+        asked: The questions of the assignment, for their texts and predictions.
         truths: The right value of each prediction, by name.
     """
     marks = [mark for mark in marks if not mark.absent]
@@ -75,7 +74,6 @@ def report(
         shares=shares,
         tests=len(tests),
         hidden=sum(test.hidden for test in tests),
-        outcomes=list(_outcome_rows(shares, asked)),
         texts={q.name: _short_question(q) for q in asked},
         predictions=list(_prediction_rows(graded, asked, truths or {})),
         mistakes=list(_mistake_rows(verdicts, problems)),
@@ -88,15 +86,6 @@ def report(
         doubtful=list(common_failures(graded)),
     )
     return text.rstrip() + "\n"
-
-
-def _outcome_rows(shares: Mapping[str, float], asked: Sequence[Question]) -> Iterator[_Row]:
-    """For each learning outcome, the questions that assess it and their mean share of points."""
-    for outcome, says in OUTCOMES.items():
-        names = [q.name for q in asked if outcome in q.outcomes and q.name in shares]
-        if names:
-            text = ", ".join(f"`{name}`" for name in names)
-            yield {"says": says, "questions": text, "share": mean(shares[x] for x in names)}
 
 
 def _prediction_rows(

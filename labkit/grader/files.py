@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import fcntl
-import glob
 import os
 from collections.abc import Iterator
 from contextlib import contextmanager
@@ -14,12 +13,9 @@ from ..errors import LabkitError
 
 
 def write(path: Path, content: str | bytes) -> None:
-    """Write a file whole or not at all, for its owner alone; delete what a killed run left."""
+    """Write a file whole or not at all, for its owner alone."""
     path.parent.mkdir(0o700, parents=True, exist_ok=True)
-    for left in path.parent.glob(f".{glob.escape(path.name)}.*.new"):
-        if not Path("/proc", left.name.split(".")[-2]).exists():
-            left.unlink(missing_ok=True)
-    new = path.with_name(f".{path.name}.{os.getpid()}.new")
+    new = path.with_name(f".{path.name}.new")
     try:
         with open(new, "wb", opener=partial(os.open, mode=0o600)) as file:
             file.write(content.encode() if isinstance(content, str) else content)
