@@ -25,9 +25,7 @@ VERBS: list[click.Command] = []
 LAYOUTS = ("questions", "canvas", "moodle", "gradescope")
 TIME = click.DateTime(["%Y-%m-%d %H:%M"])
 _DEFENCE = f"{DEFENCE} is marked by: labkit defence STUDENT --mark A B C"
-_PUBLIC = (
-    "no term is begun, so anyone can compute the hidden cases; begin one with: labkit term new"
-)
+_PUBLIC = "without a term anyone can compute the hidden cases; begin one: labkit term new"
 
 
 def verb(example: str) -> Callable[[Callable[..., int]], click.Command]:
