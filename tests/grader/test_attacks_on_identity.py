@@ -20,13 +20,7 @@ FIRST = {
     "moodle": f"Ada Lovelace_42{M}{NAME}.ipynb",
     "canvas": f"lovelaceada_42_900_{NAME}.ipynb",
 }
-_GREEDY = re.compile(r"^.*?(?P<who>[^/+]*_42_|Ada Lovelace|lovelaceada|ada\b|42).*$", re.S | re.I)
 _UNSAFE = re.compile("[\x00-\x08\x0b-\x1f\x7f-\x9f\u2028-\u202e]")
-
-
-def believed(name):
-    """Whether a reader that trusts a name, or writes to its path, would be deceived."""
-    return _GREEDY.match(name) or ".." in name or not name.isprintable() or len(name) > 255
 
 
 def _write(folder, course):
@@ -35,22 +29,20 @@ def _write(folder, course):
 
 def _link_folder(folder, course):
     folder.rmdir()
-    folder.symlink_to(course / "submitted" / "ada" / "01_curves")
+    folder.symlink_to(course / f"submitted/ada/{NAME}")
 
 
 def _link_file(folder, course):
-    (folder / "01_curves.ipynb").symlink_to(
-        course / "submitted" / "ada" / "01_curves" / "01_curves.ipynb"
-    )
+    (folder / f"{NAME}.ipynb").symlink_to(course / f"submitted/ada/{NAME}/{NAME}.ipynb")
 
 
 def _hard_link(folder, course):
-    os.link(course / "build/course/solution/01_curves/01_curves.ipynb", folder / "01_curves.ipynb")
+    os.link(course / "solution.ipynb", folder / f"{NAME}.ipynb")
 
 
 def _link_secret(folder, course):
-    (folder / "01_curves.ipynb").write_bytes(b"{}")
-    (folder / "submission_secret.txt").symlink_to(course / "gradebook.db")
+    _write(folder, course)
+    (folder / "submission_secret.txt").symlink_to(course / "solution.ipynb")
 
 
 MOODLES = (
@@ -102,10 +94,7 @@ def test_nobody_is_taken_for_another(tmp_path, capsys, system, name, put):
     """Ada's work stays hers under her number, and nothing of Eve's is hers, not even kept."""
     where = tmp_path / "course"
     course = bare_course(where)
-    assert believed(name), "a reader that believes it is led astray"
-    (course.root / "build/course/solution/01_curves").mkdir(parents=True)
-    (course.root / "build/course/solution/01_curves/01_curves.ipynb").write_text("the solution")
-    (course.root / "gradebook.db").touch()
+    (course.root / "solution.ipynb").write_text("the solution")
     first = zipped(tmp_path / "1.zip", [(FIRST.get(system, FIRST["moodle"]), "ada")])
     assert main(["collect", NAME, str(first), "--course", str(where)]) == 0
     assert counting(course) == {"ada": "ada"}

@@ -9,7 +9,7 @@ from courses import synthetic
 from labkit import LabkitError
 from labkit.__main__ import main
 from labkit.course.authoring.bundle import Bundle
-from labkit.course.authoring.layout import PUBLIC_SEED, Course
+from labkit.course.authoring.layout import PUBLIC_SEED
 from labkit.errors import UnknownName
 from labkit.grader import seeds, term
 from labkit.grader.gradebook import open_gradebook
@@ -60,18 +60,6 @@ def test_a_public_seed_is_said_to_be_public(course, capsys):
         assert main(words) == 0
         assert ("without a term" in capsys.readouterr().out) == public
         term.new_term(course, (ESSAYS,))
-
-
-def test_the_next_term_archives_the_names(course):
-    """What holds names moves into one folder."""
-    (course.submitted / "ada" / CURVES).mkdir(parents=True)
-    page = course.build / "explain/ada/bang_bang.html"
-    page.parent.mkdir(parents=True)
-    page.write_text("{}")
-    folder = term.archive(course)
-    assert not course.submitted.exists() and not page.exists()
-    assert (Course(folder).build / "explain/ada" / page.name).exists()
-    assert (folder / "submitted" / "ada").is_dir()
 
 
 def test_one_student_is_forgotten_in_every_folder(course, capsys):

@@ -74,6 +74,3 @@ def test_moodle_gets_each_page_back_under_its_participants_number(course, blank,
         (name,) = archive.namelist()
         assert name == f"ada_101_assignfeedback_file/{NAME}.html"
         assert archive.read(name).startswith(b"<!doctype html")
-    (course.root / "course_private" / "lms.json").unlink()
-    assert main(["feedback", NAME, "--moodle", str(back), *where]) == 2
-    assert "labkit collect" in capsys.readouterr().err

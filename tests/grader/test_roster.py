@@ -81,25 +81,23 @@ def test_a_plain_table_and_namesakes(course):
 
 
 @pytest.mark.parametrize(
-    ("text", "encoding"),
+    "text",
     [
-        ("", "utf-8"),
-        ("phone\n1\n", "utf-8"),
-        ("name\n", "utf-8"),
-        ("name\nAda\nAda\n", "utf-8"),  # nothing tells them apart
-        ("name,login,email\nAda,ada,a@x\nBob,ada,b@x\n", "utf-8"),  # one login for two
-        ("name,login,email\nZoe,ada,g@x\n", "utf-8"),  # one's login and another's address
-        ('name,login\n"Ada,ada\n', "utf-8"),
-        ("name,login\nLovelace, Ada,ada\n", "utf-8"),  # a comma without quotation marks
-        ("name,login\nZoë,zoe\n", "cp1252"),  # a name would be wrong in every table
+        *("", "phone\n1\n", "name\n"),
+        "name\nAda\nAda\n",  # nothing tells them apart
+        "name,login,email\nAda,ada,a@x\nBob,ada,b@x\n",  # one login for two
+        "name,login,email\nZoe,ada,g@x\n",  # one's login and another's address
+        'name,login\n"Ada,ada\n',
+        "name,login\nLovelace, Ada,ada\n",  # a comma without quotation marks
+        "name,login\nZoë,zoe\n",  # in an encoding in which the name would be wrong
     ],
 )
-def test_a_list_that_cannot_be_followed_changes_nothing(course, text, encoding):
+def test_a_list_that_cannot_be_followed_changes_nothing(course, text):
     """It is an error, and the roster stays as it was."""
     imported(course, "name,login,email\nAda,ada,a@x\nGrace,grace,g@x\n")
     before = (course.root / FILE).read_bytes()
     with pytest.raises(LabkitError):
-        imported(course, text, encoding)
+        imported(course, text, "cp1252")
     assert (course.root / FILE).read_bytes() == before
 
 
@@ -126,12 +124,10 @@ def test_names_of_folders_are_safe(name):
     assert not set(made) & set("/\\\0\n") and made[0] not in ".-"
 
 
-@pytest.mark.parametrize(
-    "other", ["Lovelace Ada", "Lovelace, Ada", "ADA LOVELACE", "Ada_Lovelace", "ada  lovelace"]
-)
-def test_spellings_of_a_name(other):
+def test_spellings_of_a_name():
     """Order, case and commas make no difference; another word does."""
-    assert same_name(other) == same_name("Ada Lovelace") != same_name("Ada B Lovelace")
+    others = ("Lovelace Ada", "Lovelace, Ada", "ADA LOVELACE", "Ada_Lovelace", "ada  lovelace")
+    assert {*map(same_name, others)} == {same_name("Ada Lovelace")} != {same_name("Ada B Lovelace")}
 
 
 def test_only_one_student_is_meant():
