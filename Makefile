@@ -8,7 +8,7 @@ PIP = $(BIN)/pip install --quiet --disable-pip-version-check $(PIN)
 UV = $(BIN)/uv pip
 INSTALL = $(UV) install --quiet --system-certs $(PIN)
 # Things that Debian's packages supply: for students, for graders and for tests.
-FOR_ALL := ensurepip.py:python3.11-venv libgomp.so.1:libgomp1
+FOR_ALL := ensurepip.py:python3-venv libgomp.so.1:libgomp1
 FOR_GRADING := $(FOR_ALL) bwrap:bubblewrap libseccomp.so.2:libseccomp2
 FOR_TESTS := $(FOR_GRADING) node:nodejs libatomic.so.1:libatomic1
 # Ubuntu's Chromium is a snap, which programs cannot control; there Playwright installs its own.
