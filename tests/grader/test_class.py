@@ -31,6 +31,7 @@ from labkit.grader.marks import mark_of, marks_of
 from labkit.grader.release import release
 from labkit.grader.results import Results
 from labkit.grader.sandbox.launch import Isolation
+from labkit.grader.sandbox.limits import Limits
 from labkit.grader.submission import students
 from tests.synthetic import differences, make_class
 
@@ -41,7 +42,7 @@ PART = 8
 
 
 def grade_all(course, change=True, **how):
-    options = GradeOptions(limits=QUICK, **how)
+    options = GradeOptions(**{"limits": QUICK} | how)
     done = grade_class(course, NAME, students(course, NAME), options, change=change)
     return [one for one in done if isinstance(one, GradedSubmission)]
 
@@ -72,7 +73,7 @@ def graded(_graded, tmp_path):
 def test_synthetic_class_gets_what_it_deserves(course):
     """Forty submissions of every kind earn, question by question, what they deserve."""
     make_class(course, NAME, seed=1)
-    done = grade_all(course, jobs=2)
+    done = grade_all(course, jobs=2, limits=Limits())
     assert len(done) == 40
     assert not list(differences(course, NAME))
 

@@ -104,14 +104,15 @@ def test_right_answers_written_otherwise_are_accepted(problem):
 @pytest.mark.soak
 @each
 def test_seeds_agree(problem):
-    """Every draw of the hidden cases gives the same marks to the answer, mistakes and variants.
+    """Every draw of the hidden cases gives the same marks to the answer and variants.
 
-    Twenty draws of calls; two where the arm has to run, which takes long.
+    A mistake's may differ by a part that it gets right by luck.  Twenty draws of calls; two where the arm has to run, which takes long.
     """
     draws = 2 if runs_the_arm(problem) else 20
-    functions = (problem.answer, *(w.function for w in problem.wrong), *problem.variants)
-    marks = {tuple(verdict_of(problem, draw, f).earned for f in functions) for draw in range(draws)}
-    assert len(marks) == 1
+    for function in (problem.answer, *problem.variants, *(w.function for w in problem.wrong)):
+        marks = [verdict_of(problem, draw, function).earned for draw in range(draws)]
+        wrong = function in [w.function for w in problem.wrong]
+        assert max(marks) - min(marks) <= (problem.points / 2 if wrong else 0)
 
 
 def zeros_like(answer):

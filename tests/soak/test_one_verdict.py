@@ -46,8 +46,8 @@ def answers(problem):
     """A question's answers of every kind, as cells."""
     name = problem.name
     yield "stub", ""
-    yield "wrong", inline(problem.wrong[0].function, name)
-    yield "wrong too", inline(problem.wrong[-1].function, name)
+    for kind, k in (("wrong", 0), ("wrong too", -1)):
+        yield kind, inline(problem.wrong[k].function, name) if problem.wrong else ""
     yield "right", inline(problem.answer, name)
     yield "by name", "\n".join(_using(problem)) if problem.withheld else ""
 
