@@ -106,7 +106,8 @@ def test_right_answers_written_otherwise_are_accepted(problem):
 def test_seeds_agree(problem):
     """Every draw of the hidden cases gives the same marks to the answer and variants.
 
-    A mistake's may differ by a part that it gets right by luck.  Twenty draws of calls; two where the arm has to run, which takes long.
+    A mistake's may differ by a part that it gets right by luck.  Twenty draws of calls; two where
+    the arm has to run, which takes long.
     """
     draws = 2 if runs_the_arm(problem) else 20
     for function in (problem.answer, *problem.variants, *(w.function for w in problem.wrong)):
