@@ -127,7 +127,7 @@ def line_numbers() -> None:
         },
         ".2g",
     )
-    numbers({"ff_rms": without.rms_mm, "pd_rms": with_feedback.rms_mm})
+    numbers({"ff_rms": without.rms_mm, "pd_rms": with_feedback.rms_mm}, ".2g")
     number("duration", target.duration, ".0f")
     holds(with_feedback.rms_mm < 0.5 * without.rms_mm, "feedback more than halves the RMS error")
     holds(ideal.rms_mm < 0.1 * with_feedback.rms_mm, "most of the error is the plant's")
@@ -153,11 +153,12 @@ def _shapes() -> None:
           (1e3 * lk.BAXTER.velocity_lag, speed, 1e3 * lk.BAXTER.velocity_lag * speed),
           0.01)  # fmt: skip
     small = {
-        "ff_end": abs(without[-1]), "lag_first": lag[early].max(), "age_middle": -age[half],
+        "lag_first": lag[early].max(), "age_middle": -age[half],
         "lag_second": -lag[~early].min(), "bump_first": late[early].max(), "pd_end": abs(late[-1]),
     }  # fmt: skip
     numbers({name: float(x) for name, x in small.items()}, ".1g")
     numbers({"ff_most": float(without.max()), "bump_second": float(-late.min())}, ".2g")
+    holds(abs(without[-1]) < 0.02, "caught up with it by itself, to a fiftieth of a millimetre")
     holds(
         0.0 < small["bump_first"] < 0.8 * small["lag_second"]
         and -late.min() > 1.3 * small["lag_second"] > 0.0
