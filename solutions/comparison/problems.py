@@ -56,14 +56,12 @@ OPEN_LOOP = Problem(
             "the closed loop",
             "Margins are read from the open loop: leave the feedback out.",
             mistakes.closed_loop,
-            "For the open loop, cut the loop at one place and multiply the parts.",
         ),
         Wrong(
             "the delay as one more lag",
             "A lag takes at most 90 degrees of phase and lowers the gain. A delay takes more and "
             "more phase as the frequency grows, and does not change the gain.",
             mistakes.delay_as_a_lag,
-            "A delay is not a slow lag.",
             cure="Use control.pade for the delay.",
         ),
         Wrong(
@@ -84,7 +82,6 @@ OPEN_LOOP = Problem(
             "the delay inverted",
             "You divide by the delay, as if the controller knew the angle before it is measured.",
             mistakes.LoopWithout(delay=-1.0),
-            "A delay takes phase away.",
         ),
         Wrong(
             "a delay of first order",
@@ -98,26 +95,22 @@ OPEN_LOOP = Problem(
             "the lag in the numerator",
             "In the numerator the lag adds phase instead of taking it away.",
             mistakes.Loop(lambda kp, lag: ([kp * lag, kp], [1.0, 0.0])),
-            "A lag takes phase away.",
         ),
         Wrong(
             "the lag's coefficients exchanged",
             "control.tf expects the highest power first: [lag, 1] is lag·s + 1. Yours is s + lag.",
             mistakes.Loop(lambda kp, lag: ([kp], [1.0, lag, 0.0])),
-            "The coefficient of the highest power comes first.",
         ),
         Wrong(
             "two integrators",
             "From speed to angle there is one integration. Yours has two.",
             mistakes.Loop(lambda kp, lag: ([kp], [lag, 1.0, 0.0, 0.0])),
-            "Count the integrations from command to angle.",
         ),
         Wrong(
             "a minus in the loop",
             "The minus of the feedback is not a part of the open loop. It is needed only where "
             "the loop is closed.",
             mistakes.Loop(lambda kp, lag: ([-kp], [lag, 1.0, 0.0])),
-            "The open loop is everything from the error to the angle.",
         ),
     ),
     variants=(variants.loop_from_s,),
@@ -233,8 +226,7 @@ VERDICT = Problem(
             "the rows taken as unpaired",
             "Taken as unpaired, the rows spread as much as the tasks do, and this hides the difference.",
             mistakes.Judged(mistakes.unpaired),
-            "Runs of the same task are a pair.",
-            "Subtract pair by pair first.",
+            cure="Subtract pair by pair first.",
         ),
         Wrong(
             "the spread of one difference",
@@ -261,13 +253,12 @@ VERDICT = Problem(
             "95 % on one side only",
             "Your quantile leaves 5 % above and another 5 % below.",
             mistakes.Judged(mistakes.Interval(quantile=0.95)),
-            "The two tails have 2.5 % each.",
+            cure="The two tails have 2.5 % each.",
         ),
         Wrong(
             "n degrees of freedom",
             "The mean has used up one degree of freedom.",
             mistakes.Judged(mistakes.Interval(freedom=0)),
-            "n or n - 1: where does the mean come from?",
         ),
         Wrong(
             "b - a instead of a - b",
@@ -279,7 +270,6 @@ VERDICT = Problem(
             "the whole width",
             "This is the whole width of the interval; half of it is asked for.",
             mistakes.Judged(mistakes.Interval(share=2.0)),
-            "Plus or minus half of it.",
         ),
         Wrong(
             "always decided",

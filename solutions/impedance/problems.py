@@ -135,21 +135,18 @@ OPERATIONAL_INERTIA = Problem(
             "the last inverse left out",
             "Your matrix says how easily the tip moves. The question asks how heavy it feels.",
             mistakes.mobility,
-            "Mobility and inertia are inverse to each other.",
             cure="Invert it.",
         ),
         Wrong(
             "1 / M, number by number",
             "1 / M takes the reciprocal of each number: that is not the inverse of a matrix.",
             mistakes.inverse_by_element,
-            "In numpy, / divides element by element.",
             cure="np.linalg.inv, or better a solve.",
         ),
         Wrong(
             "only the diagonal of M",
             "You use the diagonal of M alone, but the joints accelerate each other.",
             mistakes.diagonal_only,
-            "The mass matrix couples the joints.",
         ),
         Wrong(
             "the inverse of J M Jᵀ",
@@ -162,7 +159,6 @@ OPERATIONAL_INERTIA = Problem(
             "1 over each number",
             "1 / A takes the reciprocal of each number: that is not the inverse of a matrix.",
             mistakes.numbers_turned_over,
-            "1 / A is not A⁻¹.",
             cure="np.linalg.inv.",
         ),
         Wrong(
@@ -262,14 +258,12 @@ WORKSPACE_IMPEDANCE = Problem(
             "The springs are multiplied by the inertia, so that a stiffness in N/m has no meaning: this is "
             "computed torque at the tip.",
             mistakes.springs_inside,
-            "In an impedance the stiffness is in N/m, outside the inertia.",
             cure="Keep springs and dampers outside Λ.",
         ),
         Wrong(
             "a pseudo-inverse for Jᵀ",
             "The pseudo-inverse is for speeds, and you map a force with it.",
             mistakes.inverse_for_transpose,
-            "Jᵀ maps forces, J⁺ maps speeds.",
             cure="A force F at the tip takes the joint torques Jᵀ F.",
         ),
     ),
@@ -323,8 +317,7 @@ TIP_SPRING = Problem(
             "The spring still drives the tip away from its target. (The team's program had the "
             "other sign than its report.)",
             mistakes.as_printed,
-            "One convention: e = target - actual, and a plus before every gain.",
-            "With e as target minus actual, the stiffness has a plus.",
+            cure="With e as target minus actual, the stiffness has a plus.",
         ),
     ),
     variants=(variants.spring_by_parts,),
@@ -374,8 +367,7 @@ JOINT_IMPEDANCE = Problem(
             "a spring in every joint",
             "Your elbow's spring acts in all joints, so the tip feels it, too.",
             mistakes.JointSprings(lambda J, K, k, n: J.T @ K @ J + k * np.eye(7)),
-            "A spring in the null space must not be felt.",
-            "Let it act along n alone: the outer product of n with itself.",
+            cure="Let it act along n alone: the outer product of n with itself.",
         ),
         Wrong(
             "a pseudo-inverse for the transpose",
@@ -383,8 +375,7 @@ JOINT_IMPEDANCE = Problem(
             mistakes.JointSprings(
                 lambda J, K, k, n: np.linalg.pinv(J) @ K @ np.linalg.pinv(J).T + k * n
             ),
-            "Jᵀ maps forces, J⁺ maps speeds.",
-            "From turn to torque: J, then K, then the transposed J.",
+            cure="From turn to torque: J, then K, then the transposed J.",
         ),
         Wrong(
             "compliance",
@@ -439,7 +430,6 @@ WEIGH = Problem(
             "newtons",
             "This is the load's weight, in N.",
             lambda arm: 9.81 * answers.weigh(arm),
-            "Say the unit.",
         ),
         Wrong(
             "one pose at rest",
@@ -526,14 +516,12 @@ SHAPED_IMPEDANCE = Problem(
             "the hand's share added",
             "The hand provides a part of the force, but your motors provide more for it, not less.",
             mistakes.ShapedLaw(outside=-1.0),
-            "Which part of the force comes from whom?",
             cure="Subtract the wrench.",
         ),
         Wrong(
             "the wrench subtracted, and no more",
             "In your law the wrench does not accelerate the tip.",
             mistakes.ShapedLaw(inside=0.0),
-            "Follow one push through the law, sign by sign.",
             cure="Add M_d⁻¹ F to the acceleration.",
         ),
         Wrong(
@@ -548,7 +536,6 @@ SHAPED_IMPEDANCE = Problem(
             "J̇ q̇ left out",
             "The tip accelerates even if the joints turn at constant speed; your law does not know it.",
             mistakes.ShapedLaw(drift=0.0),
-            "ẍ = J q̈ + J̇ q̇ has two terms.",
             cure="Subtract J̇ q̇ before you multiply by Λ.",
         ),
     ),

@@ -76,7 +76,6 @@ TAG_POSE = Problem(
             "the worse one",
             "This is the candidate whose corners are farther from the pixels.",
             mistakes.Chosen(best=np.argmax),
-            "A flat tag has two candidate poses; the picture decides.",
         ),
         Wrong(
             "always the first",
@@ -88,8 +87,7 @@ TAG_POSE = Problem(
             "the camera in the tag's frame",
             "You project with the inverse of the candidate, which takes points the other way.",
             mistakes.Chosen(pose=se3.inverse),
-            "T_cm takes points from the tag's frame to the camera's.",
-            "T_cm takes points from m to c as it is.",
+            cure="T_cm takes points from m to c as it is.",
         ),
         Wrong(
             "twice the size of the square",
@@ -109,7 +107,6 @@ TAG_POSE = Problem(
             "u and v exchanged",
             "A pixel is (u, v): first along the row, then down. You have exchanged the two.",
             mistakes.Chosen(project=lambda p, K: ((p @ K.T)[:, :2] / p[:, 2:])[:, ::-1]),
-            "u along x, v along y.",
         ),
         Wrong(
             "the mean over eight coordinates",
@@ -122,8 +119,7 @@ TAG_POSE = Problem(
             "the sum over the corners",
             "Your error grows with the number of corners.",
             mistakes.Chosen(error=np.linalg.norm),
-            "A root mean square has a mean.",
-            "Take the mean over the corners before the root.",
+            cure="Take the mean over the corners before the root.",
         ),
         Wrong(
             "the mean distance",
@@ -188,8 +184,7 @@ STEP = Problem(
             "the camera left out",
             "The camera is not at the tip, but your goal takes it to be.",
             mistakes.Stepping(goal=lambda hand, t, s, T_tc, T_cm, T_mg: hand(s) @ T_cm @ T_mg),
-            "Each frame of the chain has a reason.",
-            "T_tc belongs between the hand and the sighting.",
+            cure="T_tc belongs between the hand and the sighting.",
         ),
         Wrong(
             "the camera inverted",
@@ -227,8 +222,7 @@ STEP = Problem(
             "from the beginning of the old line",
             "The new line begins where the old one began: it jumps back.",
             mistakes.Stepping(start=lambda memory, t, hand, goal: memory.line(0.0)[0]),
-            "A new reference begins where the old one is.",
-            "Begin where the old line is now.",
+            cure="Begin where the old line is now.",
         ),
         Wrong(
             "looks at every call",
@@ -263,14 +257,12 @@ STEP = Problem(
             "no tag is not a look",
             "A look without a tag is not remembered, so it looks again at once.",
             mistakes.Stepping(unseen=lambda memory, t: memory),
-            "A look is an event, whatever it shows.",
-            "Set `looked` whenever it has looked.",
+            cure="Set `looked` whenever it has looked.",
         ),
         Wrong(
             "an old start",
             "The new line begins now, but `began` still has the old time.",
             mistakes.Stepping(seen=lambda memory: memory._replace(began=memory.began - 1.2)),
-            "A new line has its own zero of time.",
         ),
         Wrong(
             "seconds per metre",
@@ -352,8 +344,7 @@ SMOOTH = Problem(
             "You used the hand's pose of now with pictures of then: you take the hand's own motion "
             "for the tag's, so the tag seems to flee, the hand follows, and the tag flees faster.",
             mistakes.Smoothing(hand_at=lambda t, s: t),
-            "The arm runs away: the target flees with the hand.",
-            "Ask for the hand at each stamp.",
+            cure="Ask for the hand at each stamp.",
         ),
         Wrong(
             "the age ignored",
@@ -373,7 +364,6 @@ SMOOTH = Problem(
             "aims at now",
             "You aim at where the tag is now, but the bend arrives `ahead` seconds later.",
             mistakes.Smoothing(ahead=0.0),
-            "Aim where the target will be.",
         ),
         Wrong(
             "velocity per sighting",
@@ -406,13 +396,11 @@ SMOOTH = Problem(
             "from the beginning of the old line",
             "The bend begins where the old one began: it never gets on.",
             mistakes.Smoothing(place=lambda memory, p: memory.line(0.0)[0]),
-            "A new reference begins where the old one is.",
         ),
         Wrong(
             "stops at the goal",
             "The bend ends at rest, but the tag moves on.",
             mistakes.Smoothing(end=0.0),
-            "A moving goal does not wait.",
         ),
         Wrong(
             "Algorithm 1, more often",
@@ -512,7 +500,6 @@ QUALITY = Problem(
             "n instead of n - 1 in the denominator",
             "You divided by n, but the mean comes from the same numbers.",
             mistakes.n_in_the_denominator,
-            "n or n - 1: who gave you the mean?",
             cure="Divide by n - 1.",
         ),
         Wrong(
@@ -527,21 +514,18 @@ QUALITY = Problem(
             "The errors are correlated: a tag that seems tilted also seems moved. You give the "
             "variances alone.",
             mistakes.diagonal_only,
-            "The numbers off the diagonal say which errors occur together.",
             cure="Give the whole covariance, as np.cov does.",
         ),
         Wrong(
             "the turn in the tag's axes",
             "Your rotation is in the tag's axes, your position in the camera's.",
             mistakes.turn_in_tag_axes,
-            "In which axes is the rotation vector?",
             cure="Take R_truth R_estimateᵀ.",
         ),
         Wrong(
             "the turn reversed",
             "This is the rotation from the truth to the estimate.",
             mistakes.turn_backwards,
-            "Choose one sign of the error, and say it aloud.",
             cure="Put the truth on the left of the product.",
         ),
         Wrong(
@@ -556,7 +540,6 @@ QUALITY = Problem(
             "about zero, with n - 1",
             "Your spread is about zero, so it holds the bias as well.",
             mistakes.Quality(spread=lambda e: e.T @ e / (len(e) - 1)),
-            "Bias and spread are two different numbers.",
             cure="Subtract the mean from each error first, as np.cov does.",
         ),
     ),
@@ -632,7 +615,6 @@ BLEND = Problem(
             "the goal's acceleration left out",
             "Your blend ends without acceleration, but the goal's is not always zero.",
             mistakes.Blended(end=(1.0, 0.0)),
-            "At both ends check position, velocity and acceleration.",
         ),
         Wrong(
             "a polynomial without end",
@@ -645,7 +627,6 @@ BLEND = Problem(
             "an acceleration that never ends",
             "After the end your acceleration goes on, but the goal's velocity should.",
             mistakes.speeds_up_for_ever,
-            "Read what the question says about the time after the end.",
             cure="Set it to zero there.",
         ),
         Wrong(
@@ -664,7 +645,6 @@ BLEND = Problem(
             mistakes.Ends(
                 late=lambda b, t, T: Sample(b.position, 0.0 * b.velocity, 0.0 * b.velocity)
             ),
-            "A moving goal does not wait.",
         ),
     ),
     variants=(variants.blend_by_bernstein,),
@@ -729,7 +709,6 @@ PREDICT = Problem(
             "pushes on the velocity alone",
             "A push at the beginning of the step has moved the position by its end; yours has not.",
             mistakes.Predicted(((0, 0.0), (0, 0.0), (1, 1.0))),
-            "Derive Q; do not guess its diagonal.",
             cure="Integrate F(s), too.",
         ),
         Wrong(
@@ -749,20 +728,17 @@ PREDICT = Problem(
             "The covariance is not carried forward by F: an uncertain velocity makes the position "
             "uncertain too.",
             mistakes.covariance_not_moved,
-            "F P Fᵀ + Q.",
         ),
         Wrong(
             "a half where a third belongs",
             "One of your powers of the age has the wrong factor: the position's.",
             mistakes.Predicted(((3.0, 0.5), (2.0, 0.5), (1.0, 1.0))),
-            "Integrate the push's effect.",
             cure="∫ (age - s)² ds = age³/3.",
         ),
         Wrong(
             "no half beside the diagonal",
             "One of your powers of the age has the wrong factor: beside the diagonal.",
             mistakes.Predicted(((3.0, 1.0 / 3.0), (2.0, 1.0), (1.0, 1.0))),
-            "Integrate the push's effect.",
             cure="∫ (age - s) ds = age²/2.",
         ),
     ),

@@ -131,7 +131,6 @@ AUGMENTED_PD = Problem(
             "the switch reversed",
             "arm_compensates is true where the arm carries its own weight: you add it there.",
             mistakes.AugmentedLaw(switch=True),
-            "Say who carries the weight: the arm or the law.",
         ),
         Wrong(
             "the weight carried twice",
@@ -149,7 +148,7 @@ AUGMENTED_PD = Problem(
         ),
         Wrong(
             "kp and kd swapped",
-            "kp multiplies the error of the speeds, and kd that of the angles.",
+            "In your law kp multiplies the error of the speeds, and kd that of the angles.",
             mistakes.AugmentedLaw(swapped=True),
             "The units tell which is which: kp is in N m/rad, kd in N m s/rad.",
         ),
@@ -215,7 +214,7 @@ COMPUTED_TORQUE = Problem(
         ),
         Wrong(
             "kp and kd swapped",
-            "kp multiplies the error of the angles, and kd that of the speeds.",
+            "In your law kp multiplies the error of the speeds, and kd that of the angles.",
             mistakes.ComputedLaw(swapped=True),
             "The units tell which is which: kp is in 1/s², kd in 1/s.",
         ),
@@ -225,13 +224,11 @@ COMPUTED_TORQUE = Problem(
             mistakes.TorqueBy(
                 lambda x: x.model.mass_matrix(x.target.position) @ x.wish + x.drift + x.g
             ),
-            "Evaluate the model at the arm's own angles.",
         ),
         Wrong(
             "only the diagonal of M",
             "You use the diagonal of M alone, but the joints accelerate each other.",
             mistakes.TorqueBy(lambda x: np.diag(x.M) * x.wish + x.drift + x.g),
-            "A mass matrix couples the joints.",
         ),
     ),
     terms=mistakes.computed_terms,
@@ -294,7 +291,6 @@ FIND_BUG = Problem(
             "always the first",
             "You give the same letter for every run.",
             lambda log: "a",
-            "A function of a log should look at the log.",
         ),
     ),
     variants=(variants.bug_by_median,),
@@ -362,7 +358,6 @@ SAMPLED_JOINT = Problem(
             "the torque with the wrong sign",
             "Your torque pushes the joint away from zero.",
             mistakes.pushes_away,
-            "Feedback acts against the error.",
             cure="It is -kp q - kd q̇.",
         ),
         Wrong(
@@ -376,26 +371,22 @@ SAMPLED_JOINT = Problem(
             "Rows and columns are swapped. The first row gives the new angle, the second the new "
             "speed.",
             mistakes.on_its_side,
-            "Without gains the new angle is q + dt q̇: that is the first row.",
         ),
         Wrong(
             "multiplied by the inertia",
             "You multiplied by the inertia, so a heavy joint is the quicker one.",
             mistakes.times_inertia,
-            "The heavier the joint, the smaller its acceleration.",
         ),
         Wrong(
             "kp and kd swapped",
-            "kp multiplies the angle and kd the speed.",
+            "In your loop kp multiplies the speed, and kd the angle.",
             mistakes.gains_of_the_other,
-            "The first column belongs to the angle, the second to the speed.",
         ),
         Wrong(
             "a damper that does not move the angle",
             "The damper's torque accelerates the joint from the first moment on, but your angle does "
             "not feel it.",
             mistakes.half_forgotten,
-            "The spring and the damper each move both angle and speed.",
             cure="-kd dt²/(2 inertia) belongs to the angle, too.",
         ),
         Wrong(
@@ -410,7 +401,6 @@ SAMPLED_JOINT = Problem(
             "the speed does not last",
             "Without any torque your joint stops at once.",
             mistakes.Stepped(lambda dt: [[1.0, dt], [0.0, 0.0]]),
-            "A joint without torque keeps its speed.",
         ),
     ),
     variants=(variants.held_by_exponential, variants.held_in_lists),
@@ -511,7 +501,6 @@ CHOOSE_GAINS = Problem(
             "hertz for radians",
             "Your frequency is in Hz where rad/s belongs: springs forty times too weak.",
             mistakes.Swings(w=1.9),
-            "A factor 2π, squared.",
         ),
         Wrong(
             "gains of one arm",
