@@ -61,8 +61,7 @@ def diagnosed(
         return verdict
     if any(test.difference and test.difference.kind is Kind.TYPE for test in verdict.tests):
         return verdict  # the numbers of another command type reveal nothing
-    answers = tried.answers
-    found = by_terms(question, answers) or observed(question, answers, function)
+    found = by_terms(question, tried.answers) or observed(question, tried.answers, function)
     return replace(verdict, mistake=found)
 
 
@@ -99,8 +98,7 @@ def by_terms(question: Question, answers: Mapping[Any, Any]) -> Misconception | 
         fits = [
             _factors_of(question, columns, given, [*law, *x]) for x in combinations(others, count)
         ]
-        told = [fit for fit in fits if 0 < len(fit) <= MOST_WRONG]
-        if told:
+        if told := [fit for fit in fits if 0 < len(fit) <= MOST_WRONG]:
             wrong = min(told, key=_plainness)
             return Misconception("", _says(wrong), _cure(wrong))
     return None

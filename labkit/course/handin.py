@@ -107,7 +107,7 @@ def progress(folder: Path | None = None) -> None:
         earned, of = sum(v.earned for v in found if v), sum(x["points"] for x in data["questions"])
         hours = re.search(r"\*\*Time\*\* \|\D*([\d.]+) hour", cells[0]["source"])
         left = 60.0 * float(hours[1]) * (1.0 - earned / of) if hours else 0.0
-        print(f"{name:20} {earned:5.1f} of {of:g} points, about {left:3.0f} minutes left")
+        print(f"{name:20} {earned:5.1f} of {of:g} points as tested here, {left:3.0f} minutes left")
 
 
 @dataclass(frozen=True)

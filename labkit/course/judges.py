@@ -191,7 +191,8 @@ FEW = 9
 class Close:
     """Every number must be within ``atol + rtol |expected|``, with the same shape and command type.
 
-    A list is accepted as an array, and any sequence of three values as a `Sample`.
+    A list is accepted as an array, any sequence of three values as a `Sample`, and a text in any
+    order of its letters.
 
     Attributes:
         rtol: Relative tolerance.
@@ -232,9 +233,8 @@ class Close:
         if isinstance(expected, COMMANDS):
             kind = type(expected)
             if type(answer) is not kind:
-                return Difference(
-                    Kind.TYPE, part, expected=kind.__name__, found=_instead(answer, expected)
-                )
+                found = _instead(answer, expected)
+                return Difference(Kind.TYPE, part, expected=kind.__name__, found=found)
             return self._differ(answer.value, expected.value, part)
         if isinstance(expected, dict):
             return self._differ_dict(answer, expected)
@@ -248,7 +248,8 @@ class Close:
             names = self.parts or tuple(f"part {k + 1}" for k in range(len(expected)))
             return self._differ_each(answer, expected, names)
         if isinstance(expected, str | bool) or expected is None:
-            if type(answer) is type(expected) and answer == expected:
+            said, asked = (sorted(letters(x)) or [x] for x in (answer, expected))
+            if type(answer) is type(expected) and said == asked:
                 return None
             return Difference(Kind.VALUE, part, expected=repr(expected), found=value(answer))
         return self._differ_numbers(answer, expected, part)

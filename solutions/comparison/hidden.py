@@ -11,6 +11,7 @@ import numpy as np
 from labkit.course import Call, Choice
 from labkit.course.authoring.problem import call
 from labkit.recordings import LINE, Trials, read_trials
+from labkit.shapes import Array
 
 Random = np.random.Generator
 
@@ -100,16 +101,14 @@ def tables(random: Random) -> Iterator[Call]:
             yield call(*table(random, n, errors))
 
 
-def table(
-    random: Random, tasks: int, t: float, seeds: int = 5
-) -> tuple[list[list[float]], list[list[float]]]:
+def table(random: Random, tasks: int, t: float, seeds: int = 5) -> tuple[Array, Array]:
     """The errors of two controllers whose difference over tasks is t standard errors."""
     level, noise = random.uniform(2.0, 15.0, (tasks, 1)), random.normal(0.0, 0.3, (2, tasks, seeds))
     d = random.normal(0.0, 1.0, (tasks, 1))
     d = d + t * d.std(ddof=1) / np.sqrt(tasks) - d.mean()
     noise = noise - noise.mean(axis=2, keepdims=True)
     spread = random.normal(0.0, 0.5, (1, seeds))  # what a seed has in common
-    return (level + d + noise[0] + spread).tolist(), (level + noise[1] + spread).tolist()
+    return level + d + noise[0] + spread, level + noise[1] + spread
 
 
 def raises(random: Random) -> Iterator[Call]:

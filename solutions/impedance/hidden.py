@@ -172,9 +172,9 @@ def springs(random: Random) -> Iterator[Call]:
 
 
 def moving_springs(random: Random) -> Iterator[Call]:
-    """Arm and target move."""
+    """The arm moves beside a target that rests."""
     for _ in range(3):
-        yield _law(random, shift=0.05, turn=0.3, speed=1.0, twist=0.3)
+        yield _law(random, shift=0.05, turn=0.3, speed=1.0)
 
 
 def let_go(random: Random) -> Iterator[Case]:

@@ -293,8 +293,8 @@ TIP_SPRING = Problem(
             0.0,
         ),
         Trial(
-            "while arm and target move",
-            (_law(ASIDE, [0.1, -0.2, 0.1], speed=1.0, moving=0.5),),
+            "while the arm moves",
+            (_law(ASIDE, [0.1, -0.2, 0.1], speed=1.0),),
             hidden.moving_springs,
             "other motions",
         ),
@@ -433,7 +433,8 @@ WEIGH = Problem(
         ),
         Wrong(
             "one pose at rest",
-            "At rest dry friction carries a part of the load, and you cannot know how large a part.",
+            "Dry friction is in your number: at rest it carries a part of the load, and it opposes "
+            "every motion.",
             mistakes.at_rest,
             "Friction always opposes: come from both sides.",
             "Come to the pose from both sides, or swing, so that friction cancels.",

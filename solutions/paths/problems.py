@@ -178,15 +178,13 @@ DURATION_FOR = Problem(
         Wrong(
             "a duration of distance/v",
             "The ramps are slower than the cruise, so the motion lasts longer than distance/v.",
-            mistakes.Lasting(lambda d, v, a: d / min(v, sqrt(d * a))),
+            mistakes.Lasting(lambda d, v, a: d / v),
             cure="Add v/a_max, which is half of each ramp, twice.",
         ),
         Wrong(
             "both ramps added to the duration",
             "You added both ramps in full, but the arm covers distance during them.",
-            mistakes.Lasting(
-                lambda d, v, a: d / min(v, sqrt(d * a)) + 2.0 * min(v, sqrt(d * a)) / a
-            ),
+            mistakes.Lasting(lambda d, v, a: d / v + 2.0 * v / a),
             cure="The area under the trapezoid is v (T - v/a_max); solve that for T.",
         ),
         Wrong(

@@ -126,26 +126,18 @@ def euler_subtracted(estimates: Any, truth: Any) -> tuple[Array, Array]:
     return errors.mean(axis=0), np.cov(errors.T)
 
 
-@dataclass(frozen=True)
-class Blended:
-    """A blend that partly ignores the motion at its ends.
-
-    Attributes:
-        start: Factors of the reference's velocity and acceleration.
-        end: Factors of the goal's velocity and acceleration.
-    """
-
-    start: tuple[float, float] = (1.0, 1.0)
-    end: tuple[float, float] = (1.0, 1.0)
-
-    def __call__(self, t: float, reference: Sample, goal: Sample, duration: float) -> Sample:
-        """The reference at time t."""
-        if t > duration:
-            return blend(t, reference, goal, duration)
-        (p0, v0, a0), (p1, v1, a1) = reference, goal
-        a = Sample(p0, self.start[0] * v0, self.start[1] * a0)
-        b = Sample(p1, self.end[0] * v1, self.end[1] * a1)
-        return blend(t, a, b, duration)
+def blend_terms(
+    t: float, reference: Sample, goal: Sample, duration: float
+) -> tuple[dict[str, Any], dict[str, Any]]:
+    """What each of its six conditions adds to a blend, and what is taken for one of them."""
+    still = Sample(*(0.0 * x for x in goal))
+    law = {}
+    for name, x, y in zip(Sample._fields, reference, goal, strict=True):
+        law[f"the reference's {name}"] = blend(t, still._replace(**{name: x}), still, duration)
+        law[f"the goal's {name}"] = blend(t, still, still._replace(**{name: y}), duration)
+    ways = [still._replace(position=duration * x.velocity) for x in (reference, goal)]
+    on = ("the way of the reference's velocity", "the way of the goal's velocity")
+    return law, {name: blend(t, still, way, duration) for name, way in zip(on, ways, strict=True)}
 
 
 def never_ends(t: float, reference: Sample, goal: Sample, duration: float) -> Sample:

@@ -90,6 +90,12 @@ TAG_POSE = Problem(
             cure="T_cm takes points from m to c as it is.",
         ),
         Wrong(
+            "the transposed rotation",
+            "Your corners are turned back: points in rows need the transposed rotation.",
+            mistakes.Chosen(pose=lambda T: se3.pose(T[:3, :3].T, T[:3, 3])),
+            cure="R c for a column c is c @ R.T for a row.",
+        ),
+        Wrong(
             "twice the size of the square",
             "You project a square of twice the size.",
             mistakes.Chosen(scale=2.0),
@@ -309,7 +315,7 @@ SMOOTH = Problem(
         Trial(
             "the same, seen half a second late",
             (
-                *(hidden.bending(_RANDOM) for _ in range(2)),
+                *(hidden.bending(_RANDOM, age) for age in (0.4, 1.6)),
                 hidden.chase(hidden.SMOOTH, hidden.LAST, age=0.5),
             ),
             hidden.late,
@@ -606,17 +612,6 @@ BLEND = Problem(
             cure="Fifth order matches the acceleration as well.",
         ),
         Wrong(
-            "the start's velocity left out",
-            "The reference is moving when the blend begins, but yours begins without its velocity.",
-            mistakes.Blended(start=(0.0, 1.0)),
-            "At both ends check position, velocity and acceleration.",
-        ),
-        Wrong(
-            "the goal's acceleration left out",
-            "Your blend ends without acceleration, but the goal's is not always zero.",
-            mistakes.Blended(end=(1.0, 0.0)),
-        ),
-        Wrong(
             "a polynomial without end",
             "After `duration` your polynomial grows without limit.",
             mistakes.never_ends,
@@ -648,6 +643,7 @@ BLEND = Problem(
         ),
     ),
     variants=(variants.blend_by_bernstein,),
+    terms=mistakes.blend_terms,
 )
 
 PREDICT = Problem(

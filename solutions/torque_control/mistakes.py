@@ -123,6 +123,7 @@ def augmented_terms(
 ) -> tuple[dict[str, Any], dict[str, Any]]:
     """The terms of the augmented law, and those that are taken for them."""
     M, C = model.mass_matrix(state.q), model.coriolis(state.q, state.dq)
+    J, free = model.tip_jacobian(state.q), not arm_compensates
     e, de = target.position - state.q, target.velocity - state.dq
     law = {
         "the part of the target's acceleration": M @ target.acceleration,
@@ -133,6 +134,8 @@ def augmented_terms(
         "`C` times the arm's own speed": C @ state.dq,
         "`kd` times the arm's own speed": kd * state.dq,
         "`kp e` inside M": M @ (kp * e),
+        "the weight at the target's angles": model.gravity(target.position) * free,
+        "the report's gravity": 0.981 * M @ J[2] * free,
     }
     others |= {"`kd ė` inside M": M @ (kd * de), "`kd e`": kd * e, "`kp ė`": kp * de}
     return _with_weight(law, others, model.gravity(state.q), arm_compensates)

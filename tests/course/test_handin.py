@@ -104,10 +104,10 @@ def test_an_empty_cell_leaves_the_receipt_as_it_is():
 def test_points_and_time_left_are_counted_from_saved_files(folder, capsys):
     """A verdict in a saved output earns its points; the others' share of the time is left."""
     progress(folder.parent)
-    assert "0.0 of 21 points, about 150 minutes left" in capsys.readouterr().out
+    assert "0.0 of 21 points as tested here, 150 minutes left" in capsys.readouterr().out
     checked(folder / f"{NAME}.ipynb", Outcome.RIGHT, 4.0)
     progress(folder.parent)
-    assert "4.0 of 21 points, about 121 minutes left" in capsys.readouterr().out
+    assert "4.0 of 21 points as tested here, 121 minutes left" in capsys.readouterr().out
 
 
 def test_a_cell_that_is_gone_comes_back(folder, capsys):
