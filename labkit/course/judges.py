@@ -248,7 +248,7 @@ class Close:
             names = self.parts or tuple(f"part {k + 1}" for k in range(len(expected)))
             return self._differ_each(answer, expected, names)
         if isinstance(expected, str | bool) or expected is None:
-            said, asked = (sorted(letters(x)) or [x] for x in (answer, expected))
+            said, asked = (sorted(letters(x)) or x for x in (answer, expected))
             if type(answer) is type(expected) and said == asked:
                 return None
             return Difference(Kind.VALUE, part, expected=repr(expected), found=value(answer))
