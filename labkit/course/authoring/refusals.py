@@ -71,9 +71,8 @@ def _reasons(problem: Problem, question: Question, text: str | None) -> Iterator
     earned = 0.0 if text is None else _stand_in_earns(question, text)
     if earned > 0.0:
         yield (
-            "the stand-in that the notebook uses until a student has an answer, the third argument "
-            f"of use(), earns {earned:g} of {question.points:g} points; make the stand-in worse "
-            "than the answer, or withhold the tool that it uses"
+            f"the stand-in, the third argument of use(), earns {earned:g} of {question.points:g} "
+            "points; make it worse than the answer, or withhold its tool"
         )
     for outcome in {*problem.outcomes} - {*OUTCOMES}:
         yield f"it has the outcome {outcome!r}; take one of {', '.join(OUTCOMES)}"
@@ -100,8 +99,7 @@ def _alike(question: Question, problem: Problem) -> Iterator[str]:
         if other is not mistake:
             yield (
                 f"its known mistakes {other and other.name!r} and {mistake.name!r} give the same "
-                "answers on all public calls, so that one is taken for the other; change a number, "
-                "add a call that tells them apart, or say both in one sentence"
+                "answers on all public calls; change a number, add a call, or write one for both"
             )
     right = recognise(question, list(fingerprint(question, problem.answer)))
     if right is not None:
