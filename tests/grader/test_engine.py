@@ -15,7 +15,6 @@ from labkit.course.judges import Close
 from labkit.course.marking import mark
 from labkit.course.messages import why
 from labkit.course.question import Question, Test
-from labkit.course.source import analyse
 from labkit.course.verdict import Outcome
 from labkit.grader.grade import grade
 
@@ -224,16 +223,6 @@ def test_a_mark_does_not_depend_on_what_cannot_be_shown(marks, solved):
     for text in sources:
         text.encode("utf-8")
         assert not set(text) & set("\r\x0c\x1b\u202e\u2066\u2028")
-
-
-def test_names_that_a_cell_needs():
-    """Needed are names from elsewhere: no parameters, no locals, nothing that the cell binds."""
-    found = analyse("k = 2\ndef f(a, b=c):\n    d = a + e\n    return [g for x in d] + k\n")
-    assert set(found["uses"]) == {"c", "e", "g"}
-    assert found["functions"] == ["f"]
-    assert analyse("def f(x):\n    'Says.'\n    raise NotImplementedError")["stubs"] == ["f"]
-    assert analyse("%matplotlib inline\n!ls\nx = 1")["binds"] == ["x"]
-    assert "SyntaxError" in analyse("def f(:")["broken"]
 
 
 def test_the_arm_stays_with_the_checker(bundle, sandbox, blank):

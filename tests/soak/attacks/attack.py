@@ -7,7 +7,7 @@ GOT.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable
 from dataclasses import dataclass, replace
 from textwrap import indent
 from typing import Any
@@ -85,10 +85,6 @@ def code_cell(source: str, name: str) -> Notebook:
             "outputs": [], "execution_count": None}  # fmt: skip
 
 
-def markdown_cell(source: str, name: str = "own-text") -> Notebook:
-    return {"cell_type": "markdown", "id": name, "metadata": {}, "source": source}
-
-
 def cells(wins: str, **sources: str) -> dict[str, Attack]:
     """Attacks with one cell each."""
     return {spelt(name): Attack(wins, (source,)) for name, source in sources.items()}
@@ -105,6 +101,3 @@ def function(body: str, before: str = "") -> str:
 
 def spelt(name: str) -> str:
     return name.replace("_", " ")
-
-
-Attacks = Mapping[str, Attack]

@@ -54,7 +54,6 @@ class Class:
         failed: The grader's messages about students whom it could not grade.
         codes: The exit codes of the commands.
         printed: The whole output of the commands.
-        report: The class report.
         left: The processes that outlived the grader.
         loot: The data that was taken out.
         stolen: Whether a file of an honest student was changed.
@@ -69,7 +68,6 @@ class Class:
     failed: list[str] = field(default_factory=list)
     codes: dict[str, object] = field(default_factory=dict)
     printed: str = ""
-    report: str = ""
     left: list[str] = field(default_factory=list)
     loot: list[str] = field(default_factory=list)
     stolen: list[str] = field(default_factory=list)
@@ -133,8 +131,6 @@ def _run(verb: str, here: Place, made: Class) -> None:
             made.marks = {
                 row["student"]: row["score"] for row in csv.DictReader(io.StringIO(out.getvalue()))
             }
-    if verb == "class-report":
-        made.report = out.getvalue()
 
 
 def read(course: Course, students: Iterable[str], made: Class) -> None:

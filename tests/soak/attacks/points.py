@@ -95,17 +95,6 @@ BOOKS = {
 }  # fmt: skip
 
 
-def _claims(notebook):
-    """Fake outputs of checks that have passed."""
-    for cell in notebook["cells"]:
-        if cell["metadata"].get("nbgrader", {}).get("grade"):
-            cell["outputs"] = [
-                {"output_type": "execute_result", "data": {"text/plain": "1.0"}, "metadata": {},
-                 "execution_count": 1}
-            ]  # fmt: skip
-    return notebook
-
-
 def _rich(notebook):
     """The metadata of every cell say that it is graded with a hundred points."""
     for cell in notebook["cells"]:
@@ -113,16 +102,6 @@ def _rich(notebook):
         cell["metadata"]["nbgrader"] = about | {"grade": True, "points": 100, "locked": False}
         cell["outputs"] = [{"output_type": "execute_result", "data": {"text/plain": "100.0"},
                             "metadata": {}, "execution_count": 1}] if cell["cell_type"] == "code" else []  # fmt: skip
-    return notebook
-
-
-def _own_test(notebook):
-    """Cells with a number replace the tests and have their names."""
-    for cell in notebook["cells"]:
-        if cell["metadata"].get("nbgrader", {}).get("grade"):
-            cell["source"] = "3.0"
-            cell["outputs"] = [{"output_type": "execute_result", "data": {"text/plain": "1.0"},
-                                "metadata": {}, "execution_count": 1}]  # fmt: skip
     return notebook
 
 
