@@ -9,8 +9,8 @@ Its argument is the kind of panel, its options are the settings, and its text is
     Drag the arm.
     :::
 
-Before the click the figure shows a still picture of the panel.  `make_stills.py` takes them; the
-still of an open panel has the name of its page.
+Before the click the figure shows a still picture of the panel, or a loop if it has one.
+`make_stills.py` takes them; the still of an open panel has the name of its page.
 """
 
 from __future__ import annotations
@@ -62,11 +62,14 @@ class LiveArm(SphinxDirective):
         shown = self.env.docname.replace("/", "_") if piece == "open" else f"live_{piece}"
         still = f"{shown}.webp"
         if not (STILLS / still).exists():
-            raise self.error(f"static/stills has no {still}; run `make book stills`")
+            raise self.error(f"static/stills has no {still}; run book/_tools/make_stills.py")
+        media = "(prefers-reduced-motion: no-preference)"
+        loop = f'<source type="image/avif" media="{media}" srcset="{static}stills/{shown}.avif">'
         html = (
             f'<figure class="lk-live" role="group" aria-label="{escape(title)}">'
-            f'<img class="lk-still dark-light" src="{static}stills/{still}" width="1360" '
-            f'height="720" alt="{escape(title)}: the first view" loading="lazy">'
+            f'<picture class="lk-still">{loop * (STILLS / f"{shown}.avif").exists()}'
+            f'<img class="dark-light" src="{static}stills/{still}" width="1480" height="800" '
+            f'alt="{escape(title)}: the first view" loading="lazy"></picture>'
             f'<script type="application/json">{data}</script>'
             f'<div class="lk-offer"><p class="lk-without">{WITHOUT}</p></div></figure>'
             f'<script defer src="{static}live/boot.js"></script>'

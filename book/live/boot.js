@@ -1,26 +1,14 @@
 // Gives each live panel of a page a button; the first click loads the viewer, MuJoCo and the panel.
 
 const base = document.currentScript.src.split("?")[0].replace(/[^/]*$/, "");
-const asked = {};
-
-/** Loads a classic script once; this works in pages opened from disk, where fetch and modules do not. */
-function script(name) {
-  return (asked[name] ??= new Promise((done, failed) => {
-    const element = document.createElement("script");
-    element.src = base + name;
-    element.addEventListener("load", done);
-    element.addEventListener("error", () => failed(new Error(`${name} is missing beside this page`)));
-    document.head.append(element);
-  }));
-}
 
 async function open(host, button, status) {
   button.disabled = true;
   status.textContent = "Loading the arm and its physics…";
   const began = performance.now();
   try {
-    const [viewer] = await Promise.all([
-      globalThis.labkitLoad(), script("mujoco.js"), script("mujoco-wasm.js"), script("live.js")]);
+    const [viewer] = await Promise.all([globalThis.labkitLoad(),
+      ...["mujoco.js", "mujoco-wasm.js", "live.js"].map((name) => globalThis.labkitScript(base + name))]);
     const config = JSON.parse(host.querySelector('script[type="application/json"]').textContent);
     const place = document.createElement("div");
     host.querySelector(".lk-offer").replaceWith(place);
@@ -45,6 +33,12 @@ function start() {
     status.textContent = "5 MB, from this book’s folder";
     button.addEventListener("click", () => open(host, button, status));
     host.querySelector(".lk-offer").replaceChildren(button, status);
+    const loop = host.querySelector(".lk-still source");
+    if (loop && matchMedia(loop.media).matches) {
+      const stop = Object.assign(document.createElement("button"), { type: "button", className: "lk-stop", textContent: "Stop the motion" });
+      stop.addEventListener("click", () => { loop.remove(); stop.remove(); });
+      status.after(stop);
+    }
   }
 }
 

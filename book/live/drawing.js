@@ -6,7 +6,7 @@ import { quaternion } from "./model.js";
 import { TAG } from "./numbers.js";
 import { ELBOW, READY, wallAt } from "./settings.js";
 
-const NEWTON = 0.01; // length of an arrow for 1 N, in metres
+const NEWTON = 0.006; // length of an arrow for 1 N, in metres
 
 export class Drawing extends Form {
   draw3d(robot) {
@@ -22,6 +22,8 @@ export class Drawing extends Form {
     const tag = (p) => { this.session.chase.dragged = subtract(p, READY.p).map((x, k) => (k === 2 ? 0 : x + TAG.offset[k])); };
     hold(picture, this.session, () => ({ wall, tag, ...(this.settings.path === "stay" && { target, spring: target }) }), () => this.pause(false));
     this.drawPath();
+    this.ring = picture.stage.label("pull here", () => (this.session.chase && this.now ? subtract(this.now.goal, TAG.offset) : picture.tip.p));
+    this.ring.element.classList.add("lk-ring");
   }
 
   /** The points that the first view shows: the target's path, and the arm from the elbow to the tip. */
@@ -47,6 +49,7 @@ export class Drawing extends Form {
     const { picture } = this;
     picture.pose("left", this.session.arm.q);
     this.furnish(now);
+    if (this.ring && (this.session.chase?.dragged || now.forces.some(({ name }) => name !== "wall"))) this.ring = picture.stage.unlabel(this.ring);
     for (const name of ["hand", "push", "wall"]) {
       const force = now.forces.find((f) => f.name === name);
       picture.arrow(name, force?.at ?? now.p, force ? force.force.map((x) => NEWTON * x) : [0, 0, 0], force ? `${force.size.toFixed(1)} N` : "");

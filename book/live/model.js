@@ -1,6 +1,6 @@
 // The model of the arm, M(q) ddq + C(q, dq) dq + g(q) = tau.  Its numbers are those of `Robot`, its frames
 // are computed from the base to the tip, and its torques by the Newton-Euler method.
-import { add, addDiagonal, apply, dot, eigen, scale, subtract, zeros } from "./algebra.js";
+import { add, addDiagonal, eigen, scale, subtract, zeros } from "./algebra.js";
 import { cross, inner, log, minus, plus, product, reverse, rotated, scaled, spun, withPoint } from "./space.js";
 
 export const GRAVITY = 9.81;
@@ -139,9 +139,6 @@ export class Model {
     const tip = this.pose(q);
     return minus(target.p, tip.p).concat(log(product(target.R, reverse(tip.R))));
   }
-
-  /** The kinetic energy, half of dq M dq. */
-  kineticEnergy(q, dq) { return 0.5 * dot(dq, apply(this.massMatrix(q), dq)); }
 }
 
 /** The acceleration of a point at r on a body whose origin accelerates with a. */

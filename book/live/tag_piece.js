@@ -58,9 +58,9 @@ class Age extends Panel {
     this.table = h("table", { class: "lk-table" });
     const results = this.predicted.behind("Once you have entered a number above, the distance between the point aimed at and the tag appears here as a number, a curve and a table.",
       this.curves.element, this.said, h("div", { class: "lk-scroll", tabindex: 0 }, this.table));
-    return [this.predicted.element, this.beside(stagebox, results, [this.fieldset("The camera", h("div", { class: "lk-dials" }, dials.slice(0, 3).map((d) => d.element)),
+    return [this.predicted.element, this.beside(stagebox, results, [this.fieldset("The camera", h("div", { class: "lk-dials" }, [dials[0].element, dials[2].element]),
       h("label", { class: "lk-check" }, box, "predict: continue the motion of the last two pictures"))]),
-      this.folded(this.fieldset("The tag, which can be dragged", move.element, dials[3].element, h("div", { class: "lk-pushes" }, keys))), corners(viewer)];
+      this.folded(this.fieldset("The tag, which can be dragged", move.element, dials[3].element, dials[1].element, h("div", { class: "lk-pushes" }, keys))), corners(viewer)];
   }
 
   showGains() {}

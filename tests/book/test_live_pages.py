@@ -100,7 +100,7 @@ def test_no_unit_and_no_name_is_cut_on_a_phone(live, name):
 def test_a_page_that_nobody_clicked_loads_no_physics(visit, name):
     """Before the click there is a picture, and neither MuJoCo nor the live arm's bundle."""
     page = visit(f"{name}.html")
-    assert page.locator("img.lk-still").evaluate("e => e.complete && e.naturalWidth") == 1360
+    assert page.locator(".lk-still img").evaluate("e => e.complete && e.naturalWidth") == 1480
     loaded = page.evaluate("performance.getEntriesByType('resource').map(e => e.name).join(' ')")
     assert "mujoco" not in loaded
     assert "live.js" not in loaded
@@ -109,6 +109,7 @@ def test_a_page_that_nobody_clicked_loads_no_physics(visit, name):
 def test_a_mouse_pulls_the_hand_and_lets_it_go(live):
     """Dragged, the hand leaves its target and the force is shown; let go, it returns."""
     page = live("live")
+    choose(page, "Arm", "ideal arm")
     choose(page, "Path", "stay")
     page.wait_for_function(BACK)
     x, y = tip_on_screen(page)
@@ -132,6 +133,7 @@ def test_the_cursor_says_what_can_be_taken_hold_of(live):
         page.wait_for_function("([c, name]) => getComputedStyle(c).cursor === name",
                                arg=[canvas.element_handle(), name])  # fmt: skip
 
+    choose(page, "Arm", "ideal arm")
     choose(page, "Path", "stay")
     page.wait_for_function(BACK)
     x, y = tip_on_screen(page)
@@ -157,6 +159,7 @@ def test_the_cursor_says_what_can_be_taken_hold_of(live):
 def test_a_finger_pulls_the_hand(live):
     """The same by touch."""
     page = live("live", phone=True, has_touch=True)
+    choose(page, "Arm", "ideal arm")
     choose(page, "Path", "stay")
     page.wait_for_function(BACK)
     x, y = tip_on_screen(page)
@@ -177,6 +180,7 @@ def test_a_finger_pulls_the_hand(live):
 def test_keys_push_the_tip_and_a_screen_reader_is_told(live):
     """The button, pressed by a key, pushes with 10 N for a second, and that is said."""
     page = live("live")
+    choose(page, "Arm", "ideal arm")
     choose(page, "Path", "stay")
     page.get_by_label("Push along +y").press("Enter")
     page.wait_for_function(f"{ERROR} > 0.025")

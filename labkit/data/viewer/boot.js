@@ -1,6 +1,6 @@
 (()=>{var a=`.lk-embed, .lk-player, .lk-demo {
   --lk-text: #1f2328; --lk-quiet: #57606a; --lk-edge: #b6bec8; --lk-face: #ffffff; --lk-sky: #e9edf2;
-  --lk-grid: #c3cad3; --lk-accent: #0a5aa6; --lk-trace: #b3001b; --lk-path: #1f2328;
+  --lk-grid: #7e8a97; --lk-accent: #0a5aa6; --lk-trace: #b3001b; --lk-path: #1f2328;
   --lk-line-0: #b3001b; --lk-line-1: #0a5aa6; --lk-line-2: #a35200; --lk-line-3: #1a7f4b;
   --lk-line-4: #7b3fa0; --lk-line-5: #57606a; --lk-line-6: #00737d;
   color: var(--lk-text); font-size: 0.95rem; line-height: 1.45;
@@ -8,7 +8,7 @@
 html[data-theme="dark"] :is(.lk-embed, .lk-player, .lk-demo),
 body[data-jp-theme-light="false"] :is(.lk-embed, .lk-player, .lk-demo) {
   --lk-text: #e6e9ee; --lk-quiet: #a9b4c0; --lk-edge: #566270; --lk-face: #15191e; --lk-sky: #3b444f;
-  --lk-grid: #5a6673; --lk-accent: #7ab8f5; --lk-trace: #ff7b86; --lk-path: #f0f3f6;
+  --lk-grid: #8a95a2; --lk-accent: #7ab8f5; --lk-trace: #ff7b86; --lk-path: #f0f3f6;
   --lk-line-0: #ff7b86; --lk-line-1: #7ab8f5; --lk-line-2: #f0ab5c; --lk-line-3: #6fd39d;
   --lk-line-4: #cf9df0; --lk-line-5: #a9b4c0; --lk-line-6: #66d0d8;
 }
@@ -30,6 +30,10 @@ html[data-theme="dark"] .cell_output .text_html:has(.lk-embed) { /* the theme ma
 .lk-overlay { position: absolute; inset: 0; overflow: hidden; pointer-events: none; }
 .lk-tag { position: absolute; top: 0; left: 0; padding: 0 0.35rem; border-radius: 4px; font-size: 0.78rem; white-space: nowrap;
   background: var(--lk-face); color: var(--lk-text); border: 1px solid var(--lk-edge); }
+.lk-ring::before { content: ""; position: absolute; left: calc(50% - 1.1rem); top: calc(100% + 8px - 1.1rem); box-sizing: border-box; width: 2.2rem; height: 2.2rem;
+  border: 3px solid #c77700; border-radius: 50%; animation: lk-pulse 1.4s ease-out infinite; }
+@keyframes lk-pulse { from { transform: scale(0.5); } 80%, to { transform: scale(1.4); opacity: 0; } }
+@media (prefers-reduced-motion: reduce) { .lk-ring::before { animation: none; } }
 .lk-tag[hidden] { display: none; }
 .lk-note { margin: 0; padding: 1rem; }
 .lk-bar { display: flex; flex-wrap: wrap; align-items: center; gap: 0.4rem; padding: 0.45rem 0.75rem; }
@@ -114,4 +118,4 @@ fieldset .lk-dial label { flex-basis: 2.6rem; }
   .lk-bar, .lk-load, .lk-dial { display: none !important; }
   .lk-player, .lk-demo { break-inside: avoid; }
 }
-`;function i(){if(globalThis.labkitStyled)return;let e=new CSSStyleSheet;e.replaceSync(a),document.adoptedStyleSheets=[...document.adoptedStyleSheets,e],globalThis.labkitStyled=!0}var o=document.currentScript.src.split("?")[0].replace(/[^/]*$/,""),m=matchMedia("(max-width: 500px)"),p={};function n(e){return p[e]??=new Promise((t,r)=>{let l=document.createElement("script");l.src=e,l.addEventListener("load",t),l.addEventListener("error",()=>r(new Error(`${e} is missing`))),document.head.append(l)})}var c=globalThis.labkitLoad=async()=>(await Promise.all([n(`${o}viewer.js`),n(`${o}robot.js`)]),globalThis.labkitViewer);async function s(e){if(e.dataset.mounted)return;e.dataset.mounted="1",e.querySelector(".lk-load")?.remove();let t=JSON.parse(e.querySelector('script[type="application/json"]').textContent);try{let{mount:r}=await c(),l=document.createElement("div");e.insertBefore(l,e.querySelector("figcaption")),r(l,t),l.querySelector(".lk-note")&&e.classList.add("lk-flat")}catch(r){delete e.dataset.mounted,console.error(r)}}function b(e){let t=document.createElement("button");t.type="button",t.className="lk-load",t.textContent="Tap to load the interactive view",t.addEventListener("click",()=>s(e).then(()=>e.querySelector("button, input, select")?.focus())),e.insertBefore(t,e.querySelector("figcaption"))}function d(){if(globalThis.labkitStarted)return;globalThis.labkitStarted=!0,i();let e=new IntersectionObserver(t=>{for(let{isIntersecting:r,target:l}of t)r&&(e.unobserve(l),s(l))},{rootMargin:"400px"});for(let t of document.querySelectorAll(".lk-embed"))m.matches?b(t):e.observe(t)}document.readyState==="loading"?document.addEventListener("DOMContentLoaded",d):d();})();
+`;function i(){if(globalThis.labkitStyled)return;let e=new CSSStyleSheet;e.replaceSync(a),document.adoptedStyleSheets=[...document.adoptedStyleSheets,e],globalThis.labkitStyled=!0}var o=document.currentScript.src.split("?")[0].replace(/[^/]*$/,""),m=matchMedia("(max-width: 500px)"),p={},n=globalThis.labkitScript=e=>p[e]??=new Promise((t,r)=>{let l=Object.assign(document.createElement("script"),{src:e,onload:t});l.onerror=()=>r(new Error(`${e} is missing beside this page`)),document.head.append(l)}),c=globalThis.labkitLoad=async()=>(await Promise.all([n(`${o}viewer.js`),n(`${o}robot.js`)]),globalThis.labkitViewer);async function s(e){if(e.dataset.mounted)return;e.dataset.mounted="1",e.querySelector(".lk-load")?.remove();let t=JSON.parse(e.querySelector('script[type="application/json"]').textContent);try{let{mount:r}=await c(),l=document.createElement("div");e.insertBefore(l,e.querySelector("figcaption")),r(l,t),l.querySelector(".lk-note")&&e.classList.add("lk-flat")}catch(r){delete e.dataset.mounted,console.error(r)}}function b(e){let t=document.createElement("button");t.type="button",t.className="lk-load",t.textContent="Tap to load the interactive view",t.addEventListener("click",()=>s(e).then(()=>e.querySelector("button, input, select")?.focus())),e.insertBefore(t,e.querySelector("figcaption"))}function d(){if(globalThis.labkitStarted)return;globalThis.labkitStarted=!0,i();let e=new IntersectionObserver(t=>{for(let{isIntersecting:r,target:l}of t)r&&(e.unobserve(l),s(l))},{rootMargin:"400px"});for(let t of document.querySelectorAll(".lk-embed"))m.matches?b(t):e.observe(t)}document.readyState==="loading"?document.addEventListener("DOMContentLoaded",d):d();})();

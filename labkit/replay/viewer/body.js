@@ -71,6 +71,7 @@ export class Body {
     for (const { parent, mesh } of robot.arm ? capsules(robot) : pieces(robot, ghost?.side)) {
       if (this.own) mesh.material = this.own;
       if (ghost) mesh.renderOrder = 1;
+      mesh.castShadow = !ghost;
       this.groups[parent].add(mesh);
     }
     this.root.add(...Object.values(this.groups));
@@ -85,12 +86,6 @@ export class Body {
       group.matrix.set(R[0], R[1], R[2], p[0], R[3], R[4], R[5], p[1], R[6], R[7], R[8], p[2], 0, 0, 0, 1);
       group.matrixWorldNeedsUpdate = true;
     }
-  }
-
-  /** Show only one arm, without body, head and the other arm, or show everything again. */
-  alone(side, on) {
-    if (this.robot.arm) return;
-    for (const [name, group] of Object.entries(this.groups)) group.visible = !on || name.startsWith(side);
   }
 
   dispose() { this.own?.dispose(); }

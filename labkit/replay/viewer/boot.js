@@ -6,15 +6,11 @@ const phone = matchMedia("(max-width: 500px)");
 const asked = {}; // scripts by address
 
 /** Loads a classic script once; this works in pages opened from disk, where fetch does not. */
-function script(url) {
-  return (asked[url] ??= new Promise((done, failed) => {
-    const element = document.createElement("script");
-    element.src = url;
-    element.addEventListener("load", done);
-    element.addEventListener("error", () => failed(new Error(`${url} is missing`)));
-    document.head.append(element);
-  }));
-}
+const script = (globalThis.labkitScript = (src) => (asked[src] ??= new Promise((done, failed) => {
+  const element = Object.assign(document.createElement("script"), { src, onload: done });
+  element.onerror = () => failed(new Error(`${src} is missing beside this page`));
+  document.head.append(element);
+})));
 
 /** Loads the viewer once; the notebook's widget also uses this in pages without a kernel. */
 const load = (globalThis.labkitLoad = async () => {

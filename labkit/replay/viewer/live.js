@@ -29,7 +29,7 @@ export class LiveArm {
     this.status = h("p", { class: "lk-hidden", role: "status" });
     this.picture = new Picture(this.stagebox, `${data.title}. Drag the arm or a thing to pull it, or drag elsewhere to turn the view`);
     this.times = 1; // the error is drawn this many times as large
-    this.sight = sight(this.picture, { whole: !this.robot.arm, magnify: (k) => { this.times = k; this.draw(this.frame); } });
+    this.sight = sight(this.picture, { magnify: (k) => { this.times = k; this.draw(this.frame); } });
     this.plot = new Plot({ title: "Distance from the target [mm]", xName: "time [s]", zero: true, least: 1, ...this.curve() });
     const seen = h("div", {}, this.stagebox, this.buttons());
     const told = h("div", {}, h("div", { class: "lk-plots" }, this.plot.element), this.readout, this.dials(), this.note);

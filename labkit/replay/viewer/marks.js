@@ -41,17 +41,22 @@ export function axes(length = 0.09) {
 
 /** An arrow that can be moved to a point and set to a vector. */
 export function arrow(colour) {
-  const made = new THREE.ArrowHelper(new THREE.Vector3(1, 0, 0), new THREE.Vector3(), 0.1, colour, 0.035, 0.022);
+  const made = new THREE.Group(), look = new THREE.MeshStandardMaterial({ color: colour, roughness: 0.6 });
+  const rod = new THREE.Mesh(new THREE.CylinderGeometry(0.0055, 0.0055, 1, 20), look);
+  const head = new THREE.Mesh(new THREE.ConeGeometry(0.016, 0.042, 28), look);
+  const knob = new THREE.Mesh(new THREE.SphereGeometry(0.013, 24, 16), look); // where it acts
   made.lay = (origin, vector) => {
-    const along = new THREE.Vector3(...vector);
-    const length = along.length();
+    const along = new THREE.Vector3(...vector), length = along.length(), share = Math.min(1, length / 0.084);
     made.visible = length > 1e-4;
-    if (!made.visible) return;
     made.position.fromArray(origin);
-    made.setDirection(along.normalize());
-    made.setLength(length, Math.min(0.035, length / 2), Math.min(0.022, length / 3));
+    made.quaternion.setFromUnitVectors(new THREE.Vector3(0, 1, 0), along.normalize());
+    head.scale.setScalar(share);
+    head.position.y = length - 0.021 * share;
+    knob.scale.setScalar(share);
+    rod.scale.set(share, Math.max(1e-6, length - 0.042 * share), share);
+    rod.position.y = rod.scale.y / 2;
   };
-  return made;
+  return made.add(rod, head, knob);
 }
 
 /** A square board that represents the tag: white rim, black face, white cell. */

@@ -19,7 +19,7 @@ export class Picture {
     this.works = this.stage.works;
     this.arrows = {};
     this.things = {};
-    Object.assign(this, { side: "left", lone: true });
+    this.side = "left";
   }
 
   /** Draw this robot from now on. */
@@ -31,24 +31,14 @@ export class Picture {
     this.stage.scene.add(this.body.root);
     this.stage.floor.position.z = robot.arm ? 0 : -0.925; // Baxter's base is its waist
     this.stage.rig.size = robot.arm ? Math.min(1, 0.5 * span(robot)) : 1;
-    this.alone(this.lone);
   }
 
   /** Set the arm's present joint angles, n numbers in rad. */
   pose(side, q) {
-    if (side !== this.side) this.body.alone(side, this.lone);
     Object.assign(this, { side, q });
     this.body.pose(side, q);
     this.frames = frames(this.robot, posture(this.robot, side, q));
     this.tip = tip(this.robot, side, q);
-    this.stage.draw();
-  }
-
-  /** Hide the robot's body and its idle arm, or show them. */
-  alone(on) {
-    this.lone = on;
-    this.body.alone(this.side, on);
-    this.stage.floor.visible = !on;
     this.stage.draw();
   }
 

@@ -23,8 +23,7 @@ export class Player {
     this.status = h("p", { class: "lk-hidden", role: "status" });
     this.picture = new Picture(this.stagebox, `${motion.title}. ${motion.alt}`);
     this.stage = this.picture.stage;
-    this.sight = sight(this.picture, { whole: !this.robot.arm,
-      magnify: motion.target && ((k) => { this.times = k; this.dress(); this.explain(); this.arrange(); }) });
+    this.sight = sight(this.picture, { magnify: motion.target && ((k) => { this.times = k; this.dress(); this.explain(); this.arrange(); }) });
     this.tips = motion.q.map((q) => tip(this.robot, motion.side, q).p);
     const curves = this.curves(), beside = Math.max(0, ...curves.map(({ series }) => letters(series)));
     this.plots = curves.map((c) => new Plot({ ...c, beside, x: motion.time, scrub: (t) => { this.play(false); this.seek(t); } }));

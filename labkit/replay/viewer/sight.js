@@ -8,17 +8,13 @@ export const more = (...children) => h("details", { class: "lk-more" }, h("summa
 /**
  * The controls of a view: {element, magnifier}.
  * @param magnify  called with 1, 10 or 50; if it is missing, the error cannot be magnified
- * @param whole  whether the robot is more than its arm; then all of it can be shown
  */
-export function sight(picture, { magnify, whole = true } = {}) {
+export function sight(picture, { magnify } = {}) {
   const { stage } = picture;
   const views = Object.keys(VIEWS).map((name) => h("button", { type: "button", onclick: () => stage.rig?.use(name) }, name));
-  const box = h("input", { type: "checkbox", onchange: () => picture.alone(!box.checked) });
-  const all = h("label", { class: "lk-check" }, box, "Whole robot");
-  all.hidden = !whole;
   const sizes = ["× 1", "× 10", "× 50"];
   const magnifier = choice({ label: "Error", values: sizes, onchange: (shown) => magnify(+shown.slice(2)) }).element;
   magnifier.hidden = !magnify;
-  const element = h("div", { class: "lk-bar lk-views", role: "group", "aria-label": "View" }, views, all, magnifier);
+  const element = h("div", { class: "lk-bar lk-views", role: "group", "aria-label": "View" }, views, magnifier);
   return { element, magnifier };
 }

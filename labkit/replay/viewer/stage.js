@@ -20,7 +20,9 @@ function context() {
   if (!gl) return (renderer = null);
   canvas.addEventListener("webglcontextlost", (event) => event.preventDefault());
   canvas.addEventListener("webglcontextrestored", () => stages.forEach((s) => s.draw()));
-  return (renderer = new THREE.WebGLRenderer({ canvas, context: gl }));
+  renderer = new THREE.WebGLRenderer({ canvas, context: gl });
+  Object.assign(renderer.shadowMap, { enabled: card, type: THREE.VSMShadowMap });
+  return renderer;
 }
 
 /** Smooth edges are used only with a card, because they double the time if the processor draws. */
@@ -71,10 +73,17 @@ export class Stage {
     rim.position.set(-3, 2, 2.5);
     const side = new THREE.DirectionalLight(0xfff1e0, 1.2); // makes the edge of a dark arm visible in front of a dark body
     side.position.set(1, 4, 0.5);
-    this.floor = new THREE.GridHelper(4, 16);
-    this.floor.material.vertexColors = false;
-    this.floor.rotation.x = Math.PI / 2;
-    this.floor.position.z = -0.925;
+    key.castShadow = true;
+    Object.assign(key.shadow, { radius: 5, blurSamples: 10 });
+    const disc = new THREE.CircleGeometry(1.9, 64), fade = h("canvas", { width: 128, height: 128 }), pen = fade.getContext("2d");
+    pen.fillStyle = pen.createRadialGradient(64, 64, 20, 64, 64, 64);
+    ["#fff", "#000"].forEach((grey, k) => pen.fillStyle.addColorStop(k, grey));
+    pen.fillRect(0, 0, 128, 128);
+    this.floor = new THREE.Mesh(disc, new THREE.MeshBasicMaterial({ alphaMap: new THREE.CanvasTexture(fade), transparent: true, opacity: 0.4, depthWrite: false }));
+    const shade = new THREE.Mesh(disc, new THREE.ShadowMaterial({ opacity: 0.3, depthWrite: false }));
+    shade.receiveShadow = true;
+    shade.position.z = 0.002;
+    this.floor.add(shade);
     this.scene.add(new THREE.HemisphereLight(0xffffff, 0x9a9ca3, 2.4), key, rim, side, this.floor);
   }
 
@@ -153,8 +162,10 @@ export class Stage {
     for (const { element, x, y, behind } of spots) {
       element.hidden = behind;
       if (behind) continue;
-      last = Math.max(y - 10, last + 22);
-      element.style.transform = `translate(${Math.round(Math.min(x + 14, width - element.offsetWidth - 4))}px, ${Math.round(last)}px)`;
+      const { offsetWidth: wide, offsetHeight: high } = element;
+      last = Math.max(y - high - 8, last + high);
+      const left = Math.max(4, Math.min(x - wide / 2, width - wide - 4));
+      element.style.transform = `translate(${Math.round(left)}px, ${Math.round(last)}px)`;
     }
   }
 
