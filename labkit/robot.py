@@ -67,7 +67,7 @@ class Robot:
         base: str | None = None,
         name: str | None = None,
     ) -> Robot:
-        """Read an arm from a URDF file with Pinocchio.
+        """Read an arm from a URDF file with MuJoCo.
 
         The arm consists of the joints between the base and the tip.  All other joints, such as
         those of wheels, a torso or a gripper, are fixed at zero, and each link is lumped with the

@@ -112,15 +112,6 @@ def test_friction_limits_and_rotors_are_as_many_as_the_joints(robot):
     assert not moved[1::2].all()
 
 
-def test_a_push_finds_the_arm_by_the_name_of_its_robot(robot):
-    """Of two arms in one world, only the arm that the push names feels its 20 N."""
-    with lk.World(things=[lk.Push((0.0, 0.0, 20.0), side=robot.name)]) as world:
-        one, other = lk.Arm(robot, world=world), lk.Arm("left", world=world)
-        world.step(50)
-        assert np.abs(one.truth().tau_ext).max() > 1.0
-        assert np.abs(other.truth().tau_ext).max() < 1e-6
-
-
 def test_a_log_of_any_robot_is_saved_and_loaded(robot, model, tmp_path):
     """Its robot, plant, controller, columns and summary come back from the file as they were."""
     with lk.Arm(robot, q0=robot.ready) as arm:
