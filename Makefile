@@ -40,7 +40,8 @@ dev: for-all .venv/.dev ## make the environment, .venv, and nothing else
 
 soak: for-tests .venv/.dev browser .venv-313/.made ## what the gate leaves out: attacks, kills, a large class, one verdict, all pages
 	@PATH="$(CURDIR)/$(BIN):$$PATH" $(BIN)/python -m pytest -n 2 --dist loadgroup --no-loadscope-reorder -m soak
-	@$(SECOND)/python -m pytest -q -n 2 tests/notebooks/test_always_runs.py -k runs_to_the_end
+	@$(SECOND)/python -m pytest -q -n 2 -k "runs_to_the_end or test_live" tests/notebooks/test_always_runs.py tests/replay/test_live.py
+	@$(SECOND)/python -m solutions.study.record --verdicts --check
 
 lab: .venv/.course ## open the notebooks of this checkout; students start theirs from the zip
 	@PATH="$(CURDIR)/$(BIN):$$PATH" $(BIN)/jupyter lab --notebook-dir assignments $(if $(AS_ROOT),--allow-root)
