@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import Any, NamedTuple, Protocol
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -83,16 +83,6 @@ COMMANDS = (JointPosition, JointVelocity, JointTorque)
 
 Controller = Callable[[State, Any], Command]
 """Any function of the state and the target's sample; it need not inherit or register anything."""
-
-
-class Remembering(Protocol):
-    """A controller with memory, such as an integral; nothing needs to inherit this either."""
-
-    def __call__(self, state: State, target: Any) -> Command:
-        """The command at this tick; ``state.t`` stands still until the arm reports again."""
-
-    def reset(self) -> None:
-        """Forget; `run` and `live` call it at the start of each run."""
 
 
 def hold(q: Any) -> Callable[[State, Any], JointPosition]:

@@ -56,28 +56,23 @@ class Line:
 
 @dataclass(frozen=True, eq=False)
 class Circle:
-    """The circle through ``start`` about an axis through ``centre``, by default the vertical one.
+    """The level circle through ``start`` about the vertical axis through ``centre``.
 
-    It stays in the plane of the start across the axis, and closes exactly.
+    It stays at the height of the start, and closes exactly.
 
     Attributes:
         start: Where it begins and ends, shape (3,) in [m].
-        centre: A point on its axis, shape (3,) in [m]; where on the axis does not matter.
-        turns: Number of turns, counter-clockwise seen against the axis; negative is clockwise.
-        axis: Direction of the axis, shape (3,); a level one, such as (1, 0, 0), makes an upright
-            circle.
+        centre: A point on its axis, shape (3,) in [m], at any height.
+        turns: Number of turns, counter-clockwise seen from above; negative is clockwise.
     """
 
     start: Array
     centre: Array
     turns: float = 1.0
-    axis: Any = (0.0, 0.0, 1.0)
 
     def __post_init__(self) -> None:
-        lock_vectors(self, 3, "start", "centre", "axis")
+        lock_vectors(self, 3, "start", "centre")
         object.__setattr__(self, "turns", as_number(self.turns, "turns"))
-        if not self.axis.any():
-            raise OutOfRange("axis is the zero vector; (0, 0, 1) makes a level circle")
         if self.radius < 1e-9:
             raise OutOfRange(
                 "the start lies on the circle's axis, so the circle has no radius; move the start "
@@ -87,9 +82,9 @@ class Circle:
     @cached_property
     def _parts(self) -> tuple[Array, Array, Array]:
         """The middle, the spoke to the start, and the spoke that is a quarter of a turn later."""
-        n, away = self.axis / np.linalg.norm(self.axis), self.start - self.centre
-        spoke = away - (away @ n) * n
-        return self.start - spoke, spoke, np.cross(n, spoke)
+        x, y, _ = self.start - self.centre
+        spoke, next_spoke = np.array([x, y, 0.0]), np.array([-y, x, 0.0])
+        return self.start - spoke, spoke, next_spoke
 
     @property
     def radius(self) -> float:

@@ -1,6 +1,6 @@
 """Runs and trials that come with labkit, for those who lack the planner or the time to run them.
 
-They were recorded by ``solutions/study``: `baseline`, `campaign`, `maps` and `trials`.
+They were recorded by ``solutions/study``: `baseline`, `campaign` and `trials`.
 """
 
 from __future__ import annotations
@@ -22,9 +22,9 @@ LINE = DATA / "trials_line.json"
 """Trials of the joint velocity PD along the line on Baxter's plant with five seeds."""
 
 
-def names(folder: str = "recorded") -> tuple[str, ...]:
-    """The names of the recorded runs or, with the folder "maps", of the error maps."""
-    return tuple(sorted(path.stem for path in (DATA / folder).iterdir()))
+def names() -> tuple[str, ...]:
+    """The names of the recorded runs."""
+    return tuple(sorted(path.stem for path in (DATA / "recorded").iterdir()))
 
 
 def load(name: str) -> Log:
@@ -47,19 +47,8 @@ def campaign() -> Any:
     return json.loads((DATA / "campaign.json").read_text())
 
 
-def error_map(name: str) -> Trials:
-    """A recorded map of errors over gains, one of ``names("maps")``.
-
-    Raises:
-        UnknownName: There is no such map.
-    """
-    if name not in names("maps"):
-        raise UnknownName("error map", name, names("maps"))
-    return read_trials(DATA / "maps" / f"{name}.json")
-
-
 def read_trials(path: Path) -> Trials:
-    """Read the trials in a file that `solutions.study.trials` or `solutions.study.maps` wrote."""
+    """Read the trials in a file that `solutions.study.trials` wrote."""
     return Trials(**{key: tuple(value) for key, value in json.loads(path.read_bytes()).items()})
 
 
@@ -114,17 +103,6 @@ class Trials:
     def worst(self, Kp: float, Kd: float) -> float:
         """The largest error over all cases, in [mm]."""
         return max(self.error(case, Kp, Kd) for case in range(len(self.cases)))
-
-    def describe(self) -> str:
-        """Describe the first case in words, for readers who cannot see its figure."""
-        e, Kp, Kd = self.array(), self.Kp, self.Kd
-        i, j = np.unravel_index(int(np.nanargmin(e)), e.shape)
-        return (
-            f"RMS error of {self.cases[0]} for Kp from {Kp[0]:g} to {Kp[-1]:g} and Kd from "
-            f"{Kd[0]:g} to {Kd[-1]:g}: least {e[i, j]:.3g} mm at Kp = {Kp[i]:.3g}, Kd = "
-            f"{Kd[j]:.3g}; largest {np.nanmax(e):.3g} mm; {np.isnan(e).sum()} of {e.size} pairs "
-            "have no error."
-        )
 
 
 @dataclass(frozen=True)

@@ -48,7 +48,7 @@ def run(
         target: A function of the time since the start, in [s], that returns a `Sample` or a
             `PoseSample`.
         controller: A function of a `State` and the target's sample that returns a command.  If it
-            is an object with a method ``reset()``, that is called first; see `Remembering`.
+            is an object with a method ``reset()``, that is called first.
         rate: How often the controller is called, in [Hz]; its period is a whole number of physics
             steps.
         duration: Length of the run, in [s]; None means the target's own duration.

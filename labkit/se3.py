@@ -7,7 +7,7 @@ Formulas: MLS chapter 2; Lynch & Park, *Modern Robotics*, chapter 3.
 
 from __future__ import annotations
 
-from math import atan2, copysign, hypot, pi, sin
+from math import atan2, copysign, hypot, pi
 from typing import Any
 
 import numpy as np
@@ -135,40 +135,6 @@ def inverse(T_ab: Any) -> Array:
     T_ba, R_ba = np.eye(4), T_ab[:3, :3].T
     T_ba[:3, :3], T_ba[:3, 3] = R_ba, -R_ba @ T_ab[:3, 3]
     return T_ba
-
-
-def exp(V: Any) -> Array:
-    r"""The pose reached by following the body twist ``V`` for one second (MLS eq. 2.36).
-
-    Args:
-        V: Twist (v, w), shape (6,).
-
-    Returns:
-        Pose :math:`e^{\hat V}`, shape (4, 4).
-    """
-    V = as_array(V, (6,), "V")
-    return pose(rotation(V[3:]), _left_jacobian(V[3:]) @ V[:3])
-
-
-def log(T: Any) -> Array:
-    """The body twist that reaches ``T`` in one second, the inverse of `exp`.
-
-    Args:
-        T: Pose, shape (4, 4).
-
-    Returns:
-        Twist (v, w), shape (6,).
-    """
-    T = as_array(T, (4, 4), "T")
-    phi = rotation_log(T[:3, :3])
-    return np.concatenate([np.linalg.solve(_left_jacobian(phi), T[:3, 3]), phi])
-
-
-def _left_jacobian(phi: Array) -> Array:
-    """The mean rotation from none to ``phi``, by which a turning body's path is shorter."""
-    W, angle = hat(phi), float(np.linalg.norm(phi))
-    third = (angle - sin(angle)) / angle**3 if angle > 1e-4 else 1.0 / 6.0
-    return _IDENTITY + 0.5 * np.sinc(0.5 * angle / pi) ** 2 * W + third * (W @ W)
 
 
 def angle_between(R_a: Any, R_b: Any) -> float:

@@ -62,21 +62,6 @@ def test_a_whole_number_of_turns_returns_exactly(start, centre, turns):
     assert_allclose(circle(0.0).position, start, rtol=0, atol=1e-15)
 
 
-@given(points, points, points, fractions)
-def test_a_circle_may_stand_upright_or_lean(start, centre, axis, s):
-    """It stays in the start's plane across the axis, at one distance from it, with its slopes."""
-    assume(np.linalg.norm(axis) > 0.1)
-    n = axis / np.linalg.norm(axis)
-    assume(np.linalg.norm(np.cross(start - centre, n)) > 0.01)
-    path = Circle(start, centre, axis=axis)
-    p = path(s).position
-    assert (p - start) @ n == pytest.approx(0.0, abs=1e-12)
-    assert np.linalg.norm(np.cross(p - centre, n)) == pytest.approx(path.radius)
-    assert_slopes(path, s, tolerance=1e-5)
-    quarter = path(0.25).position - path._parts[0]
-    assert np.cross(start - path._parts[0], quarter) @ n > 0.0, "counter-clockwise"
-
-
 def test_a_circle_goes_counter_clockwise_seen_from_above():
     """A quarter turn from x is at y, and a negative one at -y."""
     assert_allclose(Circle([1, 0, 0], [0, 0, 0])(0.25).position, [0, 1, 0], rtol=0, atol=1e-15)

@@ -54,14 +54,6 @@ def test_every_recording_that_ships_is_a_run_one_can_study():
         assert metrics.summary(recordings.load(name)).rms_mm < 100.0
 
 
-def test_a_map_says_itself_in_words():
-    """Its sentence has the least error with its gains, and how many pairs have no error."""
-    found = Trials(("a test",), (1.0, 2.0), (0.0, 0.1), (((3.0, 2.0), (1.0, None)),))
-    assert "RMS error of a test" in found.describe()
-    assert "least 1 mm at Kp = 2, Kd = 0" in found.describe()
-    assert "1 of 4 pairs have no error" in found.describe()
-
-
 TRIALS = Trials(("a", "b"), (1.0, 100.0), (0.0, 0.5), (((4.0, 2.0), (8.0, None)), ((1, 1), (1, 1))))
 
 

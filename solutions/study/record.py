@@ -1,6 +1,6 @@
 """Make all recorded data again, and print what has changed: ``make record``.
 
-After a change to the physics, the recorded runs, maps, trials and campaign, the students' notebooks
+After a change to the physics, the recorded runs, trials and campaign, the students' notebooks
 and the verdicts on all known answers no longer agree with the code.  This program makes them again
 in order, and names each verdict that changed and why.
 """
@@ -26,7 +26,6 @@ VERDICTS = Path(__file__).with_name("verdicts.json")
 """What each known answer earns with the public seed, and why."""
 MAKERS = (
     ("solutions.study.baseline",),
-    ("solutions.study.maps",),
     ("solutions.study.trials",),
     ("solutions.study", "--seeds", "5", "--no-pictures", "--keep"),
     ("solutions.study.assumptions",),
