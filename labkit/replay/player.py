@@ -20,6 +20,7 @@ import numpy as np
 
 from ..errors import TypeMismatch
 from ..model import Model
+from ..robot import SIDES
 from ..shapes import Array, shown
 from .motion import Motion, compact
 
@@ -28,7 +29,6 @@ if TYPE_CHECKING:
 
 VIEWER = Path(__file__).parents[1] / "data" / "viewer"
 LIFT = 0.6  # exponent of the picture's brightness, below 1 to lighten dark parts
-NEWTON = 0.01  # length of a force's line, in [m/N]
 BACK = 0.005  # by which see-through parts are set back, in [m], so that they hide no coinciding arm
 GHOST, SEEN_THROUGH = (0.12, 0.47, 0.82), 0.38  # colour and opacity of see-through arms
 
@@ -116,7 +116,7 @@ def show(motion: Motion) -> Replay:
 
 
 def still(motion: Motion) -> bytes:
-    """Draw a motion half way, or at its largest force, as the bytes of a PNG file."""
+    """Draw the arm half way and the paths, as the bytes of a PNG file."""
     from PIL import Image, ImageDraw
 
     from ..tags.camera import looking_at
@@ -124,9 +124,7 @@ def still(motion: Motion) -> bytes:
 
     robot, model = motion.robot, Model(motion.robot)
     few = slice(None, None, max(1, len(motion.q) // 60))
-    forces = np.zeros((len(motion.q), 3)) if motion.force is None else motion.force
-    size = np.linalg.norm(forces, axis=1)
-    k = int(size.argmax()) if size.any() else len(size) // 2
+    k = len(motion.q) // 2
 
     def tips_of(q: Array) -> Array:
         return np.array([model.pose(row)[:3, 3] for row in q[few]])
@@ -152,19 +150,15 @@ def still(motion: Motion) -> bytes:
 
     solid = body(motion.q[k])
     whole, depth = layer(solid._replace(colours=solid.colours**LIFT), FAR, 1.0)
-    things = [x for x in motion.things.values() if x["kind"] == "face"]
-    sheets = [(_sheet(x["position"], x["quaternion"], x["size"]), x["colour"]) for x in things]
-    through = [(in_colour(x, colour), min(0.55, colour[3])) for x, colour in sheets]
-    arms = [body(q[k]).corners for q in motion.ghosts.values()]
-    through += [(in_colour(arm, GHOST), SEEN_THROUGH) for arm in arms]
-    for surface, opacity in through:
-        whole.alpha_composite(layer(surface, depth, opacity)[0])
+    for q in motion.ghosts.values():
+        ghost = in_colour(body(q[k]).corners, GHOST)
+        whole.alpha_composite(layer(ghost, depth, SEEN_THROUGH)[0])
 
-    bands = [x["position"] for x in motion.things.values() if x["kind"] == "band"]
-    lines = [(np.array([anchor, tip]), "#57606a") for anchor in bands]
-    lines += [(tips_of(q), "#57606a") for q in motion.ghosts.values()]
+    lines = [(tips_of(q), "#57606a") for q in motion.ghosts.values()]
     lines += [(path, "#1f2328"), (tips, "#b3001b")]
-    lines.append((np.array([tip, tip + NEWTON * forces[k]]), "#c77700"))
+    if robot.name not in SIDES:  # which has no meshes
+        joints = model.dynamics.frames(motion.q[k])[:, :3, 3]
+        lines.append((np.vstack([joints, tip]), "#57606a"))
     T_cw = np.linalg.inv(T_wc)
     for points, ink in lines:
         pixels = lens.project(points @ T_cw[:3, :3].T + T_cw[:3, 3])
@@ -172,14 +166,3 @@ def still(motion: Motion) -> bytes:
     file = BytesIO()
     whole.save(file, "PNG", optimize=True)
     return file.getvalue()
-
-
-_SQUARE = np.array([[1, 1, 0], [-1, 1, 0], [-1, -1, 0], [1, -1, 0]])
-
-
-def _sheet(position: Any, quaternion: Any, size: Any) -> Array:
-    """A face as two triangles, shape (2, 3, 3) in [m]."""
-    from scipy.spatial.transform import Rotation
-
-    corners = Rotation.from_quat(quaternion).apply(0.5 * _SQUARE * [*size, 0.0])
-    return np.asarray(corners + position)[[[0, 1, 2], [2, 3, 0]]]

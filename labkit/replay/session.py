@@ -479,8 +479,8 @@ def live(
         }
     )
     widget.words = f"{title}. Run this cell, press Start, and pull at the arm with the mouse."
-    q, things = np.array([first["q"]] * 2), first["things"]
-    widget.picture = lambda: still(Motion(robot, np.array([0.0, 1.0]), q, things=things))
+    q = np.array([first["q"]] * 2)
+    widget.picture = lambda: still(Motion(robot, np.array([0.0, 1.0]), q))
     return widget
 
 

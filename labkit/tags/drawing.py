@@ -6,9 +6,9 @@ The camera's frame c has z forward, x to the right and y down in the picture.  P
 middle of the upper left pixel (OpenCV's convention), so the middle of a picture 640 pixels wide is
 at u = 319.5.  A real lens bends lines too: undo that with ``cv2.undistort`` before anything else.
 
-What cameras see of robots are Baxter's meshes, or a capsule for each link of another arm.  They
-have no part in the physics.  If a world has only one of Baxter's arms, or no arm, the missing ones
-are drawn at Rethink's neutral pose.
+What cameras see of robots are Baxter's meshes, which have no part in the physics.  If a world has
+only one of Baxter's arms, or no arm, the missing ones are drawn at Rethink's neutral pose.  Other
+arms are not seen.
 """
 
 from __future__ import annotations
@@ -16,7 +16,7 @@ from __future__ import annotations
 import json
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
-from functools import cache, lru_cache
+from functools import cache
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -45,8 +45,6 @@ _SETTINGS = (
     .setShadingType(cv2.RASTERIZE_SHADING_FLAT)
 )
 _BOX = np.array([[x, y, z] for x in (-1, 1) for y in (-1, 1) for z in (-1, 1)], dtype=float)
-_COLOUR = (0.45, 0.47, 0.5)  # of an arm without meshes
-_THICK = 0.035  # radius of a capsule as a share of the total length of the capsules
 
 
 @dataclass(frozen=True)
@@ -137,14 +135,9 @@ def joined(surfaces: Iterable[Surface]) -> Surface:
     return Surface(np.concatenate(corners), np.concatenate(colours))
 
 
-def wrapped(points: Array, colour: Any) -> Surface:
-    """The convex hull of points, shape (n, 3) in [m]."""
-    return in_colour(points[ConvexHull(points).simplices], colour)
-
-
 def box(half: Any, colour: Any) -> Surface:
     """A box about the origin with edges of twice the lengths ``half``, shape (3,) in [m]."""
-    return wrapped(_BOX * half, colour)
+    return in_colour((_BOX * half)[ConvexHull(_BOX).simplices], colour)
 
 
 class Window(NamedTuple):
@@ -298,22 +291,15 @@ class RobotVisuals:
     def __init__(self, arms: Sequence[tuple[Robot, Array]]) -> None:
         """Take ``arms``, pairs of a robot and its joint angles, shape (n,) in [rad]."""
         q = {robot.name: angles for robot, angles in arms if robot.name in SIDES}
-        others = [(robot, angles) for robot, angles in arms if robot.name not in SIDES]
-        self.pieces: tuple[Piece, ...] = _meshes() if q or not others else ()
+        self.pieces: tuple[Piece, ...] = _meshes() if q or not arms else ()
         frames = joint_frames({side: baxter(side).neutral for side in SIDES} | q)
         poses = [frames[piece.parent] for piece in self.pieces]
-        for robot, angles in others:
-            T, links = np.eye(4), [np.eye(4)]
-            for body, angle in zip(robot.bodies, angles.tolist(), strict=True):
-                links.append(T := T @ np.array(body["T_parent"]) @ _turn(angle))
-            self.pieces += _capsules(robot)
-            poses += links
-        self.frames = np.array(poses)
+        self.frames = np.array(poses).reshape(-1, 4, 4)
 
     @property
     def balls(self) -> tuple[Array, Array]:
         """A ball around each piece: world centres (pieces, 3) and radii (pieces,) in [m]."""
-        centres = np.array([[*piece.centre, 1.0] for piece in self.pieces])
+        centres = np.array([[*piece.centre, 1.0] for piece in self.pieces]).reshape(-1, 4)
         radii = np.array([piece.radius for piece in self.pieces])
         return np.einsum("nij,nj->ni", self.frames, centres)[:, :3], radii
 
@@ -364,18 +350,6 @@ def _meshes() -> tuple[Piece, ...]:
         corners = np.asarray(points, dtype=float)[0][np.array(sides)[:, 0]]
         found.append(_piece(piece["parent"], in_colour(corners, piece["rgba"]).moved(piece["T"])))
     return tuple(found)
-
-
-@lru_cache(maxsize=8)
-def _capsules(robot: Robot) -> tuple[Piece, ...]:
-    """A rod with round ends for each link, from one joint to the next, and to the tip."""
-    ends = [*(np.array(body["T_parent"])[:3, 3] for body in robot.bodies), robot.T_hand_tip[:3, 3]]
-    radius = _THICK * float(sum(np.linalg.norm(end) for end in ends))
-    around, along = np.meshgrid(np.linspace(0.0, 2.0 * np.pi, 13)[1:], np.linspace(0, np.pi, 7))
-    ring = np.array([np.cos(around) * np.sin(along), np.sin(around) * np.sin(along), np.cos(along)])
-    ball = radius * ring.reshape(3, -1).T
-    rods = (wrapped(np.concatenate([ball, ball + end]), _COLOUR) for end in ends)
-    return tuple(map(_piece, ("base", *robot.joint_names), rods))
 
 
 @cache
