@@ -1,13 +1,12 @@
 """Figures from a log; most functions take axes to draw on, or None, and return the axes.
 
-`show`, `dials` and `progress` are for notebooks: their output appears below the cell.
+`show` and `dials` are for notebooks: their output appears below the cell.
 
 Curves differ by line style as well as by colour, and `describe` puts a run into words.
 """
 
 from __future__ import annotations
 
-import time
 from collections.abc import Callable
 from textwrap import fill
 from typing import Any
@@ -205,36 +204,6 @@ def dials(
     for slider in sliders.values():
         slider.observe(redraw, "value")
     return sliders
-
-
-def progress(doing: str, total: float) -> Callable[[float], None]:
-    """Show a progress bar for a task that takes more than a moment.
-
-    Args:
-        doing: What is being done, such as "following the tag".
-        total: The amount of work, such as a number of runs or of seconds.
-
-    Returns:
-        A function to call with the amount done; cheap enough for every tick of a control loop.
-    """
-    import ipywidgets
-
-    bar, words = ipywidgets.FloatProgress(0.0, max=total), ipywidgets.Label(f"{doing} …")
-    place = _display(ipywidgets.HBox([bar, words]), f"{doing} …", display_id=True)
-    latest = began = time.monotonic()
-
-    def tell(done: float) -> None:
-        nonlocal latest
-        now = time.monotonic()
-        if done < total and now - latest < 0.2:
-            return
-        latest, bar.value = now, done
-        left = (now - began) * (total - done) / done if done else 0.0
-        words.value = f"{doing}: about {left:.0f} s left"
-        if done >= total and place is not None:  # a saved notebook keeps the text, but not the bar
-            place.update({"text/plain": f"{doing}: done"}, raw=True)
-
-    return tell
 
 
 def _display(box: Any, words: str, **options: Any) -> Any:

@@ -182,8 +182,7 @@ def drawn_thing(thing: Any) -> dict[str, Any]:
     """A wall, a table or a band as plain numbers; empty for things that are not visible."""
     if isinstance(thing, Wall | Table):
         size, colour = (list(map(float, x)) for x in (thing.size, thing.colour))
-        about = {"size": size, "colour": colour, "fixed": isinstance(thing, Table)}
-        return placed("face", thing.T_wf) | about
+        return placed("face", thing.T_wf) | {"size": size, "colour": colour}
     if isinstance(thing, Spring):
         return {"kind": "band", "position": thing.anchor.tolist()}
     return {}

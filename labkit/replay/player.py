@@ -66,12 +66,6 @@ def figure_html(
     )
 
 
-def filled(page: str, **values: str) -> str:
-    """A template of `data/replay` with its values, which are HTML, filled in."""
-    text = (VIEWER.parent / "replay" / page).read_text(encoding="utf-8")
-    return Template(text).substitute(values)
-
-
 @cache
 def viewer_scripts() -> tuple[str, ...]:
     """The scripts of viewer and robot, 1.4 MB, for a page that must be a single file."""
@@ -88,7 +82,8 @@ def in_its_place(words: str, picture: bytes | None = None) -> dict[str, str]:
     told = escape(words)
     data = base64.b64encode(picture or b"").decode()
     shown = f'<img alt="{told}" src="data:image/png;base64,{data}">' if picture else ""
-    return {"text/plain": words, "text/html": filled("still.html", shown=shown, told=told)}
+    page = (VIEWER.parent / "replay/still.html").read_text(encoding="utf-8")
+    return {"text/plain": words, "text/html": Template(page).substitute(shown=shown, told=told)}
 
 
 def show(motion: Motion) -> Replay:
@@ -98,7 +93,7 @@ def show(motion: Motion) -> Replay:
         motion: The motion to show.
 
     Returns:
-        A widget; its ``save("run.html")`` writes a page.
+        A widget.
 
     Raises:
         TypeMismatch: ``motion`` is not a `Motion`.

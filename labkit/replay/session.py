@@ -35,7 +35,6 @@ from ..model import Model
 from ..plant import EVIDENCE, Plant
 from ..robot import SIDES
 from ..run import Driven, check_order, name_of, run_driven
-from ..scene import Spring
 from ..shapes import Array, as_array, as_number, shown
 from ..trajectory import Hold, PoseSample, Sample, Target
 from ..world import World
@@ -57,9 +56,6 @@ from any page, after which the session pauses."""
 
 FRAME, LATE = 1 / 30, 0.1
 """Time between two pictures, in [s]; a loop that is later than the second goes on from there."""
-
-FASTEST = 2.0
-"""Largest speed of dragged walls and bands, in [m/s], so that no wall jumps over the tip."""
 
 POINTS = 121
 """Number of points on the drawn path of the target."""
@@ -147,7 +143,6 @@ class Surroundings:
     def __init__(self, arm: Arm, target: Any) -> None:
         """Take the target and the things in the world of ``arm``."""
         self._arm, self._target, self.since = arm, target, 0.0
-        self._goals: dict[int, Array] = {}
         duration = getattr(target, "duration", None)
         self._round = duration if duration and _closed(target, duration) else None
         self._latest: Any = target(0.0)
@@ -195,7 +190,7 @@ class Surroundings:
             found["target"] = placed("target", T_wd) | {"fixed": True}
         for i, thing in enumerate(self._arm.world.things):
             if data := drawn_thing(thing):
-                found[f"thing {i}"] = data
+                found[f"thing {i}"] = data | {"fixed": True}
         shown: list[Any] = self._arm.world.shown
         for i, board in enumerate(shown):
             if hasattr(board, "T_wm"):
@@ -203,24 +198,9 @@ class Surroundings:
         return found
 
     def move(self, name: str, position: Any) -> None:
-        """Move a thing so that its drawn middle is at ``position``, shape (3,) in [m]."""
-        position = as_array(position, (3,), "position")
-        kind, _, number = name.partition(" ")
-        if kind == "thing":
-            self._goals[int(number)] = position
-        elif kind == "tag":
-            board: Any = self._arm.world.shown[int(number)]
-            board.place(se3.pose(board.T_wm[:3, :3], position))
-
-    def approach(self, seconds: float) -> None:
-        """Move dragged things towards their goals for ``seconds``, at `FASTEST` at most."""
-        for number, goal in self._goals.items():
-            thing: Any = self._arm.world.things[number]
-            name = "anchor" if isinstance(thing, Spring) else "point"
-            way = goal - getattr(thing, name)
-            share = min(1.0, FASTEST * seconds / max(1e-9, float(np.linalg.norm(way))))
-            moved = replace(thing, **{name: getattr(thing, name) + share * way})
-            self._arm.world.things[number] = moved
+        """Move a tag so that its middle is at ``position``, shape (3,) in [m]."""
+        board: Any = self._arm.world.shown[int(name.removeprefix("tag "))]
+        board.place(se3.pose(board.T_wm[:3, :3], as_array(position, (3,), "position")))
 
 
 def _closed(target: Any, duration: float) -> bool:
@@ -337,7 +317,6 @@ class LiveSession(Driven):
 
     def advance(self, k: int) -> tuple[int, float, bool]:
         """Simulate a tick, wait for real time, and obey the page."""
-        self.around.approach(self.period)
         k, t, cut = super().advance(k)
         now = time.monotonic()
         if now - self.hand.heard > STEADY:
@@ -430,7 +409,7 @@ def live(
     Args:
         arm: A simulated arm, preferably one made for this cell; it starts where it is.
         target: As for `run`.  A closed path repeats for ever.  None is the place where the arm is.
-            Walls, bands and tags can be dragged.
+            Tags can be dragged.
         controller: As for `run`; or several by name, to switch between.  One that has an argument
             with the name of a dial is given the dial's value there: ``law(state, target, Kp)``.
             None is a spring of 300 N/m from the tip to the target's pose.

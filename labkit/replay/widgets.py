@@ -2,16 +2,13 @@
 
 from __future__ import annotations
 
-import json
 from collections.abc import Callable
-from html import escape
-from pathlib import Path
 from typing import Any
 
 import anywidget
 import traitlets
 
-from .player import VIEWER, figure_html, filled, in_its_place, viewer_scripts
+from .player import VIEWER, in_its_place
 from .session import LiveSession
 
 
@@ -56,18 +53,6 @@ class Widget(anywidget.AnyWidget):
 
 class Replay(Widget):
     """Shows one motion."""
-
-    def save(self, path: Any) -> None:
-        """Write a page of 1.4 MB that plays the motion without a network or a kernel.
-
-        Args:
-            path: The file, with a name that should end in ".html".
-        """
-        data = json.loads(self.data)
-        scripts = "".join(f"<script>{text}</script>\n" for text in viewer_scripts())
-        figure = figure_html(data, self.words, self.words)
-        page = filled("page.html", title=escape(data["title"]), figure=figure, scripts=scripts)
-        Path(path).write_text(page, encoding="utf-8")
 
 
 class Live(Widget):

@@ -22,8 +22,7 @@ edges' profile is not quite a Gaussian's.  The variance taken is the cube root o
 times the second.
 
 A flat square seen from afar looks the same tilted in either of two directions, so there are two
-poses to choose from (Collins & Bartoli 2014, "Infinitesimal plane-based pose estimation", IPPE);
-the ratio of their errors says how reliable the choice is.
+poses to choose from (Collins & Bartoli 2014, "Infinitesimal plane-based pose estimation", IPPE).
 
 The covariance of the pose is :math:`J^+ C J^{+T}`, with J the derivative of the corners'
 pixels with respect to a small motion of the tag, and C the corners' covariance from
@@ -84,7 +83,6 @@ class Detection:
         noise: Standard deviation of a corner's coordinate, estimated from the picture, in [px].
         T_cm: Pose of the tag in the camera's frame, shape (4, 4).
         error: Root mean square distance between the corners and those of the pose, in [px].
-        ratio: How many times worse the other pose fits, at least 1; near 1 the tilt is a guess.
         covariance: Covariance of the position [m] and of the orientation, as a rotation vector
             [rad], in the camera's axes, shape (6, 6).
     """
@@ -94,7 +92,6 @@ class Detection:
     noise: float
     T_cm: Array
     error: float
-    ratio: float
     covariance: Array
 
 
@@ -222,11 +219,8 @@ def pose_covariance(T_cm: Any, camera: Camera | Intrinsics, size: float, noise: 
 
 def _detection(id: int, outline: Outline, lens: Intrinsics, size: float) -> Detection:
     corners = outline.corners
-    first, other = tag_poses(corners, lens, size)
-    best = _polished(first, corners, lens, size)
-    error, first_error, other_error = (
-        reprojection_error(T, corners, lens, size) for T in (best, first, other)
-    )
+    best = _polished(tag_poses(corners, lens, size)[0], corners, lens, size)
+    error = reprojection_error(best, corners, lens, size)
     noise = float(np.sqrt(outline.covariance.diagonal().mean()))
     unlike = _HIDDEN * max(0.0, error**2 - 3.0 * noise**2)  # a square, as if the lens were wrong
     return Detection(
@@ -235,7 +229,6 @@ def _detection(id: int, outline: Outline, lens: Intrinsics, size: float) -> Dete
         noise=noise,
         T_cm=best,
         error=error,
-        ratio=other_error / max(first_error, 1e-9),
         covariance=pose_covariance(best, lens, size, outline.covariance + unlike * np.eye(8)),
     )
 

@@ -278,9 +278,8 @@ def recorded(name, path):
     return [row["late_rms_mm"] for row in rows if (row["controller"], row["task"]) == (name, path)]
 
 
-shown = lk.plotting.progress("twenty runs", len(LAWS) * len(PATHS))
 table, whose = {}, {}
-for k, (name, (notebook, function_name, call)) in enumerate(LAWS.items()):
+for name, (notebook, function_name, call) in LAWS.items():
     function, whose[name] = my_law(notebook, function_name), "yours"
     try:
         if function is None:
@@ -290,7 +289,6 @@ for k, (name, (notebook, function_name, call)) in enumerate(LAWS.items()):
         ]
     except Exception:  # whatever a law does, the table goes on
         table[name], whose[name] = [recorded(name, path) for path in PATHS], "ours, recorded"
-    shown((k + 1) * len(PATHS))
 table["built-in"], whose["built-in"] = [recorded("baseline", path) for path in PATHS], "recorded"
 print(f"{'RMS error [mm]':22}" + "".join(f"{path:>8}" for path in PATHS))
 for name, errors in table.items():

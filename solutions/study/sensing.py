@@ -57,7 +57,6 @@ class Readings:
     Attributes:
         truth: The true `T_cm`, shape (n, 4, 4).
         estimate: The estimated `T_cm`, shape (n, 4, 4).
-        ratio: How many times worse the other of the two poses fits, shape (n,).
         pixels: The RMS residual of the corners after the fit of the pose, shape (n,) in [px].
         corner_error: True minus found corners, shape (n, 4, 2) in [px].
         covariance: The covariance that the detector expects, shape (n, 6, 6).
@@ -65,7 +64,6 @@ class Readings:
 
     truth: Array
     estimate: Array
-    ratio: Array
     pixels: Array
     corner_error: Array
     covariance: Array
@@ -134,7 +132,7 @@ def read(setup: Setup, poses: Any, seed: int = 0) -> Readings:
     poses = _as_poses(poses, "poses")
     n = len(poses)
     estimate, covariance = np.full((n, 4, 4), np.nan), np.full((n, 6, 6), np.nan)
-    ratio, pixels, off = np.full(n, np.nan), np.full(n, np.nan), np.full((n, 4, 2), np.nan)
+    pixels, off = np.full(n, np.nan), np.full((n, 4, 2), np.nan)
     sizes = {int(setup.tag.id): setup.tag.size}
     for i, picture in enumerate(pictures(setup, poses, seed)):
         found = detect_tags(picture, setup.intrinsics, sizes)
@@ -142,8 +140,8 @@ def read(setup: Setup, poses: Any, seed: int = 0) -> Readings:
             continue
         off[i] = setup.intrinsics.project(_corners(setup, poses[i])) - found[0].corners
         estimate[i], covariance[i] = found[0].T_cm, found[0].covariance
-        ratio[i], pixels[i] = found[0].ratio, found[0].error
-    columns = (poses, estimate, ratio, pixels, off, covariance)
+        pixels[i] = found[0].error
+    columns = (poses, estimate, pixels, off, covariance)
     return Readings(*map(locked, columns))
 
 

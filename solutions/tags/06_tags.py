@@ -306,11 +306,10 @@ still = np.zeros(3)
 class InHand:
     """A target for the arm: pictures from the camera in the hand go in, your servo's reference comes out."""
 
-    def __init__(self, tell=lambda t: None):
-        self.t, self.tell = np.inf, tell
+    def __init__(self):
+        self.t = np.inf
 
     def __call__(self, t):
-        self.tell(t)
         if t < self.t:  # a new run
             here = lk.Sample(arm.model.pose(arm.truth().q)[:3, 3], still, still)
             self.memory = servo.Memory(T_wt, servo.Bend(here, here, 1.0), t, t)
@@ -348,8 +347,8 @@ def along(t):
 
 arm.reset(arm.robot.ready)
 board.move(along)
-began, shown = world.t, lk.plotting.progress("following the tag", 8.0)
-log = lk.run(arm, InHand(shown), position_mode, rate=50.0, duration=8.0)
+began = world.t
+log = lk.run(arm, InHand(), position_mode, rate=50.0, duration=8.0)
 tips = np.array([arm.model.pose(q)[:3, 3] for q in log.q])
 goals = np.array([board.pose_at(began + t)[:3, 3] for t in log.t]) + [0.0, 0.0, 0.2]
 miss = 1e3 * np.linalg.norm(goals - tips, axis=1)

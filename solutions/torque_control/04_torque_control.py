@@ -385,7 +385,6 @@ steps = np.array([0.5, 1.0, 1.5, 2.0])
 kp, kd = (np.asarray(gain) for gain in my_choose_gains(model))
 plt.figure(figsize=(7, 3.2), layout="constrained")
 middle = []
-shown = lk.plotting.progress("twelve runs", len(occasions) * len(steps))
 for (name, plant, target), style in zip(occasions, ("-", "--", "-.")):
     errors = []
     for x in steps:
@@ -394,7 +393,6 @@ for (name, plant, target), style in zip(occasions, ("-", "--", "-.")):
         except lk.errors.Diverged as error:
             log = error.log
         errors.append(lk.metrics.summary(log).rms_mm)
-        shown(len(middle) * len(steps) + len(errors))
     plt.plot(steps, errors, style, marker="o", mfc="none", label=name)
     middle.append(f"{name} {errors[1]:.1f} mm")
 plt.axvline(1.0, color="0.5", linewidth=1)

@@ -88,17 +88,6 @@ def test_a_saved_notebook_keeps_picture_and_words():
     assert (pixels == [179, 0, 27, 255]).all(axis=2).any(), "the tip's path is drawn"
 
 
-def test_a_saved_run_is_one_file_with_all_that_plays_it(tmp_path):
-    """`save` writes a page that asks for nothing else."""
-    motion = swing(1.0)
-    show(motion).save(tmp_path / "run.html")
-    text = (tmp_path / "run.html").read_text()
-    page = Reader(text)
-    assert not [a for _, a in page.elements if "src" in a or "href" in a]
-    assert "globalThis.labkitRobot" in text
-    assert motion.title in text
-
-
 def test_a_still_shows_what_the_viewer_shows():
     """See-through arms are beside the arm."""
     plain = replace(swing(1.0, ghosts=0), path=None)

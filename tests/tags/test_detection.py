@@ -75,7 +75,7 @@ def test_the_pose_in_a_picture_made_without_the_renderer_is_the_true_one(tilt):
     assert np.degrees(se3.angle_between(found.T_cm[:3, :3], T_cm[:3, :3])) < 1.0
 
 
-def test_the_better_of_the_two_poses_comes_first_and_their_ratio_is_told():
+def test_the_better_of_the_two_poses_comes_first():
     """At 45 degrees the other pose, leaning the other way, fits many times worse."""
     tag, T_cm = lk.Tag(), tilted(0.8)
     pixels = LENS.project(tag.corners @ T_cm[:3, :3].T + T_cm[:3, 3])
@@ -85,7 +85,7 @@ def test_the_better_of_the_two_poses_comes_first_and_their_ratio_is_told():
     assert lean[0] * lean[1] < 0.0
     assert reprojection_error(other, pixels, LENS, 0.1) > 1.0
     (found,) = lk.detect_tags(painted(tag, T_cm), LENS, 0.1)
-    assert found.ratio > 5.0 and found.error < 0.1
+    assert found.error < 0.1
 
 
 def test_corners_may_be_a_list_and_must_be_those_of_a_square():
@@ -95,18 +95,6 @@ def test_corners_may_be_a_list_and_must_be_those_of_a_square():
     for none in (np.zeros((4, 2)), [[0, 0], [9, 9], [9, 0], [0, 9]]):
         with pytest.raises(lk.errors.OutOfRange, match="no square has its corners at the pixels"):
             tag_pose(none, LENS, 0.1)
-
-
-def test_seen_from_the_front_the_tilt_is_a_guess():
-    """With noise, the ratio of the errors falls towards 1 as the tag turns to the camera."""
-    tag, random = lk.Tag(), np.random.default_rng(0)
-    ratios = {}
-    for tilt in (0.02, 0.8):
-        clean = painted(tag, tilted(tilt, distance=2.5))
-        shots = [clean + random.normal(0.0, 10.0, clean.shape) for _ in range(9)]
-        seen = [lk.detect_tags(np.clip(x, 0, 255).astype(np.uint8), LENS, 0.1)[0] for x in shots]
-        ratios[tilt] = np.median([one.ratio for one in seen])
-    assert 1.0 <= ratios[0.02] < 4.0 < ratios[0.8]
 
 
 def test_the_covariance_is_what_noise_on_the_corners_does():
