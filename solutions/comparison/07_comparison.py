@@ -11,7 +11,7 @@
 # | **You need** | numpy; what a standard deviation is |
 # | **Given** | recorded runs of every controller; your own laws, if they lie beside this notebook |
 # | **You write** | a recipe for gains, a verdict on tasks |
-# | **Time** | core 2.2 hours, 12 points; all 2.7 hours, 16 points. Stop after 3 hours; what is left is read, not written. |
+# | **Time** | core 2.2 hours, 12 points; all 2.7 hours, 16 points. After 3 hours, stop writing and read the rest. |
 
 # %% setup=true
 import labkit as lk
@@ -205,7 +205,7 @@ print(f"phase margin of Kp alone, on paper: {phase:.0f} degrees")
 # %% [markdown]
 # ## Twenty runs
 #
-# The seed's task: five laws on line, circle, square and tag. The cell takes *your* laws from the notebooks 03 to 05 that
+# The report's task: five laws on line, circle, square and tag. The cell takes *your* laws from the notebooks 03 to 05 that
 # lie beside this one, and runs them on Baxter with our gains, once each (some minutes on a slow computer). Where it finds
 # none, or one that fails, it takes our recorded rows, five seeds each, and says so. Errors count after the first second.
 

@@ -11,7 +11,7 @@
 # | **You need** | Newton's law for one mass on a spring; matrices and their inverses |
 # | **Given** | the arm's model, an arm that can be pushed, a wall to meet |
 # | **You write** | the inertia at the tip, springs at the tip and in the joints, a scale |
-# | **Time** | core 3 hours, 20 points; all 3.7 hours, 24 points. Stop after 3 hours; what is left is read, not written. |
+# | **Time** | core 3 hours, 20 points; all 3.7 hours, 24 points. After 3 hours, stop writing and read the rest. |
 
 # %% setup=true
 from dataclasses import replace
@@ -481,8 +481,8 @@ print(f"My own arm carries {my_weigh(lk.my_arm(HANDLE)):.3f} kg.")
 # ## Feel it
 #
 # The same arm in real time, under your own law. Press *Start* and drag the tip: by how much must 10 N move it? Change
-# the stiffness. Drag the elbow: your law says nothing about it, so what holds it? (Friction; who builds such arms
-# adds a damper behind $I - J^T\bar J^T$, with $\bar J = M^{-1}J^T\Lambda$, which the tip does not feel.) Push the tip against the
+# the stiffness. Drag the elbow: your law says nothing about it, so what holds it? (Friction; those who build such arms
+# add a damper behind $I - J^T\bar J^T$, with $\bar J = M^{-1}J^T\Lambda$, which the tip does not feel.) Push the tip against the
 # wall. Then choose *position mode* and pull as hard as you can.
 
 # %%

@@ -15,7 +15,7 @@
 # | **You need** | numpy; the cross product, derivatives in several variables; 1-D arrays, twists as (v, w), `T_ab` (notebook 00) |
 # | **Given** | the simulated arm; where its joints and bodies are (`model.links`) |
 # | **You write** | the Jacobian, the mass matrix, gravity; as extensions the Coriolis matrix and the power balance |
-# | **Time** | core 2.5 hours, 13 points; all 3.5 hours, 21 points. Stop after 3 hours; what is left is read, not written. |
+# | **Time** | core 2.5 hours, 13 points; all 3.5 hours, 21 points. After 3 hours, stop writing and read the rest. |
 
 # %% setup=true
 import matplotlib.pyplot as plt
@@ -220,7 +220,7 @@ def gravity(masses, com_jacobians, g_w):
 # %% [markdown]
 # Command your torque and nothing else, and the arm should float where it is. Beside it is the report's
 # formula, $M J^T (0, 0, 0.981, 0, 0, 0)^T$: only the tip has
-# weight, only a tenth of it, and the result has not the unit of a torque.
+# weight, only a tenth of it, and the result does not have the unit of a torque.
 
 # %%
 def gravity_at(q):

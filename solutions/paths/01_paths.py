@@ -9,7 +9,7 @@
 # | **You need** | numpy; the derivative of a product and of a function of a function |
 # | **Given** | the simulated arm, a controller that follows, figures |
 # | **You write** | a time scaling and its duration, a circle, a trajectory from a path and a schedule, a search for the active segment |
-# | **Time** | core 2.5 hours, 17 points; all 3.1 hours, 21 points. Stop after 3 hours; what is left is read, not written. |
+# | **Time** | core 2.5 hours, 17 points; all 3.1 hours, 21 points. After 3 hours, stop writing and read the rest. |
 #
 # A *path* is geometry: a curve with a parameter `s` from 0 to 1, and no time in it. A *time scaling* is the
 # schedule `s(t)`. Together they are a *trajectory*: any path can be used with any schedule.
@@ -77,7 +77,7 @@ lk.plotting.show(
 )
 
 # %% [markdown]
-# Where the lowest curve jumps, the arm jerks. Whoever never jumps pays with a higher peak.
+# Where the lowest curve jumps, the arm jerks. Smoothness is paid for with a higher peak.
 #
 # ## How long does it take?
 #
@@ -117,7 +117,7 @@ lk.plotting.show(
 )
 
 # %% [markdown]
-# Up to $v_{max}^2 / a_{max}$, here 10 cm, the duration grows like a square root, then along a line.
+# Up to $v_{max}^2 / a_{max}$, here 10 cm, the duration grows like a square root, then linearly.
 #
 # ## The path: where
 #

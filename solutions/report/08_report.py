@@ -242,7 +242,7 @@ mine = lk.my_arm(HANDLE)
 #
 # | 0 | 1 | 2 | 3 |
 # |---|---|---|---|
-# | cannot be followed | can be followed with an effort | clear and in order; a share for each member | as before, no section is too long, and none repeats itself |
+# | cannot be followed | can be followed with effort | clear and in order; a share for each member | as before, no section is too long, and none repeats itself |
 #
 # ### BEGIN SOLUTION
 # A. identified the payload, B. wrote the law and the figure, C. found the failure and wrote sections 3 to 5.

@@ -10,7 +10,7 @@
 # | **You need** | poses as matrices (00), trajectories (01), or the box below |
 # | **Given** | the camera, the detector, a hand that follows a reference, an arm |
 # | **You write** | which pose fits a picture, Algorithm 1, a blend, a servo that glides |
-# | **Time** | core 3 hours, 18 points; all 4.1 hours, 26 points. Stop after 3 hours; what is left is read, not written. |
+# | **Time** | core 3 hours, 18 points; all 4.1 hours, 26 points. After 3 hours, stop writing and read the rest. |
 #
 # > **Box.** $T_{ab}$ takes coordinates in frame b to frame a, so neighbouring subscripts match: $T_{wt} T_{tc}
 # > T_{cm}$. Frames: w world, t tip, c camera (z forward, x right, y down), m tag (z out of the paper). A

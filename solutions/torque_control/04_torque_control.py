@@ -9,7 +9,7 @@
 # | **You need** | matrices; a damped spring, ë + kd ė + kp e = 0 |
 # | **Given** | the arm's model: M, C and g (02 builds them, here you only use them) |
 # | **You write** | a mended torque law, another one, gains for a real arm, a finder of bugs |
-# | **Time** | core 3 hours, 18 points; all 3.8 hours, 22 points. Stop after 3 hours; what is left is read, not written. |
+# | **Time** | core 3 hours, 18 points; all 3.8 hours, 22 points. After 3 hours, stop writing and read the rest. |
 
 # %% setup=true
 from dataclasses import replace

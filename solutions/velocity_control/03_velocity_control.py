@@ -9,7 +9,7 @@
 # | **You need** | numpy; the error is target minus actual, that of an orientation is the turn R_wd R_wtᵀ; twists are (v, w) (notebook 00) |
 # | **Given** | the arm as the textbook has it (`lk.IDEAL`) and with friction, lag and noise (`lk.BAXTER`); trajectories; the Jacobian |
 # | **You write** | a mended controller, a decay rate, a damped inverse, a controller of the tip, the lag of an arm |
-# | **Time** | core 3.2 hours, 22 points; all 3.6 hours, 26 points. Stop after 3 hours; what is left is read, not written. |
+# | **Time** | core 3.2 hours, 22 points; all 3.6 hours, 26 points. After 3 hours, stop writing and read the rest. |
 
 # %% setup=true
 import matplotlib.pyplot as plt
@@ -205,7 +205,7 @@ predict("with_more_d", truth=errors[3.0])
 #
 # The Jacobian says how the tip moves, $V = J\,\dot q$: six numbers from
 # seven. To command a motion of the tip you need an inverse; the *pseudo-inverse* finds
-# the smallest joint speeds. The trap: with the elbow straight the tip cannot go towards the shoulder, whatever the
+# the smallest joint speeds. The trap: with the arm stretched the tip cannot go towards the shoulder, whatever the
 # joints do. Near such a *singularity* the
 # exact answer is absurd. It pays to be a little wrong: minimise
 #

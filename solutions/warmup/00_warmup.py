@@ -10,7 +10,7 @@
 # | **You need** | Python with numpy; products of matrices |
 # | **Given** | the simulated arm, figures, the logarithm of a rotation |
 # | **You write** | a joint error, a tag's pose in the world, an orientation error |
-# | **Time** | 1.5 hours, 11 points. Stop after 3 hours; what is left is read, not written. |
+# | **Time** | 1.5 hours, 11 points. After 3 hours, stop writing and read the rest. |
 
 # %% setup=true
 import matplotlib.pyplot as plt
@@ -34,7 +34,7 @@ wanted - actual
 
 # %% [markdown]
 # The errors should have been three zeros. The sum of that table *is* zero, so a test of the sum passes. The
-# students whose report of 2019 this lab grew out of lost days to such shapes. labkit never stretches an array;
+# authors of the report of 2019 that this lab grew out of lost days to such shapes. labkit never stretches an array;
 # it raises an error:
 
 # %%
