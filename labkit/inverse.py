@@ -17,9 +17,6 @@ from .trajectory import Chain, Hold, PosePath, PoseSample, Sample, Trajectory
 if TYPE_CHECKING:
     from .model import Model
 
-NEAR_SINGULAR = 0.03
-"""Below this smallest singular value of the tip Jacobian, a pose counts as near a singularity."""
-
 _ITERATIONS = 200
 _MEASURED = 0.1  # [rad]; a measured start may be beyond a limit, by noise or by a soft stop
 
@@ -118,7 +115,6 @@ def _joint_trajectory(model: Model, target: Any, q: Array, posture: Array, sampl
             f"the joint angles jump by {jump:.2f} rad between two neighbouring poses: the path "
             "runs through a singularity; move it, or start from another q0"
         )
-    _warn_of_singularity(grid, np.array([model.tip_jacobian(q) for q in angles]))
     joints = Trajectory(Spline(grid, angles), target.scaling)
     _warn_of_speed(joints, model.robot)
     return joints
@@ -134,20 +130,6 @@ def _warn_of_speed(trajectory: Any, robot: Robot) -> None:
             f"too fast: at t = {t[k]:.2f} s joint {robot.joint_names[i]} should turn at "
             f"{share[k, i] * robot.speed[i]:.3g} rad/s, but its limit is {robot.speed[i]:g}; the "
             f"arm will lag unless the motion takes {share[k, i] * trajectory.duration:.3g} s",
-            LabkitWarning,
-            stacklevel=5,
-        )
-
-
-def _warn_of_singularity(s: Array, jacobians: Array) -> None:
-    """Warn if a path comes near a singularity, given the tip Jacobian at each s, (k, 6, n)."""
-    sigma = np.linalg.svd(jacobians, compute_uv=False)
-    k = int(sigma[:, -1].argmin())
-    if sigma[k, -1] < NEAR_SINGULAR:
-        warnings.warn(
-            f"near a singularity: at s = {s[k]:.2f} the manipulability is {sigma[k].prod():.2g} "
-            f"and the smallest singular value {sigma[k, -1]:.2g}, below {NEAR_SINGULAR:g}; expect "
-            "high joint speeds, or move the path, or start from another q0",
             LabkitWarning,
             stacklevel=5,
         )

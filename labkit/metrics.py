@@ -203,18 +203,13 @@ def tip_velocities(log: Log, model: Model | None = None) -> Array:
     return _tip_velocities(model or model_of(log), log.q, log.dq)
 
 
-def target_velocities(log: Log, model: Model | None = None) -> Array:
-    """Desired velocity of the tip's origin at each tick, world axes, shape (N, 3) in [m/s]."""
-    if isinstance(log.target, PoseSample):
-        return log.target.twist[:, :3]
-    target = _joint_target(log)
-    return _tip_velocities(model or model_of(log), target.position, target.velocity)
-
-
 def velocity_error(log: Log, model: Model | None = None) -> Array:
     """Target minus actual velocity of the tip's origin, world axes, shape (N, 3) in [m/s]."""
     model = model or model_of(log)
-    return target_velocities(log, model) - tip_velocities(log, model)
+    if isinstance(log.target, PoseSample):
+        return log.target.twist[:, :3] - tip_velocities(log, model)
+    target = _joint_target(log)
+    return _tip_velocities(model, target.position, target.velocity) - tip_velocities(log, model)
 
 
 def _tip_velocities(model: Model, q: Array, dq: Array) -> Array:

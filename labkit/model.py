@@ -275,8 +275,7 @@ class Model:
             TypeMismatch: ``target`` is something else, such as a target of joint angles.
 
         Warns:
-            LabkitWarning: A joint would exceed its speed limit, or the path comes near a
-                singularity.
+            LabkitWarning: A joint would exceed its speed limit.
         """
         return inverse.joint_trajectory(self, target, q0, samples)
 

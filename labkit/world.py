@@ -58,7 +58,6 @@ class World:
 
         Raises:
             UnknownName: There is no such engine.
-            LabkitError: The engine is not installed.
         """
         self.dt = as_number(dt, "dt", above=0.0)
         self.engine = chosen(engine)

@@ -238,16 +238,3 @@ def test_too_much_speed_is_a_warning_with_the_time_that_would_do(recwarn):
     assert 0.2 < enough < 2.0
     model.joint_trajectory(lk.Trajectory(line, lk.Quintic(1.01 * enough)), ready)
     assert not recwarn.list
-
-
-def test_a_path_near_a_singularity_is_a_warning():
-    """A path that ends with the elbow almost straight."""
-    model = lk.Model()
-    q = model.robot.ready.copy()
-    q[[1, 3, 5]] = -0.3, 0.25, 0.3
-    goal = q.copy()
-    goal[3] = 0.03
-    T, T_goal = model.pose(q), model.pose(goal)
-    turned = lk.PosePath(lk.Line(T[:3, 3], T_goal[:3, 3]), T[:3, :3], T_goal[:3, :3])
-    with pytest.warns(LabkitWarning, match="singular"):
-        model.joint_trajectory(lk.Trajectory(turned, lk.Quintic(30.0)), q)

@@ -11,7 +11,7 @@ from importlib import import_module
 from importlib.util import find_spec
 from typing import Protocol
 
-from ..errors import LabkitError, UnknownName
+from ..errors import UnknownName
 from ..plant import Plant
 from ..robot import Robot
 from ..shapes import Array
@@ -51,24 +51,15 @@ class Engine(Protocol):
         """Free the engine's resources; no other method is called afterwards."""
 
 
-def installed() -> list[str]:
-    """The engines that are installed."""
-    return [name for name in ENGINES if find_spec(name)]
-
-
 def chosen(name: str | None = None) -> str:
     """Check the name of an engine; None means that of LABKIT_ENGINE, or the first installed.
 
     Raises:
         UnknownName: There is no such engine.
-        LabkitError: The engine is not installed.
     """
-    name = name or os.environ.get("LABKIT_ENGINE") or next(iter(installed()), "mujoco")
+    name = name or os.environ.get("LABKIT_ENGINE") or next(filter(find_spec, ENGINES))
     if name not in ENGINES:
         raise UnknownName("engine", name, ENGINES)
-    if find_spec(name) is None:
-        others = ", ".join(installed())
-        raise LabkitError(f"the engine {name} is not installed; take one that is: {others}")
     return name
 
 

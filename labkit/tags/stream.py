@@ -77,11 +77,6 @@ class TagStream:
         self._due: float | None = None
         self._under_way: list[tuple[float, Reading | None]] = []
 
-    @property
-    def busy(self) -> bool:
-        """Whether the reading of a picture taken earlier has not arrived yet."""
-        return bool(self._under_way)
-
     def poll(self) -> tuple[Reading, ...]:
         """Take a picture if one is due; the readings that arrived since the last call, by stamp.
 

@@ -68,7 +68,8 @@ def overview(
     tip = [figure.add_subplot(left[k]) for k in range(4)]
     T_wt, T_wd = metrics.tip_poses(log, model), metrics.target_poses(log, model)
     curves(tip[0], log, T_wt[:, :3, 3], T_wd[:, :3, 3], "tip position [m]")
-    v_wt, v_wd = metrics.tip_velocities(log, model), metrics.target_velocities(log, model)
+    v_wt = metrics.tip_velocities(log, model)
+    v_wd = v_wt + metrics.velocity_error(log, model)
     curves(tip[1], log, v_wt, v_wd, "tip velocity [m/s]")
     for ax in tip[:2]:
         _legend_above(ax)

@@ -15,7 +15,6 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from labkit.errors import LabkitWarning
-from labkit.inverse import NEAR_SINGULAR
 from labkit.shapes import Array
 
 
@@ -28,7 +27,7 @@ class Watch:
         warned: Whether it has warned.
     """
 
-    threshold: float = NEAR_SINGULAR
+    threshold: float = 0.03
     warned: bool = field(default=False, repr=False)
 
     def share(self, J: Array) -> float:

@@ -1,12 +1,11 @@
 """The report's Algorithm 1, unchanged: look, plan a line to the tag, follow it, look again.
 
-Each look-up blocks the loop, and each new line starts from rest while the arm is moving; both make
-the arm jerk.  The algorithm is here for comparison with `TagFollower`, not as a model.
+Each new line starts from rest while the arm is moving, which makes the arm jerk.  The algorithm is
+here for comparison with `TagFollower`, not as a model.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any
 
@@ -14,17 +13,12 @@ import numpy as np
 
 from labkit import (
     BangBang,
-    JointTorque,
-    JointVelocity,
     Line,
     PosePath,
     PoseSample,
-    State,
     Trajectory,
     se3,
 )
-from labkit.control import Command, Controller
-from labkit.errors import ControllerError
 from labkit.shapes import as_vector
 from labkit.tags.stream import Reading
 
@@ -63,35 +57,3 @@ class SequentialServoing:
 
     def _line(self, start: Any, goal: Any) -> Trajectory:
         return Trajectory(PosePath(Line(start, goal), self.T_wt[:3, :3]), BangBang(self.duration))
-
-
-def stalled(controller: Controller, busy: Callable[[], bool], timeout: float = 0.2) -> Controller:
-    """Wrap a controller whose loop blocks, so that it is called only when it is not busy.
-
-    While it is busy, the arm obeys the last command until the command timeout, and then stops.
-
-    Args:
-        controller: The controller.
-        busy: Returns whether the loop is blocked now.
-        timeout: The arm's command timeout, in [s].
-    """
-    last: list[Any] = []  # when the controller was last called, and its command
-
-    def stalled(state: State, target: Any) -> Command:
-        if not (busy() and last):
-            command: Command = controller(state, target)
-            if isinstance(command, JointTorque):
-                raise ControllerError(
-                    "a torque controller cannot wait for a look-up: nothing would hold the arm; "
-                    "use one that commands speeds, or look beside the loop"
-                )
-            last[:] = [state.t, command]
-            return command
-        since, latest = last
-        command = latest
-        if state.t - since <= timeout or not isinstance(command, JointVelocity):
-            return command
-        return JointVelocity(0.0 * state.q)
-
-    stalled.__name__ = f"stalled {getattr(controller, '__name__', type(controller).__name__)}"
-    return stalled

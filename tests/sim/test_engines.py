@@ -7,7 +7,7 @@ import pytest
 from numpy.testing import assert_allclose
 
 import labkit as lk
-from labkit.errors import LabkitError, UnknownName
+from labkit.errors import UnknownName
 from labkit.scene import TIP_RADIUS
 from labkit.sim import ENGINES
 
@@ -120,11 +120,9 @@ def test_the_environment_or_the_world_chooses_the_engine(monkeypatch, capsys):
     assert lk.World(engine="mujoco").engine == "mujoco"
 
 
-def test_without_pybullet_mujoco_moves_the_arm_and_asking_for_it_says_how_to_get_it(monkeypatch):
-    """MuJoCo is then the default, and the error for pybullet has its pip command."""
+def test_without_pybullet_mujoco_moves_the_arm(monkeypatch):
+    """MuJoCo is then the default."""
     monkeypatch.delenv("LABKIT_ENGINE", raising=False)
     monkeypatch.setattr("labkit.sim.find_spec", lambda name: name == "mujoco" or None)
     with lk.World() as world:
         assert world.engine == "mujoco"
-    with pytest.raises(LabkitError, match="mujoco"):
-        lk.World(engine="pybullet")

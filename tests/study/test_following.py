@@ -6,7 +6,7 @@ import pytest
 import labkit as lk
 from labkit.tags.stream import Reading
 from solutions.study.tag_scenes import RADIUS, SPEED, circling_board
-from solutions.study.visual_servoing import SequentialServoing, stalled
+from solutions.study.visual_servoing import SequentialServoing
 from solutions.study.workspace_velocity import WorkspaceVelocityPD
 from solutions.tags.following import TagFollower, carry_forward
 
@@ -113,14 +113,12 @@ def test_a_tag_lost_for_two_seconds_is_coasted_after_held_and_found_again():
 
 
 def test_algorithm_1_jumps_and_lags_where_the_continuous_reference_does_not():
-    """Looking every 5 s, waiting 1.2 s for each answer, each line from rest."""
+    """Looking every 5 s, each answer 1.2 s late, each line from rest."""
     scene = circling_board()
     lookups = lk.TagStream(scene.camera, scene.board.tag, rate=0.2, delay=1.2)
     servoing = SequentialServoing(scene.T_wt, scene.offset)
-    controller = stalled(WorkspaceVelocityPD(scene.arm.model), lambda: lookups.busy)
+    controller = WorkspaceVelocityPD(scene.arm.model)
     log = lk.run(scene.arm, lk.TagTarget(lookups, servoing), controller, duration=12.0)
     error = np.linalg.norm(scene.error(log), axis=1)
     scene.arm.close()
     assert 1e3 * np.sqrt(np.mean(error[log.t >= 5.0] ** 2)) > 100.0
-    speeds = np.linalg.norm(log.dq, axis=1)
-    assert (speeds[(log.t > 0.6) & (log.t < 1.1)] < 1e-3).all(), "stands while it looks"
