@@ -107,7 +107,7 @@ def timeline() -> HTML:
     ax.spines["left"].set_visible(False)
     ax.tick_params(left=False)
     return figure(
-        "Ten pictures a second, each 100 ms under way. What is known grows older until the next "
+        "Ten pictures a second, each 100 ms on its way. What is known grows older until the next "
         "picture arrives, from 100 to 200 ms.",
         "Four pictures are taken at 0, 100, 200 and 300 ms and arrive 100 ms later each. Between "
         "two arrivals the newest picture ages from 100 to 200 ms. At 360 ms it is that of 200 ms, "

@@ -367,7 +367,7 @@ into = lk.replay.motion_of(
 lk.replay.show(into) if wall_force is not None else None
 
 # %% [markdown]
-# Two springs in a row that give way by $\delta$ press with $F = \delta/(1/K + 1/k_{wall})$. While the wall is much
+# Two springs in series that give way by $\delta$ press with $F = \delta/(1/K + 1/k_{wall})$. While the wall is much
 # stiffer than $K$, you decide the force.
 #
 # ## Springs in the joints

@@ -45,7 +45,7 @@ print("torque limit, [N m]", "  ".join(f"{x:6.0f}" for x in model.robot.effort))
 #
 # ## Who carries the weight?
 #
-# A textbook's arm leaves its weight to your torques. Baxter carries itself: a separate channel adds $g(q)$ to every
+# The textbook's arm leaves its weight to your torques. Baxter carries itself: a separate channel adds $g(q)$ to every
 # command. Release both with no torque at all.
 
 # %%
