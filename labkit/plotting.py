@@ -199,13 +199,8 @@ def dials(
         spans.append(words)
     words = f"Dials: {', '.join(spans)}"
     display(in_its_place(f"{words}; run the cell to turn them."), raw=True)
-    _display(ipywidgets.VBox(rows), words)
+    display(ipywidgets.VBox(rows)._repr_mimebundle_() | {"text/plain": words}, raw=True)
     places = [display(one.pop("obj"), display_id=True, **one) for one in drawn()]
     for slider in sliders.values():
         slider.observe(redraw, "value")
     return sliders
-
-
-def _display(box: Any, words: str, **options: Any) -> Any:
-    """Show a widget, or words where widgets cannot be shown."""
-    return display(box._repr_mimebundle_() | {"text/plain": words}, raw=True, **options)

@@ -21,13 +21,6 @@ class Thing(Protocol):
         """Act on the arms of ``world`` for the next physics step."""
 
 
-class Shown(Protocol):
-    """Something that is visible to cameras but has no part in the physics."""
-
-    def surface(self) -> Any:
-        """Its triangles at its present pose, a `labkit.tags.drawing.Surface`."""
-
-
 class World:
     """One physics world; two of them never share anything.
 
@@ -64,7 +57,7 @@ class World:
         self.steps = 0
         self.things: list[Thing] = []
         self.arms: list[Arm] = []
-        self.shown: list[Shown] = []
+        self.shown: list[Any] = []
         self.closed = False
         for thing in things:
             self.put(thing)
@@ -97,8 +90,8 @@ class World:
                 "this arm is live in a cell of this notebook; make a new Arm, or press Pause there"
             )
 
-    def show(self, thing: Shown) -> None:
-        """Let cameras see ``thing`` from now on."""
+    def show(self, thing: Any) -> None:
+        """Let cameras see ``thing`` from now on; its method `surface` returns its triangles."""
         self.shown.append(thing)
 
     def step(self, count: int = 1) -> None:

@@ -191,15 +191,14 @@ class Surroundings:
         for i, thing in enumerate(self._arm.world.things):
             if data := drawn_thing(thing):
                 found[f"thing {i}"] = data | {"fixed": True}
-        shown: list[Any] = self._arm.world.shown
-        for i, board in enumerate(shown):
+        for i, board in enumerate(self._arm.world.shown):
             if hasattr(board, "T_wm"):
                 found[f"tag {i}"] = placed("tag", board.T_wm) | {"size": float(board.tag.paper)}
         return found
 
     def move(self, name: str, position: Any) -> None:
         """Move a tag so that its middle is at ``position``, shape (3,) in [m]."""
-        board: Any = self._arm.world.shown[int(name.removeprefix("tag "))]
+        board = self._arm.world.shown[int(name.removeprefix("tag "))]
         board.place(se3.pose(board.T_wm[:3, :3], as_array(position, (3,), "position")))
 
 
