@@ -29,7 +29,7 @@ PATHS = os.pathsep.join([str(ROOT), str(BOOK), os.environ.get("PYTHONPATH", "")]
 MADE = BOOK / "generated"
 SAMPLED = ROOT / "build/book-sample"
 SAMPLE = (
-    "index", "live", "instructor_guide", "chapters/torque", "reference/arm",
+    "index", "live", "instructor_guide", "chapters/torque", "reference",
     "generated/notebooks/03_velocity_control",
 )  # fmt: skip
 """A page of each kind, for the gate; the first one is the root."""

@@ -137,7 +137,7 @@
   // Chapters and guides come before notebooks, because they explain; notebooks come before the reference.
   function score(result) {
     var page = result[0];
-    if (page.startsWith("reference/")) return result[4];
+    if (page === "reference") return result[4];
     return result[4] + (page.startsWith("generated/") ? 10 : 30);
   }
 
