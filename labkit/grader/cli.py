@@ -64,7 +64,7 @@ _course = click.option(
 )
 _of_assignment = click.argument("assignment", required=False, callback=_assignment)
 _names = click.argument("names", nargs=-1, metavar="[NAME]...")
-_students = click.option("--student", multiple=True, metavar="S", help="Only this one, or these.")
+_students = click.option("--student", multiple=True, metavar="S", help="Only this one; may be repeated.")
 _to = click.option("--to", type=PATH, metavar="FILE", help="Write to FILE, not to the screen.")
 
 
@@ -125,7 +125,7 @@ def term(course: Course, action: str, names: tuple[str, ...], yes: bool) -> int:
     if action == "new":
         old, made = new_term(course, names, yes)
         _tell([*[f"archived: {old}"] * bool(old), *made])
-        print(f"change the dates in {FILE}, and keep a copy of {course.term.parent}")
+        print(f"write the due dates in {FILE}, and keep a copy of {course.term.parent}")
         return 0
     for student in names or [""]:
         theirs, others = forget(course, student, yes)

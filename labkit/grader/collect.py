@@ -187,8 +187,10 @@ def _keep(course: Course, assignment: str, student: str, theirs: Sequence[File])
     kept = course.root / FOLDER / student / assignment
     folder = course.submitted / student / assignment
     path, newest, data = folder / f"{assignment}.ipynb", None, b""
-    for file in sorted(theirs, key=lambda x: (x.when, x.name.startswith(assignment))):
+    for file in sorted(theirs, key=lambda x: (x.name == path.name, x.when)):
         if file.name.lower().endswith(".ipynb"):
+            if newest and newest.name != file.name:
+                yield Taken(student, newest.name, f"in attempts/; {file.name} counts", fine=False)
             newest, data = file, file.read()
             _store(kept, file.when, data)
         else:
