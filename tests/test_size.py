@@ -58,7 +58,7 @@ def count():
 
 def test_no_storey_is_over_its_ceiling():
     """What grows by more than a path or a law is paid by a deletion in the same storey."""
-    over = {storey: f"delete {code - most} lines" for storey, _, code, most in count() if code > most}
+    over = {name: f"delete {code - most} lines" for name, _, code, most in count() if code > most}
     assert not over
 
 

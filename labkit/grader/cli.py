@@ -64,7 +64,7 @@ _course = click.option(
 )
 _of_assignment = click.argument("assignment", required=False, callback=_assignment)
 _names = click.argument("names", nargs=-1, metavar="[NAME]...")
-_students = click.option("--student", multiple=True, metavar="S", help="Only this one; may be repeated.")
+_students = click.option("--student", multiple=True, metavar="S", help="Only this one; repeatable.")
 _to = click.option("--to", type=PATH, metavar="FILE", help="Write to FILE, not to the screen.")
 
 
