@@ -97,9 +97,11 @@ def progress(folder: Path | None = None) -> None:
     """Print the points and the time left of each notebook, as the saved files say.
 
     Args:
-        folder: The folder that holds a folder for each notebook; by default the working directory.
+        folder: The folder that holds a folder for each notebook; by default the working directory,
+            or the one above that of a notebook.
     """
-    for checks in sorted((folder or Path.cwd()).glob("*/checks.json")):
+    here = Path.cwd().parent if Path("checks.json").exists() else Path.cwd()
+    for checks in sorted((folder or here).glob("*/checks.json")):
         data = read_checks(checks.parent)
         name = data["assignment"]
         cells = read_cells(checks.parent / f"{name}.ipynb")

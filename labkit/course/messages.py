@@ -42,6 +42,8 @@ def head(verdict: Verdict) -> str:
     says = outcome_word(verdict)
     if verdict.withheld:
         says += f": {why_not_counted(verdict.withheld)}"
+    elif untold(verdict):
+        return f"{verdict.name}: taken. Whether it is right is told with your marks. {points}."
     elif verdict.outcome is Outcome.RIGHT and not verdict.complete:
         return (
             f"{verdict.name}: {says} on all cases here; {points} if the instructor's cases agree."
@@ -52,6 +54,11 @@ def head(verdict: Verdict) -> str:
 def outcome_word(verdict: Verdict) -> str:
     """The words for a verdict's outcome; a valid prediction is committed, not right or wrong."""
     return "committed" if verdict.right and is_prediction(verdict) else HEADS[verdict.outcome]
+
+
+def untold(verdict: Verdict) -> bool:
+    """Whether nothing that carries points was tried, and nothing else is wrong."""
+    return verdict.right and {t.outcome for t in verdict.tests if t.weight} == {Outcome.NOT_TRIED}
 
 
 def is_prediction(verdict: Verdict) -> bool:

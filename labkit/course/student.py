@@ -32,7 +32,7 @@ from .card import card, picture
 from .causes import diagnosed
 from .judges import UNSAID
 from .marking import Mismatch, mark, not_counted, try_public
-from .messages import HEADS, Message, message, wrapped
+from .messages import HEADS, Message, message, untold, wrapped
 from .notebook import read_checks, verdict_metadata
 from .question import Call, Question
 from .serialize import read_question
@@ -338,8 +338,6 @@ def use(
     text = f"[stand-in] {name}: yours is replaced here by a stand-in ({HEADS[verdict.outcome]})."
     if wrong:
         text += " To see what your function does, add anyway=True to this use(...)."
-    elif anyway:
-        text += " anyway=True works only with a function that returns an answer in every case."
     print(wrapped(text))
     return given
 
@@ -351,5 +349,6 @@ def say(says: Message, verdict: Verdict, found: Mismatch | None) -> None:
         return
     from IPython.display import display
 
-    shown = card(says, verdict.outcome, found and picture(found))
+    outcome = Outcome.NOT_TRIED if untold(verdict) else verdict.outcome
+    shown = card(says, outcome, found and picture(found))
     display(shown, metadata=verdict_metadata(verdict), raw=True)

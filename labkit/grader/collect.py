@@ -187,7 +187,7 @@ def _keep(course: Course, assignment: str, student: str, theirs: Sequence[File])
     kept = course.root / FOLDER / student / assignment
     folder = course.submitted / student / assignment
     path, newest, data = folder / f"{assignment}.ipynb", None, b""
-    for file in sorted(theirs, key=lambda x: (x.name == path.name, x.when)):
+    for file in sorted(theirs, key=lambda x: _rank(x, path.name)):
         if file.name.lower().endswith(".ipynb"):
             if newest and newest.name != file.name:
                 yield Taken(student, newest.name, f"in attempts/; {file.name} counts", fine=False)
@@ -215,6 +215,11 @@ def _keep(course: Course, assignment: str, student: str, theirs: Sequence[File])
     elif there != data:
         says = f"kept, but the one of {before:%Y-%m-%d %H:%M} UTC counts"
     yield Taken(student, newest.name, says)
+
+
+def _rank(file: File, name: str) -> tuple[bool, datetime, bool]:
+    """The file with the right name comes last, then the newest, then a copy of that name."""
+    return file.name == name, file.when, file.name.startswith(name.partition(".")[0])
 
 
 def _written(path: Path) -> datetime:

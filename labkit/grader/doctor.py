@@ -7,7 +7,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from textwrap import wrap
 
-from ..sim import installed
+from ..sim import chosen
 from .pages import render
 
 DOCKER = (
@@ -47,7 +47,7 @@ def examine() -> Iterator[Finding]:
         says += f"; students can work here, and grading needs Linux: the container\n\n{elsewhere()}"
         yield Finding("system", False, says)
         return
-    says += f", Python {platform.python_version()}, {' and '.join(installed())}"
+    says += f", Python {platform.python_version()}, {chosen()}"
     yield Finding("system", True, says)
     yield from sandbox()
 

@@ -322,7 +322,7 @@ class LiveSession(Driven):
             self.hand.let_go()
         if now - self._drawn > FRAME:
             self._drawn = now
-            slow = f"slower than real time: {self.law.name} or another cell takes too long"
+            slow = f"slower than real time: the machine is busy, or {self.law.name} slow"
             self.note = slow if now - self._late < 1.0 else ""
             self._show(self.numbers())
         if now - self._heard > ABSENT:

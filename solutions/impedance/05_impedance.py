@@ -396,7 +396,7 @@ def springs_in_each_joint(J, stiffness, elbow):
 my_joint_impedance = use("joint_impedance", joint_impedance, springs_in_each_joint)
 mine = [np.asarray(my_joint_impedance(model.tip_jacobian(ready), x, 10.0)) for x in (K, D)]
 alone = [np.diag(JOINT_K), np.diag(JOINT_D)]
-chosen = "your matrix" if my_joint_impedance is joint_impedance else "a stand-in"
+chosen = "a stand-in" if my_joint_impedance is springs_in_each_joint else "your matrix"
 
 
 def stiffness_felt(K_q, D_q, newtons=5.0):

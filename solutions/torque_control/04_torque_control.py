@@ -373,7 +373,7 @@ def rethinks_example(model):
 
 
 my_choose_gains = use("choose_gains", choose_gains, rethinks_example)
-spring_law = "your springs" if my_choose_gains is choose_gains else "a stand-in, the springs of Rethink's example"
+spring_law = "a stand-in, the springs of Rethink's example" if my_choose_gains is rethinks_example else "your springs"
 
 loaded = replace(lk.BAXTER, name="with 1 kg", payload=1.0)
 occasions = (

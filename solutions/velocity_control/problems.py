@@ -126,11 +126,11 @@ WHAT_SHOWS = Problem(
     trials=(
         Trial("F, which is done for you", (call("F"),), weight=0.0),
         Trial(
-            "H, P and the tilt, of which the check tells only whether they are letters",
+            "H, P and the tilt: letters",
             tuple(Call((run,), expected=UNSAID) for run in ("H", "P", "tilt")),
-            hidden.runs_of_the_figure,
-            "whether these letters are right",
+            weight=0.0,
         ),
+        Trial("H, P and the tilt: the right ones", (), hidden.runs_of_the_figure),
     ),
     hints=(
         "A run shows a mistake if its error grows, or does not die. Compare the scales.",

@@ -154,7 +154,7 @@ def test_anyway_takes_yours_only_if_it_runs(capsys):
     assert "[anyway] double" in capsys.readouterr().out
     assert use("double", lambda x: 1 / 0, given, anyway=True) is given
     out = " ".join(capsys.readouterr().out.split())
-    assert "(it stopped with an error)" in out and "returns an answer in every case" in out
+    assert "(it stopped with an error)" in out
 
 
 def test_use_remembers_the_check():
