@@ -109,7 +109,7 @@ def on(page: Page, ground: str) -> np.ndarray:
 
 def force(t: float) -> list[float]:
     """The pull of the loop at a time in [s], in [N]: it grows, turns a little, and lets go."""
-    size = np.interp(t, [0.5, 1.5, 3.6, 3.8], [0, 45, 45, 0])
+    size = np.interp(t, [0.5, 1.5, 3.6, 3.8], [0, 30, 30, 0])
     turn = np.interp(t, [1.5, 3.6], [0, 0.9])
     return list(size * np.array([np.cos(turn), -np.sin(turn), 0.35 - 0.2 * turn]))
 
@@ -145,7 +145,7 @@ def photograph(page: Page, address: str, k: int, to: Path) -> None:
         moving[0].save(to.with_suffix(".avif"), save_all=True, append_images=moving[1:],
                        duration=1000 // RATE, quality=50, speed=3)  # fmt: skip
         shown = Image.alpha_composite(Image.new("RGBA", still.size, "#f8f7f4"), still).reduce(2)
-        shown.convert("RGB").quantize(192).save(STILLS.parent / "baxter.png")
+        shown.convert("RGB").quantize(256, kmeans=1).save(STILLS.parent / "baxter.png")
     else:
         load(page, address, k)
         page.evaluate("dt => panels[0].live(dt)", AFTER)
