@@ -22,6 +22,7 @@ from typing import Any, ClassVar
 
 from docutils import nodes
 from docutils.parsers.rst import directives
+from figure import Figure, named
 from sphinx.application import Sphinx
 from sphinx.util.docutils import SphinxDirective
 
@@ -42,6 +43,7 @@ class LiveArm(SphinxDirective):
     required_arguments = 1
     has_content = True
     option_spec: ClassVar[dict[str, Any]] = {
+        "name": directives.unchanged_required,
         "title": directives.unchanged_required,
         "plant": lambda x: directives.choice(x, ("ideal", "baxter")),
         "controller": directives.unchanged_required,
@@ -54,7 +56,7 @@ class LiveArm(SphinxDirective):
     def run(self) -> list[nodes.Node]:
         """Return the figure and the script that makes its button work."""
         piece = directives.choice(self.arguments[0], PIECES)
-        own = {k: v for k, v in self.options.items() if k not in SETTINGS}
+        own = {k: v for k, v in self.options.items() if k not in (*SETTINGS, "name")}
         settings = {k: v for k, v in self.options.items() if k in SETTINGS}
         title = own.setdefault("title", "The live arm")
         data = json.dumps({"piece": piece, **own, "settings": settings}).replace("<", "\\u003c")
@@ -65,18 +67,18 @@ class LiveArm(SphinxDirective):
             raise self.error(f"static/stills has no {still}; run book/_tools/make_stills.py")
         media = "(prefers-reduced-motion: no-preference)"
         loop = f'<source type="image/avif" media="{media}" srcset="{static}stills/{shown}.avif">'
-        html = (
+        before = (
             f'<figure class="lk-live" role="group" aria-label="{escape(title)}">'
             f'<picture class="lk-still">{loop * (STILLS / f"{shown}.avif").exists()}'
             f'<img class="dark-light" src="{static}stills/{still}" width="1480" height="800" '
             f'alt="{escape(title)}: the first view" loading="lazy"></picture>'
             f'<script type="application/json">{data}</script>'
             f'<div class="lk-offer"><p class="lk-without">{WITHOUT}</p></div></figure>'
-            f'<script defer src="{static}live/boot.js"></script>'
+            f'<script defer src="{static}live/boot.js"></script><div class="lk-caption">'
         )
-        caption = nodes.container(classes=["lk-caption"])
-        self.state.nested_parse(self.content, self.content_offset, caption)
-        return [nodes.raw("", html, format="html"), caption]
+        figure = Figure(before=before, after="</div>")
+        self.state.nested_parse(self.content, self.content_offset, figure)
+        return [named(figure, self.state.document, self.options.get("name"))]
 
 
 def setup(app: Sphinx) -> dict[str, Any]:
