@@ -49,9 +49,8 @@ def one_mass() -> HTML:
     ax.set(xlabel="time [s]", ylabel="displacement [mm]", ylim=(None, 115))
     ax.legend(ncols=3)
     return figure(
-        "2 kg on a spring of 200 N/m, pushed with 10 N until 1.5 s.",
-        "Displacement over three seconds for three damping ratios. All tend to 50 mm while pushed "
-        f"and to zero when released. Peaks for damping ratio {'; '.join(told)}.",
+        "2 kg on a spring of 200 N/m, pushed with 10 N until 1.5 s. If damped little, it swings.",
+        f"Displacement: pushed, it tends to 50 mm, released, to zero. Peaks: {'; '.join(told)}.",
     )
 
 
@@ -124,7 +123,8 @@ def push() -> HTML:
     ax.set(xlabel="time [s]", ylabel="displacement [mm]")
     ax.legend(fontsize="small")
     return figure(
-        "10 N sideways on the tip from 0.5 s to 2 s; no force is measured.",
+        "A push of 10 N sideways on the tip, from 0.5 s to 2 s, which no sensor measures. Friction "
+        "(dotted) lets the hand move less than its 300 N/m would (dashed).",
         f"Displacement over time: {'; '.join(told)}. The realistic arm, told 300 N/m, moves less, "
         f"as if {felt:.3g} N/m, and stays {left:.2g} mm off when released.",
     )
@@ -160,7 +160,7 @@ def push_replay() -> HTML:
     return replay(
         push_run(150.0),
         "A push of 10 N on a soft and a stiff arm",
-        "The arm as a spring of 150 N/m; see-through: 600 N/m.",
+        "A push at 150 N/m and, see-through, at 600 N/m. The soft hand moves four times as far.",
         label="150 N/m",
         ghosts={"600 N/m": push_run(600.0)},
         force=True,
@@ -173,7 +173,7 @@ def wall_replay() -> HTML:
     return replay(
         soft.log,
         "Into a wall",
-        "The target is 3 cm behind the face; the arrow is the force on the tip.",
+        "Workspace impedance and, see-through, the position mode, sent 3 cm into the wall.",
         label=soft.name,
         ghosts={stiff.name: stiff.log},
         force=True,
@@ -210,9 +210,9 @@ def wall() -> HTML:
     )  # fmt: skip
     told = ", ".join(f"{name} {force:.3g} N" for name, force in ends.items())
     return figure(
-        "Four controllers send the ideal arm 3 cm into a stiff wall. Force as the arm's own torque "
-        "sensors report it.",
-        f"Force on the wall over four seconds. At rest: {told}.",
+        "The force of four controllers that send the ideal arm 3 cm into a stiff wall. Only the "
+        "position mode presses with all that its motors have.",
+        f"Force on the wall, by the arm's own torque sensors, over four seconds. At rest: {told}.",
     )
 
 

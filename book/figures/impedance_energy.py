@@ -72,8 +72,8 @@ def elbow() -> HTML:
     ax.set(xlabel="time [s]", ylabel="e0 from its posture [rad]", ylim=(-0.24, 0.32))
     ax.legend(ncols=2, loc="upper right")
     return figure(
-        "The elbow is released 0.2 rad from its posture; the hand is to stay where it is. No "
-        "friction.",
+        "The elbow, released 0.2 rad from its posture while the hand stays. Without friction or a "
+        "damper it swings on.",
         f"With a damper in the null space e0 returns within a second; without one it still swings "
         f"by {late[1]:.2g} rad after four. The hand moves by {moved[1]:.1g} mm at most.",
     )

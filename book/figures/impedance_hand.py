@@ -39,7 +39,7 @@ def _push(ax: Axes, at: tuple[float, float], far: tuple[float, float], words: st
 
 def drawing() -> HTML:
     """A mass on a rail and the tip of an arm, each on a spring that a motor makes."""
-    _, (left, right) = plt.subplots(1, 2, figsize=(6.4, 2.9))
+    _, (left, right) = plt.subplots(1, 2, figsize=(6.4, 2.3))
     left.plot((0.0, 3.0), (0.0, 0.0), color="#57606a")
     left.add_patch(plt.Rectangle((0.9, 0.05), 0.7, 0.5, fill=False, edgecolor="C1", lw=1.6))
     left.text(1.25, 0.3, "m", ha="center", va="center")
@@ -51,23 +51,23 @@ def drawing() -> HTML:
     left.text(2.15, 0.62, "spring k, damper b:\nmade by the motor", ha="center", fontsize="small")
     left.text(2.7, -0.18, "target", ha="center", fontsize="small")
     _push(left, (0.88, 0.3), (0.3, 0.3), "push")
-    left.set(xlim=(-0.3, 3.2), ylim=(-0.4, 1.2), title="One mass on a rail")
+    left.set(xlim=(-0.3, 3.2), ylim=(-0.5, 1.3), title="One mass on a rail")
     points = np.array(((0.0, 0.0), (0.0, 0.45), (0.7, 1.0), (1.35, 0.55), (1.6, 0.55)))
     right.plot(*points.T, color="C1", marker="o", lw=3.0, markersize=6)
     right.plot(*_coil(points[-1], np.array((2.35, 0.75)), wide=0.05).T, "C0-", lw=1.4)
     right.plot(2.35, 0.75, "C2x")
     right.text(2.35, 0.88, "target", ha="center", fontsize="small")
-    right.text(1.05, 0.98, "joints make torques\nJᵀF + C q̇ + g", fontsize="small")
+    right.text(0.85, 1.06, "joints make torques\nJᵀF + C q̇ + g", fontsize="small")
     _push(right, (1.62, 0.5), (1.3, 0.05), "push")
-    right.set(xlim=(-0.3, 2.9), ylim=(-0.3, 1.5), title="The tip of an arm")
+    right.set(xlim=(-0.4, 3.1), ylim=(-0.3, 1.5), title="The tip of an arm")
     for ax in (left, right):
         ax.set_aspect("equal")
         ax.axis("off")
     return figure(
-        "The spring and the damper are not there: the motors make them. The push is not measured.",
-        "Left: a block of mass m on a rail, tied to a target by a spring and a damper and pushed "
-        "from the left. Right: an arm in outline whose tip is tied to its target by a spring and "
-        "is pushed from below; its joints make the torques of the law.",
+        "A mass and the tip of an arm, each on a spring to its target. Spring and damper are not "
+        "there: motors make them, without measuring the push.",
+        "Left: a block on a rail, tied to a target by a spring and a damper, pushed from the left. "
+        "Right: an arm whose tip has such a spring; its joints make the torques of the law.",
     )
 
 
@@ -174,8 +174,8 @@ def felt_inertia() -> HTML:
         "twenty times as much",
     )
     return figure(
-        "The inertia at the ready arm's tip by direction, in the vertical plane of x and z: the "
-        "distance of the curve from the middle, in kg.",
+        "The inertia that a push feels at the ready arm's tip, by direction in the vertical plane. "
+        "It is the distance of a curve from the middle, in kg.",
         f"Two closed curves. Free, the tip feels like {1 / mobility[0, 0]:.2g} kg "
         f"along x and {1 / mobility[2, 2]:.2g} kg along z. With all others held, "
         f"{L[0, 0]:.2g} and {L[2, 2]:.2g} kg.",
