@@ -65,7 +65,7 @@ def seen() -> HTML:
         f'height="{lens.height}"/><polygon points="{points}" fill="none" stroke="#0b3d91" '
         f'stroke-width="1.2"/>{dots}</svg>'
     )
-    caption = "What the simulated camera sees, and the corners found in it, numbered from 0."
+    caption = "Hand and tag, seen by the simulated camera. The corners found are numbered from 0."
     return HTML(framed(drawing, caption, alt))
 
 
@@ -98,7 +98,7 @@ def ambiguity() -> HTML:
         ax.plot(distances, curves[degrees], f"C{k}{style}", label=f"tilted by {degrees:.0f}°")
     ax.axhline(0.3, color="C5", linestyle=":")
     ax.text(0.2, 0.2, "0.3 pixels", fontsize="small")
-    ax.set(xlabel="distance [m]", ylabel="best fit of the wrong tilt [pixels]", yscale="log")
+    ax.set(xlabel="distance [m]", ylabel="misfit of the wrong tilt [pixels]", yscale="log")
     ax.legend()
     holds(
         all(
@@ -114,8 +114,8 @@ def ambiguity() -> HTML:
     )
     numbers({"near": distances[0], "far": distances[-1], "gap_near": near, "gap_far": far}, ".2g")
     return figure(
-        "A tag of 8 cm before a camera with a focal length of 600 pixels: how badly the pose with "
-        "the opposite tilt fits the four corners.",
+        "How badly the opposite tilt fits the corners of a tag of 8 cm, at a focal length of 600 "
+        "pixels. Below the noise of the corners (dotted) the two tilts look alike.",
         f"Three falling curves. For a tilt of 30 degrees the misfit is {near:.2g} pixels at "
         f"{distances[0]:.2g} m and {far:.2g} pixels at {distances[-1]:.2g} m; for 10 degrees it is "
         f"{curves[10.0][0]:.2g} and {curves[10.0][-1]:.2g}. A noise of 0.3 pixels is marked.",
@@ -160,7 +160,7 @@ def blend() -> HTML:
     holds(np.abs(np.diff(speed)).max() < 0.01 < v, "the blended speed has no jump")
     number("jump", v, ".2g")
     return figure(
-        "The goal moves from 0.2 m to 0.3 m when the reference is half-way.",
+        "A reference whose goal moves half-way, from 0.2 m to 0.3 m. Restarted, it stops first.",
         f"Reference and its speed over three seconds. The restarted one drops from {v:.2g} m/s to "
         "zero at t = 1 s and begins anew; the blended one passes without a corner and ends at the "
         "same place at the same time.",
@@ -221,7 +221,7 @@ def predict() -> HTML:
     ax.set(xlabel="time [s]", ylabel="target [m]")
     ax.legend(fontsize="small")
     return figure(
-        "A target that sways by 10 cm; pictures at 10 Hz, each 100 ms old when it arrives.",
+        "A target that sways, with its last picture and its prediction, which overshoots the turn.",
         f"Position over three seconds: the last picture is a staircase that trails behind with "
         f"{rms['stale']:.2g} mm RMS error; the prediction follows with {rms['predicted']:.2g} mm.",
     )
@@ -260,8 +260,8 @@ def following() -> HTML:
         error=misses["predicts"],
     )
     caption = (
-        "The board moves in a circle below the hand, and a camera beside the table sees it. The "
-        "error is the distance of the tip from the place 20 cm above the true tag."
+        "Two arms above a tag that goes round; the see-through one looks and then moves. The error "
+        "is the distance of the tip from the place 20 cm above the true tag."
     )
     return HTML(motion_html(motion, caption=caption, poster=poster(motion)))
 

@@ -46,7 +46,7 @@ BELIEFS = {
 
 def frames() -> HTML:
     """The frames of a camera beside the table, and the chain through them."""
-    _, ax = plt.subplots(figsize=(6.4, 3.5))
+    _, ax = plt.subplots(figsize=(6.4, 2.8))
     at = {"w": (0.0, 0.0), "c": (6.5, 2.5), "m": (4.9, 0.25), "t": (4.9, 1.6)}
     turn = {"w": 0.0, "c": -2.19, "m": 0.0, "t": math.pi}
     for name, (x, y) in at.items():
@@ -76,8 +76,8 @@ def frames() -> HTML:
     ax.set(xlim=(-0.5, 8.2), ylim=(-0.5, 3.1), aspect="equal")
     ax.axis("off")
     return figure(
-        "Four frames. The camera measures the tag in its own frame; the arm needs it in the "
-        "world's; the tip is to stay above it.",
+        "The frames of the world, the camera, the tag and the tip. The camera measures the tag in "
+        "its own frame; the arm needs it in the world's.",
         "A side view. An arm reaches from the world frame w on the left to its tip t on the right, "
         "above the tag m on a board. A camera c looks down at the tag. Arrows lead from w "
         "to c, from c to m and from w to m; the third is the product of the first two.",
@@ -98,17 +98,17 @@ def timeline() -> HTML:
                 fontsize="small")  # fmt: skip
     bracket = {"arrowstyle": "|-|", "color": "C1"}
     ax.annotate("", (360.0, 1.25), (200.0, 1.25), arrowprops=bracket)
-    ax.text(280.0, 1.36, "age of picture 2 now: 160 ms", ha="center", color="C1", fontsize="small")
+    ax.text(280.0, 1.42, "age of picture 2 now: 160 ms", ha="center", color="C1", fontsize="small")
     ax.plot([200.0, 200.0], [1.05, 1.25], color="C1", linestyle=":")
     ax.plot([360.0, 360.0], [-0.1, 1.25], color="C1", linestyle=":")
     ax.text(366.0, 1.2, "now", color="C1")
     ax.set_yticks([1.0, 0.0], ["taken", "arrived"])
-    ax.set(xlabel="time [ms]", xlim=(-15.0, 512.0), ylim=(-0.42, 1.6))
+    ax.set(xlabel="time [ms]", xlim=(-15.0, 512.0), ylim=(-0.42, 1.7))
     ax.spines["left"].set_visible(False)
     ax.tick_params(left=False)
     return figure(
-        "Ten pictures a second, each 100 ms on its way. What is known grows older until the next "
-        "picture arrives, from 100 to 200 ms.",
+        "Ten pictures a second, each 100 ms on its way. The newest one ages from 100 to 200 ms "
+        "before the next arrives.",
         "Four pictures are taken at 0, 100, 200 and 300 ms and arrive 100 ms later each. Between "
         "two arrivals the newest picture ages from 100 to 200 ms. At 360 ms it is that of 200 ms, "
         "160 ms old.",
@@ -367,8 +367,8 @@ def aims() -> HTML:
            ylim=(0.0, None))  # fmt: skip
     ax.legend(fontsize="small")
     return figure(
-        f"A tag at 0.1 m/s on a circle of {1e3 * RADIUS:.0f} mm, ten readings a second: how "
-        f"far the point aimed at is from the tag {AHEAD:g} s after the picture.",
+        f"How far the aim is from a tag that goes round at 0.1 m/s, {AHEAD:g} s after the picture. "
+        "The more a belief contains, the more the noise of the readings costs it.",
         f"Four curves over the noise of a reading, which rises from 0.02 to 3 mm. A belief that "
         f"the tag stays errs by {stays[0]:.2g} to {stays[-1]:.2g} mm, one that it goes straight on "
         f"by {straight[0]:.2g} to {straight[-1]:.2g} mm, one that it goes on bending by "
