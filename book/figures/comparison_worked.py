@@ -173,10 +173,10 @@ def two_units() -> HTML:
     told = "; ".join(f"on the {t} {np.mean(x):.2g} mm" for t, x in d.items())
     pooled, tasks = (x for _, x, _, _ in kinds)
     return figure(
-        "One ring for each seed, one bar for the mean of each path. Below, the interval that 15 "
-        "independent pairs would support, and the one that three paths do. "
-        "Both intervals are wide enough for eight questions at once, as explained below.",
-        f"Rings in three rows; their means are {told}. The interval of the pooled pairs is "
+        "Error of the joint torque PD minus that of the baseline: a ring for each seed, a bar for "
+        "the mean of each path. Pooled, the runs seem to decide; the paths do not.",
+        f"Rings in three rows; their means are {told}. Both intervals are wide enough for eight "
+        f"questions at once. The interval of the pooled pairs is "
         f"{pooled.mean:.2g} ± {pooled.half_width:.2g} mm and does not reach zero; that of the "
         f"three tasks is {tasks.mean:.2g} ± {tasks.half_width:.2g} mm and holds zero.",
     )
@@ -198,8 +198,8 @@ def pairing() -> HTML:
     right.set_xticks([0.0, 0.35], ["each", "mean"])
     right.set(xlim=(-0.3, 0.65), ylabel="first minus second [mm]", ylim=(-0.2, 1.1))
     return figure(
-        "Two controllers over five seeds (made-up numbers). Left, the errors, each seed a line; "
-        "right, the differences and the interval of their mean.",
+        "Five pairs of made-up errors, and their differences with the interval of the mean. The "
+        "two clouds overlap, and yet all differences have one sign.",
         f"On the left five falling lines between two clouds that overlap almost wholly, from "
         f"{min(SECOND)} to {max(FIRST)} mm. On the right five differences from 0.4 to 0.8 mm and "
         f"their mean {mean:.2g} ± {half:.2g} mm, well above zero.",
