@@ -33,9 +33,6 @@ SAMPLE = (
     "generated/notebooks/03_velocity_control",
 )  # fmt: skip
 """A page of each kind, for the gate; the first one is the root."""
-ICONS = ("angle-left", "angle-right", "arrow-up", "bars", "chevron-down", "chevron-right", "list",
-         "circle-half-stroke", "magnifying-glass", "moon", "sun")  # fmt: skip
-"""Icons of the theme that some page shows."""
 UNASKED = ("**/*.map", "_static/**/*fontawesome*", "_static/locales")
 """Files of the themes that no page of this book asks for."""
 
@@ -201,19 +198,27 @@ def build(sample: Sequence[str] = ()) -> int:
     for path in (BOOK / "static").rglob("*"):  # Sphinx does not copy these if no page has changed
         if path.is_file():
             _copy(path, html / "_static" / path.relative_to(BOOK / "static"))
-    for path in html.glob("_static/styles/pydata-sphinx-theme.css"):
-        text = path.read_text(encoding="utf-8")
-        path.write_text(re.sub(r"(\.fa-[\w-]+:before,?)+\{[^}]*\}", _asked, text), encoding="utf-8")
     for unasked in UNASKED:
         for path in html.glob(unasked):
             shutil.rmtree(path) if path.is_dir() else path.unlink()
+    _without_unused_rules(html)
     stamp.write_text(json.dumps(state))
     return 0
 
 
-def _asked(rule: re.Match[str]) -> str:
-    """A rule of the theme for an icon, if `vendor.sh` has kept this icon; else nothing."""
-    return rule[0] if set(ICONS) & set(re.findall(r"fa-([\w-]+):", rule[0])) else ""
+def _without_unused_rules(html: Path) -> None:
+    """Remove the rules of the themes' styles for classes that no page and no script names."""
+    files = (path for kind in ("html", "js") for path in html.rglob(f"*.{kind}"))
+    named = {name for path in files for name in re.findall(r"[\w-]+", path.read_text("utf-8"))}
+
+    def used(rule: re.Match[str]) -> str:
+        chosen = re.sub(r"/\*.*?\*/", "", rule[1], flags=re.S).split(",")
+        shown = (set(re.findall(r"\.(-?[a-zA-Z_][\w-]*)", one)) <= named for one in chosen)
+        return rule[0] if any(shown) else ""
+
+    for path in html.glob("_static/**/*.css"):
+        rules = re.sub(r"([^{}]+)\{[^{}]*\}", used, path.read_text("utf-8"))
+        path.write_text(re.sub(r"@media[^{}]*\{\s*\}", "", rules), "utf-8")
 
 
 def _builder() -> str:

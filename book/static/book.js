@@ -23,7 +23,7 @@
   // On a phone, a table that is too wide becomes a card for each row; for screen readers its roles keep it a table.
   var heads = function (table) { return Array.prototype.map.call(table.querySelectorAll("thead th, thead td"), function (h) { return h.textContent; }); };
   var fold = function () {
-    document.querySelectorAll(".bd-article table:not(.indextable)").forEach(function (table) {
+    document.querySelectorAll(".bd-article table").forEach(function (table) {
       table.classList.remove("lab-cards");
       var names = heads(table), box = table.parentElement;
       if (innerWidth > 700 || !names.length || box.scrollWidth <= box.clientWidth + 1) return;

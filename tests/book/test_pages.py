@@ -9,7 +9,7 @@ from book_pages import ROOT, in_order
 from bs4 import BeautifulSoup
 from build_book import SAMPLE
 
-PAGES = [*in_order(), "search", "genindex"]
+PAGES = [*in_order(), "search"]
 each = pytest.mark.parametrize(
     "name", [pytest.param(n, marks=() if n in SAMPLE else pytest.mark.soak) for n in PAGES]
 )
