@@ -61,7 +61,7 @@ def friction() -> HTML:
         ax.plot(first.speed[joint], first.torque[joint], ".", color="#999999", markersize=3)
         for sign in (-1.0, 1.0):
             ax.plot(sign * x, sign * (first.viscous[joint] * x + first.dry[joint]), "C0-")
-        ax.set(xlabel="speed [rad/s]", ylabel="torque left over [N m]", title=names[joint])
+        ax.set(xlabel="speed [rad/s]", ylabel="torque left over [N m]", title=names[joint][5:])
     numbers({"viscous_s1": viscous[:, 1].mean(), "viscous_newer": newer[:, 1].mean()}, ".2f")
     numbers({"viscous_s0_sd": viscous[:, 0].std(ddof=1), "viscous_s1_error": error[1]}, ".1g")
     rows = [
@@ -69,8 +69,8 @@ def friction() -> HTML:
         for name, one, *found in zip(names, true_dry, dry.T, viscous.T, strict=True)
     ]
     drawn = figure(
-        "What the motion does not explain of the torque in the first run, for two of the seven "
-        "joints; red: the fitted friction. The two scales differ.",
+        "The torque that the motion does not explain, at two joints in the first run. Red lines "
+        "are the fitted friction; the two scales differ.",
         "Two clouds of points, each in two halves joined by a jump at zero speed.",
     )
     listed = table(
@@ -106,7 +106,7 @@ def compensation() -> HTML:
         _ahead(logs["compensated"])
     return figure(
         "Joint impedance along the line on the realistic arm, without and with the friction found "
-        "in the first run.",
+        "in the first run. The same spring now tracks, and comes to rest near its target.",
         f"Error over time. RMS without compensation {off['plain'][0]:.2g} mm, with it "
         f"{off['compensated'][0]:.2g} mm.",
     )
@@ -235,15 +235,15 @@ def posture() -> HTML:
         q = redundancy.laps(model, q0, count=5, pull=pull)
         away = np.degrees(np.abs(q - q0).max(axis=1))
         ends[name] = away[-1]
-        ax.plot(away, **curve(k) | {"marker": "o"}, label=name)
+        ax.plot(away, **curve(k) | {"marker": "o", "markevery": 1}, label=name)
     free, held = ends.values()
     holds(free > 5.0 * held > 0.0, "After five laps")
     numbers({"drift_free": free, "drift_held": held}, ".2g")
     ax.set(xlabel="lap", ylabel="farthest joint [°]")
     ax.legend()
     return figure(
-        "The tip goes round the same circle five times: the joint that is farthest from its "
-        "start, at the end of each lap.",
+        "How far the farthest joint is from its start after each lap of the tip round a circle. "
+        "Without a posture the joints drift on.",
         f"After five laps a joint is {free:.2g} degrees off without a posture and {held:.2g} with.",
     )
 
@@ -263,7 +263,8 @@ def along_the_paths() -> HTML:
     ax.legend(ncols=2)
     told = ", ".join(f"{name} {w:.2g}" for name, w in least.items())
     return figure(
-        "Manipulability along the four paths.", f"Four smooth curves; the least values are: {told}."
+        "Manipulability along the four paths. The circle has the least.",
+        f"Four smooth curves; the least values are: {told}.",
     )
 
 
@@ -299,7 +300,7 @@ def robust() -> HTML:
     above.legend(fontsize="small")
     below.set(xlabel="elbow angle e1 [rad]", ylabel="tip misses [mm/s]")
     return figure(
-        "The tip is pulled outwards at 100 mm/s while the elbow is nearly straight.",
+        "Pulling the tip outwards at 100 mm/s near the stretched elbow. The tip pays for damping.",
         f"Above, the fastest joint: {shown(peak[0.0], '.2g')} rad/s at most without damping, "
         f"{peak[4e-3]:.2g} with the strongest. Below, what the tip misses: 0 and "
         f"{miss[4e-3]:.2g} mm/s at most.",

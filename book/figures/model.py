@@ -23,7 +23,7 @@ LIMIT = 1.5
 
 def jacobian_demo() -> HTML:
     """The live demo of the Jacobian."""
-    caption = "Live: turn the joints and watch a column of the tip Jacobian become an arrow."
+    caption = "The tip Jacobian, live. Turn the joints, and watch a column become two arrows."
     seen = picture("left", lk.IDEAL, lk.robot("left").ready)
     return HTML(demo_html("jacobian", caption=caption, poster=seen))
 
@@ -119,8 +119,8 @@ def singular() -> HTML:
     shows("against a limit of 1.5 rad/s", 1.5, LIMIT)
     numbers({"bent": fast[0], "straight": fast[2], "singular_peak": top}, ".2g")
     return figure(
-        "Pulling the tip towards the shoulder at 0.2 m/s, position and orientation held by the "
-        "pseudo-inverse. Both panels are of the same Jacobian, all six rows of it.",
+        "The smallest singular value of the tip Jacobian, and joint speed of a pull towards the "
+        "shoulder at 0.2 m/s. Where the one vanishes, dotted, the other grows without bound.",
         f"Left: the smallest singular value of the tip Jacobian over the elbow's angle; it falls "
         f"to zero at e1 = {at:.2f} rad and rises again towards the straight elbow. Right, on a "
         f"logarithmic scale: the largest joint speed, {fast[0]:.2g} rad/s at e1 = 1, a peak of "
@@ -140,8 +140,8 @@ def gravity() -> HTML:
         torque.append(model.gravity(q))
     rows = np.array(torque)
     _, ax = plt.subplots(figsize=(6.0, 3.0))
-    for k, style in ((1, "-"), (3, "--"), (5, "-.")):
-        ax.plot(angles, rows[:, k], f"C{k}{style}", label=lk.robot("left").joint_names[k])
+    for k, name, style in ((1, "s1", "-"), (3, "e1", "--"), (5, "w1", "-.")):
+        ax.plot(angles, rows[:, k], f"C{k}{style}", label=name)
     ax.set(xlabel="shoulder s1 [rad]", ylabel="g(q) [N m]")
     ax.legend(ncols=3)
     most = rows[np.abs(rows[:, 1]).argmax(), 1]
@@ -149,7 +149,7 @@ def gravity() -> HTML:
     numbers({"g_neutral": abs(neutral), "g_most": abs(most)}, ".3g")
     holds(abs(most) > 50.0, "more than the 50 N m that its motor gives")
     return figure(
-        "The torque that holds the arm, as the shoulder s1 turns and the rest stays neutral.",
+        "The torques that hold the arm as s1 alone turns. By far the largest is that of s1 itself.",
         f"Three curves over the range of s1. The shoulder's own torque is the largest, "
         f"{most:.3g} N m at its extreme and {neutral:.3g} N m at the neutral pose; the elbow e1 "
         f"carries up to {np.abs(rows[:, 3]).max():.3g} N m, the wrist w1 up to "
@@ -242,7 +242,7 @@ def power() -> HTML:
     holds(0.0 < off < 0.01 * peak, "the two curves differ by at most")
     numbers({"power_peak": peak, "power_off": off}, ".2g")
     return figure(
-        "Power during a swing of the arm, 1 kHz control on the ideal arm.",
+        "Power during a swing of the ideal arm, 1 kHz control. The two curves cover each other.",
         f"Two curves over two seconds lie on each other: the power of the motors and the rate of "
         f"the arm's energy. The peak is {peak:.2g} W, the largest difference {off:.2g} W.",
     )

@@ -96,7 +96,7 @@ def line_tracking() -> HTML:
     """The line, followed by the joint velocity PD on the realistic arm."""
     return tracking(
         line_run(),
-        f"The joint velocity PD (Kp = {KP:g} 1/s) follows the line on the realistic arm.",
+        f"The line with Kp = {KP:g} 1/s on the realistic arm. The tip's curves cover its target's.",
     )
 
 
@@ -105,8 +105,8 @@ def line_replay() -> HTML:
     return replay(
         line_run(),
         "Baxter's left arm follows a line",
-        f"The joint velocity PD with Kp = {KP:g} 1/s on the line; see-through: the same without "
-        "feedback (Kp = 0). Drag to turn the view, or use the arrow keys.",
+        f"The line with feedback, Kp = {KP:g} 1/s, and see-through without. Feedback makes the "
+        "error smaller until just before the end. Drag to turn the view, or use the arrow keys.",
         label=f"Kp = {KP:g}",
         ghosts={"Kp = 0": line_run(0.0)},
     )

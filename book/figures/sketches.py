@@ -50,8 +50,8 @@ def where_and_when() -> HTML:
         ax.set_aspect("equal")
         ax.axis("off")
     return figure(
-        "The same path on two schedules, and the two parts of the acceleration: along the path "
-        "where the pace changes, across it where the path bends.",
+        "One path on two schedules, and the acceleration at one of its points. The part along the "
+        "path changes the pace; the part across it is the price of the bend.",
         "Left: a half circle drawn twice with eleven dots at equal times. At constant pace the "
         "dots are evenly spaced; on the quintic they are close together at both ends and far "
         "apart in the middle. Right: at one point of the half circle an arrow along it, x prime "
@@ -101,7 +101,7 @@ def two_links() -> HTML:
         ax.set(xlim=(-0.12, 0.92), ylim=(-0.16, 0.94), aspect="equal")
         ax.axis("off")
     return figure(
-        "The arm of two rods, level upper arm and upright forearm. Left: the two columns of its "
+        "The arm of two rods, its upper arm level, its forearm upright. Left: the columns of its "
         "Jacobian. Right: how fast the hand can move, and what a push at it feels.",
         "A shoulder at the left, an elbow 0.4 m to its right with a mass of 4 kg, a hand 0.4 m "
         "above the elbow with a mass of 2 kg. Left: the shoulder alone moves the hand back and up, "
@@ -196,7 +196,7 @@ def damped() -> HTML:
         xlabel="singular value σ [m/rad]", ylabel="lost share of the motion [%]", ylim=(0, 100)
     )
     return figure(
-        f"The damped inverse with λ² = {damping:g}. The dotted line is at σ = λ.",
+        f"Inverse and damped inverse with λ² = {damping:g}. At σ = λ, dotted, half is lost.",
         f"Left: one over sigma grows without bound towards sigma = 0, the damped factor peaks at "
         f"{factor.max():.1f} where sigma is {sigma[factor.argmax()]:.3f} and falls to zero. Right: "
         "the share of the motion that is lost, all of it at sigma = 0, half of it at sigma = "

@@ -59,8 +59,8 @@ def responses() -> HTML:
     holds(different > 0.3, "Under augmented PD each joint is its own oscillator")
     number("spread_apd", 100.0 * different, ".2g")
     return figure(
-        "Seven joints, each 0.1 rad away, ideal arm at 1 kHz. Behind the left curves, in grey, the "
-        "solution of the linear error equation.",
+        "Seven joints, each 0.1 rad away, ideal arm at 1 kHz. On the left all follow the solution "
+        "of the linear error equation, in grey; on the right each has its own course.",
         "Left, computed torque: the seven curves lie on each other and on the critically damped "
         f"solution. Right, augmented PD: they differ by {100 * different:.2g} % of the start.",
     )
@@ -109,7 +109,7 @@ def sampled() -> HTML:
     number("real", real, ".2g")
     return figure(
         "A joint under kp = 8 N m/rad, kd = 1.5 N m s/rad, with the torque held between ticks. "
-        "Above one the error grows.",
+        "Above one the error grows: at 200 Hz, w2 needs its rotor.",
         f"Spectral radius against inertia, for 200 Hz and 1 kHz. At the bare wrist, {bare:.3g} "
         f"kg m², it is {values['bare_200']:.3g} at 200 Hz; with its rotor, {real:.2g} kg m², it is "
         f"{values['real_200']:.3g}.",
@@ -147,7 +147,7 @@ def weight() -> HTML:
     holds(twice > 50.0, "Added a second time it lifts the arm")
     number("twice", twice, ".0f")
     return figure(
-        "Holding still on an arm that carries its own weight, as Baxter does.",
+        "Holding still on an arm that carries its own weight. A second g lifts the hand at once.",
         f"Height of the hand above its target over two seconds. Left to the arm, it stays within "
         f"0.1 mm; with gravity added again it rises by {twice:.0f} mm.",
     )
@@ -164,7 +164,7 @@ def circle_run() -> lk.Log:
 
 def circle_replay() -> HTML:
     """The circle by computed torque, in 3-D."""
-    caption = "Computed torque on the circle, realistic arm, 200 Hz."
+    caption = "Computed torque on the circle. Nearly all of the torque carries the arm's weight."
     return replay(
         circle_run(), "A circle by computed torque", caption, label="computed torque", torque=True
     )
@@ -175,7 +175,7 @@ def circle_tracking() -> HTML:
     number("circle_rms", metrics.summary(circle_run()).rms_mm, ".2g")
     shows("Computed torque with $K_p = 225$ 1/s² and $K_d = 30$ 1/s", (225.0, 30.0),
           (ON_CIRCLE, ON_CIRCLE_KD))  # fmt: skip
-    return tracking(circle_run(), "Computed torque on the circle.")
+    return tracking(circle_run(), "The circle by computed torque. Friction leaves millimetres.")
 
 
 def speeds() -> HTML:

@@ -84,7 +84,7 @@ def drawing() -> HTML:
         more = "" if computed else ", q also into M"
         ax.text(6.6, -1.62, f"measured q and q̇{more}", fontsize="small")
     return figure(
-        "The two laws: the mass matrix multiplies the gains in the first, not in the second.",
+        "The two laws. The mass matrix multiplies the gains in the first, not in the second.",
         "Two block diagrams from left to right. Above: target, gains plus the target's "
         "acceleration, mass matrix, Coriolis and gravity torques, arm. Below: the mass matrix "
         "multiplies the target's acceleration alone, and springs and dampers are added after it. "
@@ -261,8 +261,8 @@ def payload() -> HTML:
     ax.set(xlabel="time [s]", ylabel="hand below its target [mm]", ylim=(0, None))
     ax.legend()
     return figure(
-        "Holding still under computed torque with 0.5 kg in the hand that the model does not have. "
-        "Dotted, the formula.",
+        "The hand sags under 0.5 kg that the model does not have. The run ends near the formula, "
+        "which is dotted; four times the gain leaves a quarter.",
         f"Two curves that rise and settle: {', '.join(said)}; the dotted lines of the formula "
         "are near the ends of the curves, and a little above where the gain is small.",
     )

@@ -76,9 +76,8 @@ def damping() -> HTML:
     below.set(xlabel="time [s]", ylabel="command to s0 [rad/s]", ylim=(0.0, None))
     ax.legend()
     return figure(
-        "A joint that starts 0.1 rad away, Kp = 2 1/s, ideal arm, 200 Hz. More Kd means slower. "
-        "The error with Kd = 1.1 looks harmless; the command (below, its first 40 ticks) swings "
-        "about its mean from tick to tick, further each time, until a limit of the motor holds it.",
+        "A joint that starts 0.1 rad away, Kp = 2 1/s, ideal arm at 200 Hz, and its first 40 "
+        "commands. More Kd is slower; above one the command swings ever further.",
         f"Error of joint s0 over two seconds. Measured decay: {'; '.join(told)}. With Kd = 1.1 the "
         "error leaves the exponential; from 0.1 to 1.5 s the command jumps by "
         f"{swings[0][20]:.2g} rad/s at every tick.",
@@ -108,9 +107,8 @@ def derivative() -> HTML:
         f"Kd = {kd:g}: {e:.3g} mm, {v:.2g} mm/s" for kd, e, v in zip(kds, error, shake, strict=True)
     )
     return figure(
-        "The joint velocity PD on a circle, Kp = 3 1/s, realistic arm. Left: the error after the "
-        "first second. Right: how fast the hand still moves when it should be at rest. Means of "
-        "ten seeds, with the standard deviation of one run.",
+        "What Kd does on a circle, Kp = 3 1/s, realistic arm. Less error, more shaking at rest. "
+        "Means of ten seeds, with the standard deviation of one run.",
         f"The error falls with Kd while the jitter at rest grows: {rows}.",
     )
 
@@ -163,8 +161,8 @@ def gains() -> HTML:
     )
     numbers({"over_last": 100.0 * over[-1], "margin_5": phase_margin(5.0)})
     return figure(
-        "The realistic arm: overshoot of a 0.1 rad step, measured, and phase margin of the loop, "
-        "computed from its lag and delay.",
+        "Overshoot of a 0.1 rad step, measured on the realistic arm, and phase margin, computed "
+        "from lag and delay. The overshoot grows as the margin falls.",
         f"Left: overshoot stays near zero up to Kp = 8 and reaches {100 * over[-1]:.0f} % at "
         f"Kp = 30. Right: the phase margin falls from {margin[0]:.0f} to {margin[-1]:.0f} degrees; "
         f"the dotted line marks the design value of {ENOUGH:g} degrees.",
@@ -230,7 +228,7 @@ def rotation_demo() -> HTML:
     ax.set_xticks(np.arange(3) + 0.2, ["x, roll", "y, pitch", "z, yaw"])
     ax.set(ylabel="error [rad]")
     ax.legend(fontsize="small", loc="lower left", bbox_to_anchor=(0.0, 1.0))
-    caption = "Live: two orientations, and two definitions of the error between them."
+    caption = "Two definitions of the error, live. Near a pitch of 90° they have little in common."
     return HTML(demo_html("rotation", caption=caption, poster=still()))
 
 
@@ -264,8 +262,8 @@ def euler() -> HTML:
     holds(0.0 < right < 0.5 < 8.0 < wrong, "With the logarithm the error ends at")
     numbers({"log_end": right, "euler_end": wrong}, ".2g")
     return figure(
-        "The hand points down and starts 5 degrees off about the world's x axis. Gain 1 1/s, ideal "
-        "arm.",
+        "Orientation error of a hand that points down and starts 5° off about the world's x axis, "
+        "gain 1 1/s, ideal arm. One law removes it, the other makes it grow.",
         f"Orientation error over three seconds: with the logarithm it falls from 5 to {right:.2g} "
         f"degrees; with subtracted Euler angles it ends at {wrong:.2g} degrees.",
     )
@@ -331,8 +329,8 @@ def circle_replay() -> HTML:
     return replay(
         runs["workspace"],
         "A circle by the workspace velocity PD",
-        "The workspace velocity PD on a circle with a radius of 10 cm; see-through: the joint "
-        "velocity PD. Kp = 5 1/s for both.",
+        "A circle by the workspace velocity PD and, see-through, by the joint velocity PD, both "
+        "with Kp = 5 1/s. The two arms and their errors cover each other.",
         label="workspace PD",
         ghosts={"joint PD": runs["joint"]},
     )
@@ -340,7 +338,8 @@ def circle_replay() -> HTML:
 
 def circle_tracking() -> HTML:
     """The workspace controller's circle, as curves."""
-    return tracking(circle_runs()["workspace"], "The workspace velocity PD on the circle.")
+    caption = "A circle by the workspace velocity PD. The error is largest where the hand is fast."
+    return tracking(circle_runs()["workspace"], caption)
 
 
 def check_yourself() -> HTML:
