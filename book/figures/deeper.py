@@ -35,7 +35,7 @@ def _found(between: bool = True) -> list[identification.Friction]:
 
 def friction() -> HTML:
     """The torque that the motion does not explain, against speed, and the line fitted to it."""
-    names, true_dry = lk.robot("left").joint_names, lk.BAXTER.each("stiction", 7)
+    names, true_dry = [x[5:] for x in lk.robot("left").joint_names], lk.BAXTER.each("stiction", 7)
     true, first = float(lk.BAXTER.viscous[0]), _found()[0]
     dry, viscous = (
         np.array([getattr(found, name) for found in _found()]) for name in ("dry", "viscous")
@@ -61,7 +61,7 @@ def friction() -> HTML:
         ax.plot(first.speed[joint], first.torque[joint], ".", color="#999999", markersize=3)
         for sign in (-1.0, 1.0):
             ax.plot(sign * x, sign * (first.viscous[joint] * x + first.dry[joint]), "C0-")
-        ax.set(xlabel="speed [rad/s]", ylabel="torque left over [N m]", title=names[joint][5:])
+        ax.set(xlabel="speed [rad/s]", ylabel="torque left over [N m]", title=names[joint])
     numbers({"viscous_s1": viscous[:, 1].mean(), "viscous_newer": newer[:, 1].mean()}, ".2f")
     numbers({"viscous_s0_sd": viscous[:, 0].std(ddof=1), "viscous_s1_error": error[1]}, ".1g")
     rows = [
