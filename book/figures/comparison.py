@@ -288,5 +288,5 @@ def side_by_side(task: str = "square") -> HTML:
         "A square by the joint velocity PD and, see-through, by the workspace impedance. Both "
         "start at the same place beside the path.",
         label="joint velocity",
-        ghosts={"workspace impedance": run_of("workspace impedance", task)},
+        ghosts={"impedance": run_of("workspace impedance", task)},
     )

@@ -177,17 +177,16 @@ def passive() -> HTML:
     numbers({"stable_5": round(np.interp(5.0, damping, damped), -3),
              "stable_wall_5": round(np.interp(5.0, damping, wall), -2)}, ",.0f")  # fmt: skip
     _, ax = plt.subplots(figsize=(6.0, 3.4))
-    ax.semilogy(damping, alone, "C0-", label="stable, no damper: also the passive limit 2b/T")
-    ax.semilogy(
-        damping, damped, "C1--", label="stable, damper of 60 N s/m: nowhere passive below 60"
-    )
-    ax.semilogy(damping, wall, "C2-.", label="the same, pressed to a wall of 500 kN/m")
+    ax.semilogy(damping, alone, "C0-", label="no damper; also the passive limit 2b/T")
+    ax.semilogy(damping, damped, "C1--", label="damper of 60 N s/m")
+    ax.semilogy(damping, wall, "C2-.", label="the same, at a wall of 500 kN/m")
     ax.axhline(300.0, color="#999999", linestyle=":")
     ax.text(30.0, 330.0, "the lab's spring", ha="right", fontsize="small")
     ax.set(xlabel="physical damping b [N s/m]", ylabel="largest stiffness [N/m]", ylim=(200, 3e5))
     ax.legend(fontsize="small")
     return figure(
-        "A mass of 8 kg on a spring that a computer makes from samples 5 ms apart.",
+        "The largest stiffness at which a computer's spring is stable, with 8 kg and samples 5 ms "
+        "apart. With the damper it is nowhere passive here.",
         f"Largest stable stiffness over physical damping. At 5 N s/m it is "
         f"{shown(np.interp(5.0, damping, alone), '.2g')} N/m without a damper, "
         f"{shown(np.interp(5.0, damping, damped), '.2g')} N/m with one of 60 N s/m and "
@@ -220,7 +219,8 @@ def servoing() -> HTML:
         f"{method.replace('measured', 'in metres')}: {end:.2g} mm" for method, end in ends.items()
     )
     return figure(
-        "Distance of the hand's camera from its goal, the focal length believed 20 % too long.",
+        "Distance of the hand's camera from its goal, with a focal length believed 20 % too long. "
+        "Only the goal in metres is missed.",
         f"Three falling curves on a logarithmic scale. At the end {told}.",
     )
 

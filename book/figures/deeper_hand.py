@@ -48,8 +48,8 @@ def trip() -> HTML:
     ax.set(xlabel="compression [mm]", ylabel="force [N]", ylim=(0, None))
     ax.legend()
     return figure(
-        "A spring of 300 N/m made from samples 0.1 s apart, pressed by 50 mm and let out again at "
-        "0.1 m/s.",
+        "A spring of 300 N/m from samples 0.1 s apart, pressed by 50 mm at 0.1 m/s and let out. "
+        "The steps on the way out are above those on the way in.",
         "Two staircases around the straight line of a real spring: the one on the way in is below "
         f"it, the one on the way out above. Work in {1e3 * spent:.3g} mJ, work out "
         f"{1e3 * returned:.3g} mJ.",

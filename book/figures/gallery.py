@@ -35,7 +35,7 @@ def all_methods(task: str) -> HTML:
     ax.set_ylim(bottom=max(ax.get_ylim()[0], 0.02))
     ax.legend(fontsize="small", ncols=2, loc="lower left", bbox_to_anchor=(0.0, 1.0))
     return figure(
-        f"How far the tip is from its target on the {task}, by method; the scale is logarithmic.",
+        f"Error of the tip on the {task} by each method. The scale is logarithmic, from 0.02 mm.",
         f"Curves of the error over time. RMS after the first second: {'; '.join(told)}.",
     )
 

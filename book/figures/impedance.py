@@ -174,7 +174,7 @@ def wall_replay() -> HTML:
         soft.log,
         "Into a wall",
         "Workspace impedance and, see-through, the position mode, sent 3 cm into the wall.",
-        label=soft.name,
+        label="impedance",
         ghosts={stiff.name: stiff.log},
         force=True,
         things=[experiments.the_wall()],

@@ -130,9 +130,8 @@ def hangs() -> HTML:
     numbers({"hang_low": error[ends[0]], "hang_high": error[ends[1]]}, ".2g")
     words = "; ".join(f"{c}: {', '.join(t) or 'never'}" for c, t in turned.items())
     return figure(
-        "Difference of the RMS errors on the line, in mm: positive where the claim above is true. "
-        "One assumption at a time is at the end of its range; below 0.5 mm nothing is decided. "
-        "Red if the verdict differs from that of the first row, or an arm is lost.",
+        "Differences of the RMS errors on the line in mm, one assumption at a time at an end of "
+        "its range. Positive where the claim above is true, red where the verdict has changed.",
         f"A table of {len(names)} plants and {len(claims)} claims. The "
         f"assumptions that change verdicts are: {words}.",
     )
@@ -185,10 +184,8 @@ def tuning() -> HTML:
     shows("The report ended at $K_p$ = 3 1/s", 3.0, KP)
     numbers({"procedure": found.Kp, "factor": found.Kp / KP}, ".2g")
     return figure(
-        "The report's procedure on the shoulder s0: the gain rises until the joint oscillates, and "
-        "half of that is taken (dotted). It counts as oscillating from the first gain on that "
-        f"leaves more than {OSCILLATES:g} of the swing before (grey line); the gains rise "
-        "in steps of 30 %.",
+        "The report's procedure on joint s0. The gain rises by 30 % at a time until each swing "
+        f"has {OSCILLATES:g} of the one before (grey line); half of that gain is taken (dotted).",
         f"Swing left over against gain. The arm oscillates at {found.ultimate:.3g} 1/s, which "
         f"gives {found.Kp:.2g}.",
     )
