@@ -7,12 +7,10 @@ import math
 import matplotlib.pyplot as plt
 import numpy as np
 from IPython.display import HTML
-from matplotlib.axes import Axes
 from scipy.optimize import fsolve
 
 import labkit as lk
 from labkit.scene import contact_stiffness
-from labkit.shapes import Array
 from solutions.study import experiments
 from solutions.study.gains import TIP_SPRING
 
@@ -22,53 +20,6 @@ from .page import figure, number, numbers, table
 JOINT_SPRINGS = np.array((200.0, 200.0, 100.0, 100.0, 10.0, 10.0, 2.0))
 """Stiffness of the joint impedance controller on the ideal arm, in [N m/rad]."""
 PUSH = 10.0
-
-
-def _coil(a: Array, b: Array, turns: int = 7, wide: float = 0.06) -> Array:
-    """A zigzag from a to b, shape (k, 2)."""
-    along = (b - a) / np.linalg.norm(b - a)
-    s = np.linspace(0.15, 0.85, 2 * turns)
-    side = np.outer(wide * (-1.0) ** np.arange(2 * turns), (-along[1], along[0]))
-    return np.vstack([a, a + np.outer(s, b - a) + side, b])
-
-
-def _push(ax: Axes, at: tuple[float, float], far: tuple[float, float], words: str) -> None:
-    ax.annotate("", at, far, arrowprops={"arrowstyle": "-|>", "color": "C2", "lw": 1.8})
-    ax.text(*far, words, ha="right", va="center", fontsize="small", color="C2")
-
-
-def drawing() -> HTML:
-    """A mass on a rail and the tip of an arm, each on a spring that a motor makes."""
-    _, (left, right) = plt.subplots(1, 2, figsize=(6.4, 2.3))
-    left.plot((0.0, 3.0), (0.0, 0.0), color="#57606a")
-    left.add_patch(plt.Rectangle((0.9, 0.05), 0.7, 0.5, fill=False, edgecolor="C1", lw=1.6))
-    left.text(1.25, 0.3, "m", ha="center", va="center")
-    left.plot(*_coil(np.array((1.6, 0.42)), np.array((2.7, 0.42))).T, "C0-", lw=1.4)
-    left.plot((1.6, 2.05), (0.16, 0.16), "C3-", lw=1.4)
-    left.plot((2.3, 2.05, 2.05, 2.3), (0.23, 0.23, 0.09, 0.09), "C3-", lw=1.4)
-    left.plot((2.18, 2.7), (0.16, 0.16), "C3-", lw=1.4)
-    left.plot((2.7, 2.7), (0.0, 0.6), color="#57606a", lw=1.4)
-    left.text(2.15, 0.62, "spring k, damper b:\nmade by the motor", ha="center", fontsize="small")
-    left.text(2.7, -0.18, "target", ha="center", fontsize="small")
-    _push(left, (0.88, 0.3), (0.3, 0.3), "push")
-    left.set(xlim=(-0.3, 3.2), ylim=(-0.5, 1.3), title="One mass on a rail")
-    points = np.array(((0.0, 0.0), (0.0, 0.45), (0.7, 1.0), (1.35, 0.55), (1.6, 0.55)))
-    right.plot(*points.T, color="C1", marker="o", lw=3.0, markersize=6)
-    right.plot(*_coil(points[-1], np.array((2.35, 0.75)), wide=0.05).T, "C0-", lw=1.4)
-    right.plot(2.35, 0.75, "C2x")
-    right.text(2.35, 0.88, "target", ha="center", fontsize="small")
-    right.text(0.85, 1.06, "joints make torques\nJᵀF + C q̇ + g", fontsize="small")
-    _push(right, (1.62, 0.5), (1.3, 0.05), "push")
-    right.set(xlim=(-0.4, 3.1), ylim=(-0.3, 1.5), title="The tip of an arm")
-    for ax in (left, right):
-        ax.set_aspect("equal")
-        ax.axis("off")
-    return figure(
-        "A mass and the tip of an arm, each on a spring to its target. Spring and damper are not "
-        "there: motors make them, without measuring the push.",
-        "Left: a block on a rail, tied to a target by a spring and a damper, pushed from the left. "
-        "Right: an arm whose tip has such a spring; its joints make the torques of the law.",
-    )
 
 
 def planar() -> None:

@@ -9,7 +9,6 @@ import numpy as np
 from IPython.display import HTML
 
 import labkit as lk
-from labkit.plotting import curve
 from solutions.study.singular import damped_inverse
 from solutions.study.workspace_velocity import WorkspaceVelocityPD
 
@@ -108,72 +107,6 @@ def two_links() -> HTML:
         "at right angles to the dotted line from shoulder to hand; the elbow alone moves it "
         "straight back. Right: an ellipse of the hand's speeds, long towards back and up; a "
         "horizontal push feels 2 kg and a vertical one 6 kg.",
-    )
-
-
-def loop() -> HTML:
-    """The loop of a joint that receives speed commands."""
-    _, ax = plt.subplots(figsize=(6.4, 2.7))
-    boxes = {
-        "Kp": (2.3, 1.0), "drive\n1/(τᵥs + 1)": (5.3, 1.0), "1/s": (7.5, 1.0),
-        "age δ": (4.6, -0.6),
-    }  # fmt: skip
-    for text, (x, y) in boxes.items():
-        ax.text(x, y, text, ha="center", va="center", fontsize="small",
-                bbox={"boxstyle": "round,pad=0.45", "facecolor": "none",
-                      "edgecolor": FRAME})  # fmt: skip
-    for x in (1.0, 3.6):
-        ax.plot(x, 1.0, "o", markersize=13, markerfacecolor="none", markeredgecolor=FRAME)
-        ax.text(x, 1.0, "Σ", ha="center", va="center", fontsize="x-small")
-    for x, y, sign in ((0.68, 0.72, "+"), (1.22, 0.42, "−"), (3.22, 0.72, "+"), (3.38, 1.5, "+")):
-        ax.text(x, y, sign, ha="center", va="center", fontsize="small")
-    for start, end in (
-        ((0.0, 1.0), (0.78, 1.0)), ((1.22, 1.0), (1.9, 1.0)), ((2.7, 1.0), (3.38, 1.0)),
-        ((3.82, 1.0), (4.45, 1.0)), ((6.15, 1.0), (7.1, 1.0)), ((7.9, 1.0), (9.2, 1.0)),
-        ((3.6, 2.1), (3.6, 1.3)), ((8.5, -0.6), (5.15, -0.6)), ((1.0, -0.6), (1.0, 0.7)),
-    ):  # fmt: skip
-        _arrow(ax, start, np.subtract(end, start), FRAME)
-    ax.plot((8.5, 8.5), (1.0, -0.6), color=FRAME, linewidth=1.4)
-    ax.plot((4.05, 1.0), (-0.6, -0.6), color=FRAME, linewidth=1.4)
-    for x, y, text in (
-        (0.3, 1.25, "$q_d$"), (1.5, 1.25, "e"), (3.75, 1.95, "feed-forward, speed of the target"),
-        (4.05, 1.25, "u"), (6.6, 1.25, "q̇"), (8.9, 1.25, "q"),
-    ):  # fmt: skip
-        ax.text(x, y, text, ha="left" if len(text) > 9 else "center", fontsize="small")
-    ax.set(xlim=(-0.1, 9.4), ylim=(-1.1, 2.4))
-    ax.axis("off")
-    return figure(
-        "The loop of this chapter for one joint, with Kd = 0. The drive lags behind its command "
-        "and what the controller knows is old; both limit the gain.",
-        "A block diagram. The target q d minus the measured q is the error e; Kp times e plus the "
-        "speed of the target is the command u. The drive, a lag, turns u into the joint's speed, "
-        "an integrator turns that into the angle q, and q returns to the difference with the "
-        "age delta.",
-    )
-
-
-def null_space() -> HTML:
-    """An arm of three rods holds its hand still while its elbows move."""
-    hand, rod = np.array((0.75, 0.0)), 0.4
-    _, ax = plt.subplots(figsize=(5.6, 2.6))
-    for k, first in enumerate((0.75, 1.05, 1.3)):
-        one = rod * np.array((np.cos(first), np.sin(first)))
-        gap = hand - one
-        reach = np.linalg.norm(gap)
-        bend = np.arccos(reach / (2.0 * rod))
-        course = np.arctan2(gap[1], gap[0]) + bend
-        two = one + rod * np.array((np.cos(course), np.sin(course)))
-        ax.plot(*np.array(((0.0, 0.0), one, two, hand)).T, **curve(k) | {"marker": "o"})
-    ax.plot(*hand, "*", color=FRAME, markersize=13)
-    ax.plot(0.0, 0.0, "s", color=FRAME, markersize=9)
-    ax.text(hand[0] + 0.03, -0.05, "the hand stays", fontsize="small")
-    ax.set(aspect="equal", xlim=(-0.1, 1.15), ylim=(-0.12, 0.55))
-    ax.axis("off")
-    return figure(
-        "Three joints, two coordinates: one motion is left over. The hand is at the same point in "
-        "all three poses.",
-        "An arm of three equal rods in a plane, drawn in three poses. Shoulder and hand are at "
-        "the same points each time; the two elbows move sideways from one pose to the next.",
     )
 
 

@@ -9,7 +9,6 @@ from typing import Any
 import matplotlib.pyplot as plt
 import numpy as np
 from IPython.display import HTML
-from matplotlib.axes import Axes
 from scipy.optimize import fsolve
 
 import labkit as lk
@@ -34,63 +33,6 @@ from .torque import (
 
 WEIGHT = 0.5
 """Mass of the thing in the hand, in [kg]."""
-
-
-def box(ax: Axes, x: float, y: float, words: str, width: float = 2.0, ink: str = "C1") -> None:
-    """Draw a box of a diagram with its middle at (x, y)."""
-    ax.add_patch(
-        plt.Rectangle((x - width / 2, y - 0.42), width, 0.84, fill=False, edgecolor=ink, lw=1.4)
-    )
-    ax.text(x, y, words, ha="center", va="center", fontsize="small")
-
-
-def arrow(ax: Axes, a: tuple[float, float], b: tuple[float, float], ink: str = "#57606a") -> None:
-    """Draw an arrow of a diagram."""
-    ax.annotate("", b, a, arrowprops={"arrowstyle": "->", "color": ink, "lw": 1.2})
-
-
-def drawing() -> HTML:
-    """The two laws as diagrams, which show the place of the mass matrix."""
-    _, axes = plt.subplots(2, 1, figsize=(6.4, 4.0))
-    rows = (
-        ("Computed torque: the gains are accelerations", "gains\nKp e + Kd ė", "× M(q)", True),
-        ("Augmented PD: the gains are springs and dampers", "q̈ of target\n× M(q)", "+", False),
-    )
-    for ax, (title, first, second, computed) in zip(axes, rows, strict=True):
-        ax.set(xlim=(0, 11.4), ylim=(-1.75, 1.0), title=title)
-        ax.axis("off")
-        box(ax, 1.1, 0.0, "target and\nits rates")
-        box(ax, 4.0, 0.0, first, 2.2, "C0" if computed else "C3")
-        box(ax, 6.5, 0.0, second, 1.2, "C3" if computed else "C0")
-        box(ax, 8.5, 0.0, "+ C q̇ + g" if computed else "+ C q̇ of\ntarget + g", 1.7)
-        box(ax, 10.5, 0.0, "arm", 1.2, "C5")
-        for a, b in ((2.1, 2.9), (5.1, 5.9), (7.1, 7.65), (9.35, 9.9)):
-            arrow(ax, (a, 0.0), (b, 0.0))
-        at = 4.0 if computed else 5.6
-        ax.plot((10.5, 10.5, at), (-0.42, -1.2, -1.2), color="#57606a", lw=1.2)
-        if computed:
-            ax.text(2.6, 0.75, "+ q̈ of target", fontsize="small")
-            ax.plot((1.1, 1.1, 5.5), (0.42, 0.62, 0.62), color="#57606a", lw=1.2)
-            arrow(ax, (5.5, 0.62), (5.5, 0.04))
-            arrow(ax, (4.0, -1.2), (4.0, -0.44))
-            arrow(ax, (6.5, -1.2), (6.5, -0.44))
-        else:
-            box(ax, 4.0, -1.2, "springs Kp e + Kd ė", 2.9, "C0")
-            arrow(ax, (5.45, -1.0), (6.4, -0.44))
-            arrow(ax, (5.8, -1.2), (5.47, -1.2))
-            ax.plot((1.1, 1.1), (-0.42, -1.2), color="#57606a", lw=1.2)
-            arrow(ax, (1.1, -1.2), (2.53, -1.2))
-        arrow(ax, (8.5, -1.2), (8.5, -0.44))
-        more = "" if computed else ", q also into M"
-        ax.text(6.6, -1.62, f"measured q and q̇{more}", fontsize="small")
-    return figure(
-        "The two laws. The mass matrix multiplies the gains in the first, not in the second.",
-        "Two block diagrams from left to right. Above: target, gains plus the target's "
-        "acceleration, mass matrix, Coriolis and gravity torques, arm. Below: the mass matrix "
-        "multiplies the target's acceleration alone, and springs and dampers are added after it. "
-        "In both, measured angles and speeds return to the gains, to the mass matrix and to the "
-        "Coriolis and gravity torques.",
-    )
 
 
 def columns() -> HTML:
