@@ -221,11 +221,9 @@ def _landmarks(page: BeautifulSoup) -> None:
         "#pst-secondary-sidebar, .bd-sidebar-secondary": "Contents of this page",
     }.items():
         for element in page.select(query):
-            if element.name in ("div", "dialog") and not element.get("role"):
-                element["role"] = "complementary" if element.name == "div" else element.get("role")
+            if element.name == "div" and not element.get("role"):
+                element["role"] = "complementary"
             element["aria-label"] = name
-            if element.get("role") is None:
-                del element["role"]
 
 
 def _tables(page: BeautifulSoup) -> None:
@@ -276,13 +274,17 @@ def _preview(page: BeautifulSoup) -> None:
         page.head.append(page.new_tag("meta", attrs={"property": name, "content": text}))
 
 
+USES = {"fontawesome": "nothing", "viewer": ".lk-embed, .lk-live", "togglebutton": ".dropdown",
+        "searchtools": "#search-results", "searchindex": "#search-results",
+        "language_data": "#search-results"}  # fmt: skip
+"""Scripts, and what on a page uses each of them."""
+
+
 def _scripts(page: BeautifulSoup) -> None:
-    """Remove the theme's script of icons, and what the search page alone needs."""
-    for script in page.select('script[src*="fontawesome"]'):
-        script.decompose()
-    if not page.select_one("#search-results"):
-        for script in page.select('script[src*="search"], script[src*="language_data"]'):
-            if "search.js" not in script["src"]:
+    """Remove the scripts that nothing on a page uses."""
+    for name, user in USES.items():
+        if not page.select_one(user):
+            for script in page.select(f'script[src*="{name}"]'):
                 script.decompose()
 
 

@@ -207,13 +207,16 @@ def build(sample: Sequence[str] = ()) -> int:
 
 
 def _without_unused_rules(html: Path) -> None:
-    """Remove the rules of the themes' styles for classes that no page and no script names."""
+    """Remove the rules of the themes' styles for classes that no page and no script names.
+
+    A script composes the names that begin with `bs-`.
+    """
     files = (path for kind in ("html", "js") for path in html.rglob(f"*.{kind}"))
     named = {name for path in files for name in re.findall(r"[\w-]+", path.read_text("utf-8"))}
 
     def used(rule: re.Match[str]) -> str:
         chosen = re.sub(r"/\*.*?\*/", "", rule[1], flags=re.S).split(",")
-        shown = (set(re.findall(r"\.(-?[a-zA-Z_][\w-]*)", one)) <= named for one in chosen)
+        shown = (set(re.findall(r"\.(?!bs-)(-?[a-zA-Z_][\w-]*)", one)) <= named for one in chosen)
         return rule[0] if any(shown) else ""
 
     for path in html.glob("_static/**/*.css"):

@@ -6,6 +6,7 @@ import sys
 from pathlib import Path
 
 import pytest
+from weigh import listen, outside
 
 ROOT = Path(__file__).parents[2]
 HTML, SAMPLED = ROOT / "book/_build/html", ROOT / "build/book-sample/_build/html"
@@ -39,24 +40,24 @@ def book(testrun_uid, pytestconfig):
 @pytest.fixture
 def visit(book, chromium):
     """Open a page of the book; assert at the end that it made no request and no complaint."""
-    seen, contexts = [], []
+    seen, pages = [], []
 
     def go(name, *, phone=False, browser=chromium, **options):
         size = {"width": 390, "height": 844} if phone else {"width": 1280, "height": 900}
         context = browser.new_context(viewport=size, **options)
-        contexts.append(context)
         page = context.new_page()
         page.set_default_timeout(120_000)  # only so that no test hangs
         page.on("console", lambda m: m.type == "error" and seen.append(m.text))
         page.on("pageerror", lambda e: seen.append(str(e)))
         page.on("requestfailed", lambda r: r.failure == ABORTED or seen.append(f"missing: {r.url}"))
-        page.on("request", lambda r: None if r.url.startswith(("file:", "data:", "blob:"))
-                else seen.append(r.url))  # fmt: skip
+        page.asked = listen(page)
+        pages.append(page)
         name, _, place = name.partition("#")
         page.goto((book / name).as_uri() + (f"#{place}" if place else ""))
         return page
 
     yield go
-    for context in contexts:
-        context.close()
+    for page in pages:
+        page.context.close()
+        seen += outside(page.asked)
     assert seen == []

@@ -96,16 +96,6 @@ def test_no_unit_and_no_name_is_cut_on_a_phone(live, name):
     assert page.evaluate(CUT) == []
 
 
-@pytest.mark.parametrize("name", ["index", "live"])
-def test_a_page_that_nobody_clicked_loads_no_physics(visit, name):
-    """Before the click there is a picture, and neither MuJoCo nor the live arm's bundle."""
-    page = visit(f"{name}.html")
-    assert page.locator(".lk-still img").evaluate("e => e.complete && e.naturalWidth") == 1480
-    loaded = page.evaluate("performance.getEntriesByType('resource').map(e => e.name).join(' ')")
-    assert "mujoco" not in loaded
-    assert "live.js" not in loaded
-
-
 def test_a_mouse_pulls_the_hand_and_lets_it_go(live):
     """Dragged, the hand leaves its target and the force is shown; let go, it returns."""
     page = live("live")

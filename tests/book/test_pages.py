@@ -8,6 +8,7 @@ from accessibility import COLOURS, violations
 from book_pages import ROOT, in_order
 from bs4 import BeautifulSoup
 from build_book import SAMPLE
+from weigh import LIMITS, loaded
 
 PAGES = [*in_order(), "search"]
 each = pytest.mark.parametrize(
@@ -38,9 +39,11 @@ def too_wide(page, width):
 
 
 @each
-def test_a_page_is_quiet_accessible_and_fits(visit, open_chromium, name):
+def test_a_page_is_light_quiet_accessible_and_fits(visit, open_chromium, name):
     """On a desk, and narrower down to a phone's width; no request, no complaint."""
     page = visit(f"{name}.html", browser=open_chromium, reduced_motion="reduce")
+    page.wait_for_load_state("networkidle")
+    assert [key for key, x in loaded(page.asked).items() if x > LIMITS[key]] == []
     wake(page)
     assert violations(page) == []
     assert not too_wide(page, 640), "what 200 % leaves of 1280"
@@ -111,13 +114,6 @@ def test_internal_links_and_downloads_lead_somewhere(pages):
             elif place and unquote(place) not in places.get(target, {unquote(place)}):
                 broken.append(f"{path.name}: {address}#{place}")
     assert broken == []
-
-
-def test_nothing_points_at_a_network(book):
-    """No page loads a script, style, picture, frame or film from another machine."""
-    loaded = re.compile(r'<(?:script|link|img|iframe|source)[^>]*(?:src|href)="https?:[^"]*"')
-    found = {p.name: loaded.findall(p.read_text()) for p in html_files(book)}
-    assert {k: v for k, v in found.items() if v} == {}
 
 
 @pytest.mark.soak

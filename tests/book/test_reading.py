@@ -2,26 +2,12 @@
 
 import json
 from pathlib import Path
-from urllib.parse import unquote, urlparse
 
 import pytest
 
 ROOT = Path(__file__).parents[2]
 
 pytestmark = pytest.mark.slow
-
-
-def test_the_first_page_waits_for_little(visit):
-    """Its text stands after less than 1 MB of scripts and styles that block it."""
-    page = visit("index.html")
-    blocking = page.evaluate("""() => [...document.querySelectorAll(
-        'head script[src]:not([defer]):not([type=module]), link[rel=stylesheet]')]
-        .filter((e) => !e.async)  // what a script adds does not block
-        .map((e) => e.src || e.href)""")
-    sizes = {
-        address: (Path(unquote(urlparse(address).path)).stat().st_size) for address in blocking
-    }
-    assert sum(sizes.values()) < 1e6, sizes
 
 
 def test_the_first_stop_of_the_keyboard_skips_to_the_text(visit):
