@@ -96,9 +96,9 @@ def compensation() -> HTML:
     shows("with $\\epsilon = 0.01$ rad/s", 0.01, identification.SOFT)
     _, ax = plt.subplots(figsize=(6.0, 3.0))
     for k, (name, log) in enumerate(pairs[0].items()):
-        ax.plot(log.t, _off(log), **curve(k), label=name)
+        ax.plot(log.t, _off(log), **curve(k))
+        ax.text(3.0, _off(log)[-1] + 0.7, name, ha="right")
     ax.set(xlabel="time [s]", ylabel="error of the tip [mm]", ylim=(0, None))
-    ax.legend()
     last = [_off(logs["compensated"]) for logs in pairs]
     numbers({"left_at_rest": np.mean([e[-1] for e in last]),
              "left_moving": np.mean([e.max() for e in last])}, ".2g")  # fmt: skip
@@ -235,12 +235,12 @@ def posture() -> HTML:
         q = redundancy.laps(model, q0, count=5, pull=pull)
         away = np.degrees(np.abs(q - q0).max(axis=1))
         ends[name] = away[-1]
-        ax.plot(away, **curve(k) | {"marker": "o", "markevery": 1}, label=name)
+        ax.plot(away, **curve(k) | {"marker": "o", "markevery": 1})
+        ax.text(4.6, 0.92 * away[-1] + 0.6, name, ha="right")
     free, held = ends.values()
     holds(free > 5.0 * held > 0.0, "After five laps")
     numbers({"drift_free": free, "drift_held": held}, ".2g")
     ax.set(xlabel="lap", ylabel="farthest joint [°]")
-    ax.legend()
     return figure(
         "How far the farthest joint is from its start after each lap of the tip round a circle. "
         "Without a posture the joints drift on.",

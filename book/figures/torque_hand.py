@@ -181,7 +181,8 @@ def payload() -> HTML:
             log = lk.run(arm, lk.Hold(q0, 1.5), law, rate=1000)
         sag = 1e3 * metrics.tip_error(log)[:, 2]
         expected = 1e3 * force * mobility[2, 2] / gain
-        ax.plot(log.t, sag, **curve(k), label=f"Kp = {gain:g} 1/s²")
+        ax.plot(log.t, sag, **curve(k))
+        ax.text(1.5, sag[-1] - 0.3, f"Kp = {gain:g} 1/s²", ha="right", va="top")
         ax.axhline(expected, color="#999999", linestyle=":")
         ends.append((float(sag[-1]), float(expected)))
         said.append(f"{sag[-1]:.3g} mm for Kp = {gain:g}")
@@ -201,7 +202,6 @@ def payload() -> HTML:
     numbers({"sag_soft_sum": ends[0][1], "sag_soft_exact": exact})
     number("sag_force", force, ".3g")
     ax.set(xlabel="time [s]", ylabel="hand below its target [mm]", ylim=(0, None))
-    ax.legend()
     return figure(
         "The hand sags under 0.5 kg that the model does not have. The run ends near the formula, "
         "which is dotted; four times the gain leaves a quarter.",

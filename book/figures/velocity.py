@@ -255,9 +255,9 @@ def euler() -> HTML:
         angles[name] = np.degrees(np.linalg.norm(metrics.tip_error(log)[:, 3:], axis=1))
     _, ax = plt.subplots(figsize=(6.0, 3.0))
     for k, (name, angle) in enumerate(angles.items()):
-        ax.plot(log.t, angle, **curve(k), label=name)
+        ax.plot(log.t, angle, **curve(k))
+        ax.text(2.3, angle[230 * len(angle) // 300] + 5.0, name, ha="right")
     ax.set(xlabel="time [s]", ylabel="orientation error [degrees]", ylim=(0, None))
-    ax.legend()
     right, wrong = (a[-1] for a in angles.values())
     holds(0.0 < right < 0.5 < 8.0 < wrong, "With the logarithm the error ends at")
     numbers({"log_end": right, "euler_end": wrong}, ".2g")
