@@ -142,7 +142,7 @@ def gravity() -> HTML:
     _, ax = plt.subplots(figsize=(6.0, 3.0))
     for k, name, style in ((1, "s1", "-"), (3, "e1", "--"), (5, "w1", "-.")):
         ax.plot(angles, rows[:, k], f"C{k}{style}")
-        ax.text(angles[110], rows[110, k] + 1.5, name)
+        ax.text(angles[110], rows[110, k] + 1.5, name, ha="right")
     ax.set(xlabel="shoulder s1 [rad]", ylabel="g(q) [N m]")
     most = rows[np.abs(rows[:, 1]).argmax(), 1]
     neutral = model.gravity(model.robot.neutral)[1]

@@ -100,9 +100,6 @@ def derivative() -> HTML:
         "the same D that slows the return makes the error on a curve smaller",
     )
     holds(all(b > a for a, b in pairwise(shake)) and shake[0] > 0.0, "the hand shakes more at rest")
-    for k in range(len(kds)):
-        numbers({f"curve_{k}": error[k], f"curve_{k}_sd": off[k]}, ".2f")
-        numbers({f"shake_{k}": shake[k], f"shake_{k}_sd": unrest[k]}, ".1f")
     rows = "; ".join(
         f"Kd = {kd:g}: {e:.3g} mm, {v:.2g} mm/s" for kd, e, v in zip(kds, error, shake, strict=True)
     )
