@@ -4,7 +4,7 @@ It runs the same loop as `run` and reads the messages of the page between two ti
 ends the run with a message and leaves the arm at rest.  Pause ends the thread, so that other cells
 can use the arm; Start makes a new one.
 
-A hand can pull at the arm anywhere.  It is a spring and a damper between a point of a link and a
+A hand can pull the arm anywhere.  It is a spring and a damper between a point of a link and a
 place in the world, as strong as a person's arm at most,
 
 .. math:: f = k\,(x - p) - d\,\dot p, \qquad |f| \le f_{max}, \qquad \tau = J_p^T f ,
@@ -456,7 +456,7 @@ def live(
             "path": widget.session.around.path(),
         }
     )
-    widget.words = f"{title}. Run this cell, press Start, and pull at the arm with the mouse."
+    widget.words = f"{title}. Run this cell, press Start, and pull the arm with the mouse."
     q = np.array([first["q"]] * 2)
     widget.picture = lambda: still(Motion(robot, np.array([0.0, 1.0]), q))
     return widget

@@ -497,7 +497,7 @@ lk.replay.show(
 # %% [markdown]
 # Now in real time: drag the arm off its circle. You hardly
 # can: velocity mode is stiff, until a motor reaches its
-# torque limit: push at the tip with 60 N along +y. Then raise kp to 30, and
+# torque limit: push the tip with 60 N along +y. Then raise kp to 30, and
 # *state_delay* until the arm swings. With half the kp, how much more delay can it bear?
 
 # %%
