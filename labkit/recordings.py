@@ -38,13 +38,17 @@ def load(name: str) -> Log:
     return Log.load(DATA / "recorded" / f"{name}.npz")
 
 
-def campaign() -> Any:
-    """Results of every controller on every task with five seeds, one row for each run.
+def campaign(table: str = "rows") -> Any:
+    """Results of every controller on every task with ten seeds, one row for each run.
+
+    Args:
+        table: "rows"; or "gains" or "noise", the runs that ask what limits the gains.
 
     Returns:
         Dicts with the run's "controller", "task", "plant" and "seed", and its errors.
     """
-    return json.loads((DATA / "campaign.json").read_text())
+    head, *rows = json.loads((DATA / "campaign.json").read_text())[table]
+    return [dict(zip(head, row, strict=True)) for row in rows]
 
 
 def read_trials(path: Path) -> Trials:

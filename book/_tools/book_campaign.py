@@ -40,9 +40,12 @@ def compare(progress: Callable[[str], None]) -> None:
 
 
 def _kept_or_made(progress: Callable[[str], None]) -> dict[str, Any]:
-    from solutions.study import campaign
+    from solutions.study import campaign, claims
 
-    kept = [row | {"failed": None} for row in recordings.campaign()]
+    kept, gains, noise = (
+        [row | {"failed": None} for row in recordings.campaign(name)]
+        for name in ("rows", "gains", "noise")
+    )
     progress("comparing the kept runs with new ones")
     changed = {row["task"] for row in _differ(list(_sample(kept)))}
     changed |= set(campaign.TASKS) - {row["task"] for row in kept}
@@ -51,7 +54,10 @@ def _kept_or_made(progress: Callable[[str], None]) -> dict[str, Any]:
         progress(f"running two seeds of the campaign: {', '.join(sorted(changed))}")
         todo = [cell for cell in campaign.grid(2) if cell["task"] in changed]
         rows += work_through(campaign.numbers, todo, jobs=JOBS)
-    return _judged(rows)
+    if "line" in changed:  # which both follow
+        gains = work_through(campaign.converge, campaign.gain_grid(2), jobs=JOBS)
+        noise = work_through(campaign.derivative, campaign.noise_grid(2), jobs=JOBS)
+    return {"rows": rows, "verdicts": [v.as_data() for v in claims.verdicts(rows, gains, noise)]}
 
 
 def _sample(rows: list[dict[str, Any]]) -> Iterator[dict[str, Any]]:
@@ -81,18 +87,5 @@ def _differ(rows: list[dict[str, Any]]) -> list[dict[str, Any]]:
 def _same(row: dict[str, Any], new: dict[str, Any]) -> bool:
     if "digest" in row:
         return bool(row["digest"] == new["digest"])
-    told = ("late_rms_mm", "late_max_mm", "effort")  # kept to four digits
+    told = ("late_rms_mm", "late_max_mm")  # kept to four digits
     return all(math.isclose(row[x], new[x], rel_tol=1e-3) for x in told)
-
-
-def _judged(rows: list[dict[str, Any]]) -> dict[str, Any]:
-    """The rows, and verdicts on the report's claims from them and a few new runs about gains."""
-    from solutions.study import campaign, claims
-
-    seeds = len({row["seed"] for row in rows})
-    asked = [cell for cell in campaign.gain_grid(seeds) if cell["Kp"] in (3.0, 12.0)]
-    gains = work_through(campaign.converge, asked, jobs=JOBS)
-    asked = [cell for cell in campaign.noise_grid(seeds) if cell["Kd"] in (0.0, 0.5, 1.0)]
-    noise = work_through(campaign.derivative, asked, jobs=JOBS)
-    verdicts = claims.verdicts(rows, gains, noise)
-    return {"rows": rows, "verdicts": [v.as_data() for v in verdicts]}

@@ -77,25 +77,20 @@ def numbers_told() -> None:
         "more than feed-forward alone, which never looks",
     )
     paths = [task for task in campaign.TASKS if task != "tag"]
-    apart = [
-        interval("seeds", _of_seeds(w, task) - _of_seeds(FEED_FORWARD, task), claims=1)
-        for w in soft
-        for task in paths
-    ]
-    holds(
-        all(0.0 < x.mean < x.half_width for x in apart),
-        "With these five starts the difference is undecided on each path",
-    )
+    apart = [_of_seeds(w, task) - _of_seeds(FEED_FORWARD, task) for w in soft for task in paths]
+    ten, five = ([interval("seeds", d[:n], claims=1) for d in apart] for n in (10, 5))
+    holds(all(x.mean > x.half_width for x in ten), "The ten starts decide this on each path")
+    holds(all(abs(x.mean) < x.half_width for x in five), "the first five would not have done so")
     plain = np.concatenate([_of_seeds(FEED_FORWARD, task) for task in paths])
     numbers({"plain_least": plain.min(), "plain_most": plain.max()}, ".0f")
     holds(
         all(0.0 < ideal[w] < min(1.0, 0.1 * real[w]) for w in FIVE),
         "On the ideal arm, which has no friction and no delay, the errors of all five,",
     )
-    line, count = tasks.line(), max(row["seed"] for row in rows) + 1
-    tips = [lk.Model("left").pose(q)[:3, 3] for q in (line.q0, *map(line.start, range(count)))]
-    beside = [1e3 * float(np.linalg.norm(tip - tips[0])) for tip in tips[1:]]
-    shows("from 4 to 19 mm beside its path", (4.1, 18.8), (min(beside), max(beside)), 0.02)
+    line = tasks.line()
+    tips = [lk.Model("left").pose(q)[:3, 3] for q in (line.q0, *map(line.start, range(10)))]
+    beside = np.linalg.norm(np.subtract(tips[1:], tips[0]), axis=1)
+    holds(0.005 < np.mean(beside) < 0.016, "about a centimetre beside its path")
     shows("The line is 0.21 m long", 0.21, np.linalg.norm(np.ptp(_tip(line), axis=0)), 0.03)
     first = min(FIVE, key=lambda w: real[w])
     numbers(
@@ -103,8 +98,7 @@ def numbers_told() -> None:
             "plain": real[FEED_FORWARD],
             "best": real[first],
             "stiff_worst": max(real[w] for w in stiff),
-            "soft_best": min(real[w] for w in soft),
-            "soft_worst": max(real[w] for w in soft),
+            "soft": np.mean([real[w] for w in soft]),
             "ideal_worst": max(ideal[w] for w in FIVE),
             "baseline": real[BASELINE],
         },
@@ -231,8 +225,8 @@ def verdicts_told() -> None:
     number("built_in_half", x["half_width"], ".2f")
     holds(all(a < 0.0 for a in pairs), "on each of the three paths the claim did not hold")
     holds(
-        0.78 * -x["mean"] < x["half_width"] < 0.86 * -x["mean"],
-        "the half width of the interval is four fifths of the difference",
+        0.7 * -x["mean"] < x["half_width"] < 1.2 * -x["mean"],
+        "the interval is nearly as wide as the difference",
     )
     torque = judged["the built-in method tracks better than joint torque"]
     d = [t["mean"] for t in torque["tasks"]]
@@ -254,8 +248,8 @@ def verdicts_told() -> None:
     tracking = [v for v in judged.values() if v["unit"] == "mm" and v["overall"]["of"] == "tasks"]
     holds(len(tracking) == 8, "each at $1 - 0.05/8$")
     holds(
-        pooled.mean > pooled.half_width > 0.0 and pooled.units == 15,
-        "Fifteen pooled pairs would have called it held",
+        pooled.mean > pooled.half_width > 0.0 and pooled.units == 30,
+        "Thirty pooled pairs would have called it held",
     )
     number("torque_mean", torque["overall"]["mean"], "+.2f")
     number("torque_half", torque["overall"]["half_width"], ".1f")

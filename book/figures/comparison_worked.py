@@ -108,7 +108,7 @@ def units() -> None:
     number("unit_half", whole.half_width, ".1f")
     shows("is 12.59 instead of 4.30", 12.59, student.ppf(1.0 - 0.025 / CLAIMS, 2), 1e-3)
     shows("instead of 4.30", 4.30, student.ppf(0.975, 2), 1e-3)
-    holds(_decided("joint torque") == 2.0, "Two of the three paths are decided")
+    holds(_decided("joint torque") == 3, "Each of the three paths is decided")
 
 
 def _decided(controller: str) -> int:
@@ -129,7 +129,7 @@ def more_seeds() -> None:
     numbers({"within": within, "between": between, "endless": endless}, ".2g")
     t = float(student.ppf(1.0 - 0.025 / CLAIMS, 11))
     number("factor_twelve", t, ".2g")
-    number("twelve_tasks", t * math.sqrt((between + within / 5.0) / 12.0), ".1f")
+    number("twelve_tasks", t * math.sqrt((between + within / d.shape[1]) / 12.0), ".1f")
 
 
 def luck() -> None:
@@ -158,12 +158,12 @@ def two_units() -> HTML:
     d = differences("joint torque")
     _, ax = plt.subplots(figsize=(6.2, 3.3))
     for k, x in enumerate(d.values()):
-        y = 2.0 - k + 0.05 * (np.arange(len(x)) - 2)
+        y = 2.0 - k + 0.03 * (np.arange(len(x)) - 4.5)
         ax.plot(x, y, "o", color=f"C{k}", mfc="none")
         ax.plot(np.mean(x), 2.0 - k, "|", color=f"C{k}", markersize=24, markeredgewidth=2.5)
     means = [float(np.mean(x)) for x in d.values()]
     pairs = [x for row in d.values() for x in row]
-    kinds = (("the 15 pairs, pooled", interval("pairs", pairs, CLAIMS), "C5", -1.0),
+    kinds = ((f"the {len(pairs)} pairs, pooled", interval("pairs", pairs, CLAIMS), "C5", -1.0),
              ("the 3 tasks", interval("tasks", means, CLAIMS), "C4", -2.0))  # fmt: skip
     for _, mean, ink, height in kinds:
         ax.errorbar(mean.mean, height, xerr=mean.half_width, color=ink, capsize=6, fmt="s")

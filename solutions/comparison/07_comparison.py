@@ -207,7 +207,7 @@ print(f"phase margin of Kp alone, on paper: {phase:.0f} degrees")
 #
 # The report's task: five laws on line, circle, square and tag. The cell takes *your* laws from the notebooks 03 to 05 that
 # lie beside this one, and runs them on Baxter with our gains, once each (some minutes on a slow computer). Where it finds
-# none, or one that fails, it takes our recorded rows, five seeds each, and says so. Errors count after the first second.
+# none, or one that fails, it takes our recorded rows, ten seeds each, and says so. Errors count after the first second.
 
 # %%
 PATHS = ("line", "circle", "square", "tag")
@@ -334,33 +334,33 @@ for a, b in (
 
 # %% [markdown]
 # What you should have seen: each of the report's two sentences is true of some controller, and some claims stay
-# undecided, as they would with five hundred seeds: two more paths would tell more. Five claims are five chances
+# undecided, as they would with a thousand seeds: two more paths would tell more. Five claims are five chances
 # to be wrong; $1 - 0.05/5$ in place of 0.95 makes up for it. So name both controllers, the tasks and the
 # number, say what your units are and how sure you are.
 
-# %% predict="twenty_pairs"
+# %% predict="forty_pairs"
 
 # %%
 def half_width(differences):
     """Of the 95 % interval, by Student's t."""
-    t = {4: 3.182, 20: 2.093}[len(differences)]
+    t = {4: 3.182, 40: 2.023}[len(differences)]
     return t * np.std(differences, ddof=1) / len(differences) ** 0.5
 
 
 apart = np.subtract(*([recorded(name, p) for p in PATHS] for name in ("workspace impedance", "joint impedance")))
 pooled, by_task = half_width(apart.ravel()), half_width(apart.mean(axis=1))
-if twenty_pairs is not None:
-    print(f"± {pooled:.2f} mm from 20 differences, ± {by_task:.2f} mm from the means of 4 tasks")
-predict("twenty_pairs", truth="b" if pooled < 0.7 * by_task else "c" if pooled > 1.4 * by_task else "a")
+if forty_pairs is not None:
+    print(f"± {pooled:.2f} mm from 40 differences, ± {by_task:.2f} mm from the means of 4 tasks")
+predict("forty_pairs", truth="b" if pooled < 0.7 * by_task else "c" if pooled > 1.4 * by_task else "a")
 
-# %% [markdown] why="why_twenty_pairs"
-# Which interval was narrower, and why? Say what five seeds of one task have in common, what a second task
-# would tell you that a sixth seed would not, and which interval belongs to "controllers in general".
+# %% [markdown] why="why_forty_pairs"
+# Which interval was narrower, and why? Say what ten seeds of one task have in common, what a second task
+# would tell you that an eleventh seed would not, and which interval belongs to "controllers in general".
 #
 # ### BEGIN SOLUTION
-# The interval from 20 differences was much narrower: 1.1 mm to either side, where the means of the tasks give
-# 3.3 mm. The five seeds of a task share path, speed and pose: they tell how noisy this task is, not how tasks
-# differ. A sixth seed makes the mean of this task surer; a second task shows how much another task changes it. A
+# The interval from 40 differences was much narrower: 0.8 mm to either side, where the means of the tasks give
+# 3.0 mm. The ten seeds of a task share path, speed and pose: they tell how noisy this task is, not how tasks
+# differ. An eleventh seed makes the mean of this task surer; a second task shows how much another task changes it. A
 # claim about controllers in general rests on four independent numbers, and has their wide interval.
 # ### END SOLUTION
 

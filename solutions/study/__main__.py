@@ -37,7 +37,7 @@ def _without(row: Row, key: str) -> Row:
 def main() -> None:
     """Run the campaign and write build/campaign.json and build/campaign/."""
     parser = argparse.ArgumentParser(prog="python -m solutions.study", description=__doc__)
-    parser.add_argument("--seeds", type=int, default=3, help="how many seeds (3)")
+    parser.add_argument("--seeds", type=int, default=10, help="how many seeds (10)")
     parser.add_argument("--jobs", type=int, default=None, help="processes (one for each core)")
     parser.add_argument("--out", type=Path, default=Path("build"), help="folder (build)")
     parser.add_argument("--no-pictures", action="store_true", help="numbers alone")
@@ -80,7 +80,7 @@ def main() -> None:
     path = options.out / "campaign.json"
     path.write_text(json.dumps(found, indent=1, allow_nan=False) + "\n")
     if options.keep:
-        save_campaign(rows)
+        save_campaign(found)
     print(text)
     made = f"{path}, {folder}/tables.md, {len(drawn)} figures"
     print(f"{len(rows)} runs in {seconds:.0f} s; {made}")
