@@ -77,7 +77,7 @@ def damping() -> HTML:
     ax.legend()
     return figure(
         "A joint that starts 0.1 rad away, Kp = 2 1/s, ideal arm at 200 Hz, and its first 40 "
-        "commands. More Kd is slower; above one the command swings ever further.",
+        "commands. More Kd is slower; above one the command swings up to a limit.",
         f"Error of joint s0 over two seconds. Measured decay: {'; '.join(told)}. With Kd = 1.1 the "
         "error leaves the exponential; from 0.1 to 1.5 s the command jumps by "
         f"{swings[0][20]:.2g} rad/s at every tick.",
