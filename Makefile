@@ -46,8 +46,8 @@ soak: for-tests .venv/.dev browser .venv-313/.made ## what the gate leaves out: 
 lab: .venv/.course ## open the notebooks of this checkout; students start theirs from the zip
 	@PATH="$(CURDIR)/$(BIN):$$PATH" $(BIN)/jupyter lab --notebook-dir assignments $(if $(AS_ROOT),--allow-root)
 
-book: .venv/.course ## build the book, book/_build/html/index.html, and dist/book.zip to hand out
-	@$(BIN)/python book/_tools/build_book.py --zip
+book: .venv/.course ## build the book, book/_build/html/index.html and dist/book.zip; keep its runs, book/runs
+	@$(BIN)/python book/_tools/build_book.py --publish
 
 vendor: .venv/.dev ## make the book's browser files again (node 20)
 	@sh .ci/need.sh node:nodejs npm:npm

@@ -18,8 +18,7 @@ class AuthorYear(BaseLabelStyle):
     def format_labels(self, entries: Iterable[Any]) -> Iterator[str]:
         """Return a label for each entry."""
         for entry in entries:
-            names = [" ".join(x.render_as("text") for x in person.rich_last_names)
-                     for person in entry.persons["author"]]  # fmt: skip
+            names = [" ".join(map(str, x.rich_last_names)) for x in entry.persons["author"]]
             who = f"{names[0]} et al." if len(names) > 2 else " and ".join(names)
             yield f"{who}, {entry.fields['year'].replace('--', '-')}"
 

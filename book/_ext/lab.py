@@ -8,6 +8,7 @@ from __future__ import annotations
 import os
 import re
 from collections.abc import Sequence
+from itertools import chain
 from pathlib import Path
 from typing import Any
 
@@ -103,6 +104,17 @@ def without_unused(
         )
 
 
+DRAWN = re.compile(r"<(svg|math)\b.*?</\1>", re.S)
+EMPTIED = re.compile(r'<(svg|math) drawn="".*?</\1>', re.S)
+"""Drawings and formulas, most of a page's elements, have no fault and are left as they are."""
+
+
+def _emptied(found: re.Match[str]) -> str:
+    """A drawing without its parts, or a formula of which the words are left."""
+    words = re.sub("<[^>]*>", "", found[0]) if found[1] == "math" else ""
+    return f'<{found[1]} drawn="">{words}</{found[1]}>'
+
+
 def repair(app: Sphinx, problem: Exception | None) -> None:
     """Correct every finished page that was written in this build."""
     if problem or app.builder.format != "html":
@@ -115,12 +127,16 @@ def repair(app: Sphinx, problem: Exception | None) -> None:
         text = path.read_text(encoding="utf-8")
         if "<!-- corrected -->" in text:
             continue
+        drawn = [found[0] for found in DRAWN.finditer(text)]
+        text = DRAWN.sub(_emptied, text)
         page = BeautifulSoup(text, "html.parser")
         name = path.relative_to(app.outdir).with_suffix("").as_posix()
         if name in app.env.found_docs:
             texts[name] = excerpts.parts_of(page)
         correct_page(page, notebooks)
-        path.write_text(f"{page}\n<!-- corrected -->\n", encoding="utf-8")
+        whole = EMPTIED.sub("\0", str(page)).split("\0")
+        text = "".join(chain(*zip(whole, [*drawn, "\n<!-- corrected -->\n"], strict=True)))
+        path.write_text(text, encoding="utf-8")
     excerpts.update(Path(app.outdir), texts)
 
 

@@ -1,17 +1,17 @@
-"""The book's pages: their order, and the code and data from which each page is computed."""
+"""The book's pages: their order, and a hash of the code and the data that compute each page."""
 
 from __future__ import annotations
 
 import ast
 import hashlib
-import importlib.metadata
-import json
 import re
 import sys
 from collections.abc import Iterator
-from importlib.util import find_spec
+from functools import cache
 from pathlib import Path
+from typing import Any
 
+import nbformat
 import yaml
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -19,20 +19,16 @@ BOOK = ROOT / "book"
 sys.path[:0] = [str(ROOT), str(BOOK)]  # this checkout, even if another is installed
 HTML = BOOK / "_build/html"
 CACHE = ROOT / "build/book"
-CAMPAIGN = CACHE / "campaign.json"
 
 OURS = ("labkit", "solutions", "figures")
-DATA = (
-    "labkit/data/baxter.json",
-    "solutions/study/baseline/baxter_collision.json",
-    "labkit/data/campaign.json",
-    "solutions/study/assumptions.json",
-)
-ENGINES = (
-    *filter(find_spec, ("pybullet", "mujoco")),
-    *("numpy", "scipy", "pin", "matplotlib", "opencv-python-headless"),
-)
-FIGURES = re.compile(r"^from (figures(?:\.\w+)?) import ([\w, ]+)", re.M)
+DATA = {
+    "labkit": ("labkit/data/*.json", "labkit/data/[mr]*/*"),
+    "solutions/study": ("solutions/study/[!v]*.json", "solutions/study/baseline/*.json"),
+    "labkit/course/authoring": ("assignments/*/*.ipynb", "solutions/*/*.py", "book/chapters/*.md"),
+}
+"""The files that modules of a folder read."""
+ENGINES = re.compile(r"^(?:numpy|scipy|pin|pybullet|mujoco|matplotlib|opencv-\S+)==.*", re.M)
+"""The locked versions that count; a reader with others sees what these have computed."""
 
 
 def in_order() -> list[str]:
@@ -51,71 +47,84 @@ def in_order() -> list[str]:
     return [toc["root"], *(name for part in toc["parts"] for name in below(part["chapters"]))]
 
 
-def page_keys() -> dict[str, str]:
-    """A hash of all the code that a page uses, for each page that computes something."""
-    keys = {}
+def computed() -> dict[str, nbformat.NotebookNode]:
+    """The code cells of each page that computes something, as a notebook."""
+    from myst_nb.core.read import read_myst_markdown_notebook
+
+    found = {}
     for name in in_order():
-        page = BOOK / f"{name}.md"
-        used = FIGURES.findall(page.read_text()) if page.exists() else []
-        if not used:
-            continue
-        modules = dict.fromkeys(
-            f"{package}.{name}" if package == "figures" else package
-            for package, names in used
-            for name in names.split(", ")
-        )
-        parts = [key_of(module) for module in modules]
-        if {"figures.comparison", "figures.gallery"} & modules.keys():
-            parts.append(hashlib.sha256(CAMPAIGN.read_bytes()).hexdigest()[:16])
-        keys[name] = " ".join(parts)
-    return keys
+        path = BOOK / f"{name}.md"
+        if path.exists() and "\n```{code-cell}" in path.read_text():
+            page = read_myst_markdown_notebook(path.read_text())
+            page.cells = [cell for cell in page.cells if cell.cell_type == "code"]
+            found[name] = page
+    return found
 
 
-def forget_stale(folder: Path, keys: dict[str, str]) -> None:
-    """Delete the kept outputs of pages whose code has changed since they were run."""
-    from jupyter_cache import get_cache
+def key_of(page: nbformat.NotebookNode) -> str:
+    """A hash of all that computes a page: its cells, the modules that it imports, their data.
 
-    known = folder / "keys.json"
-    before = json.loads(known.read_text()) if known.exists() else {}
-    cache = get_cache(str(folder))
-    for record in cache.list_cache_records():
-        name = str(Path(record.uri).relative_to(BOOK).with_suffix(""))
-        if name not in keys or keys[name] != before.get(name):
-            cache.remove_cache(record.pk)
-    folder.mkdir(parents=True, exist_ok=True)
-    known.write_text(json.dumps(keys))
+    Comments and docstrings do not count, and of the engines only the versions in the lock file.
+    """
+    code = "\n".join(cell.source for cell in page.cells)
+    files = imports(code)
+    folders = {path.parent.relative_to(ROOT).as_posix() for path in files}
+    files |= {path for key in DATA.keys() & folders for x in DATA[key] for path in ROOT.glob(x)}
+    versions = ENGINES.findall((ROOT / "constraints.txt").read_text())
+    return _hash("\n".join([code, *versions, *map(_hash_of, sorted(files))]).encode())
 
 
-def key_of(module: str) -> str:
-    """A hash of a module and of all our modules that it imports, directly or indirectly."""
-    digest = hashlib.sha256()
-    for path in [*(ROOT / name for name in DATA), *sorted(imports(module))]:
-        digest.update(path.read_bytes())
-    for name in ENGINES:
-        digest.update(f"{name} {importlib.metadata.version(name)}\n".encode())
-    return digest.hexdigest()[:16]
+def _hash_of(path: Path) -> str:
+    """A hash of a file's code, or of all of a file that is no code."""
+    return _hash(read(path)[0].encode() if path.suffix == ".py" else path.read_bytes())
 
 
-def imports(module: str) -> set[Path]:
-    """The files of a module and of its imports, found without importing anything."""
+def _hash(data: bytes) -> str:
+    return hashlib.sha256(data).hexdigest()[:16]
+
+
+def imports(code: str) -> set[Path]:
+    """The files that code imports, directly or indirectly, found without importing anything."""
     seen: set[Path] = set()
-    todo = [module]
+    todo = [*_named(ast.parse(code), "")]
     while todo:
         name = todo.pop()
+        if name.split(".")[0] not in OURS:
+            continue
         stem = (BOOK if name.startswith("figures") else ROOT) / name.replace(".", "/")
         files = (stem.with_suffix(".py"), stem / "__init__.py")
         path = next((p for p in files if p.exists()), None)
         if path is None or path in seen:
             continue
         seen.add(path)
-        package = name if path.name == "__init__.py" else name.rpartition(".")[0]
-        todo += [n for n in _named(path, package) if n.split(".")[0] in OURS]
+        todo += read(path)[1]
     return seen
 
 
-def _named(path: Path, package: str) -> Iterator[str]:
-    """The full names of a file's imports, without those for the type checker only."""
-    nodes: list[ast.AST] = [ast.parse(path.read_text())]
+@cache
+def read(path: Path) -> tuple[str, list[str]]:
+    """The code of a file without comments and docstrings, and the full names of its imports."""
+    tree = ast.parse(path.read_text("utf-8"))
+    package = path.parent.relative_to(BOOK if BOOK in path.parents else ROOT)
+    return repr(_bare(tree)), [*_named(tree, ".".join(package.parts))]
+
+
+def _bare(node: Any) -> Any:
+    """A syntax tree without docstrings and empty fields, the same for each version of Python."""
+    match node:
+        case ast.Expr(ast.Constant()):
+            return None
+        case ast.AST():
+            fields = (_bare(x) for _, x in ast.iter_fields(node) if x not in (None, []))
+            return [type(node).__name__, *fields]
+        case list():
+            return [bare for x in node if (bare := _bare(x)) is not None]
+    return node
+
+
+def _named(tree: ast.AST, package: str) -> Iterator[str]:
+    """The full names of the imports, without those for the type checker only."""
+    nodes = [tree]
     for node in nodes:
         if isinstance(node, ast.If) and getattr(node.test, "id", "") == "TYPE_CHECKING":
             continue

@@ -1,8 +1,7 @@
 """Build the book: `python book/_tools/build_book.py`, or `make book`.
 
-This makes what the pages need (viewer, notation, the students' notebooks, the campaign), then
-runs Jupyter Book with warnings as errors.  Computed results are kept until the code that computes
-them changes.
+This makes what the pages need (viewer, notation, the students' notebooks), runs the pages whose
+kept runs in book/runs are stale, and then Jupyter Book with warnings as errors.
 """
 
 from __future__ import annotations
@@ -17,15 +16,18 @@ import shutil
 import subprocess
 import sys
 import time
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
 
 import yaml
-from book_campaign import compare
 from book_outputs import pack
-from book_pages import BOOK, CACHE, HTML, ROOT, forget_stale, page_keys
+from book_pages import BOOK, CACHE, HTML, ROOT, computed
+from book_runs import PATHS, fill
+from jupyter_cache import get_cache
+from jupyter_cache.base import CacheBundleIn
+from nbclient.exceptions import CellExecutionError
+from nbformat import NotebookNode
 
-PATHS = os.pathsep.join([str(ROOT), str(BOOK), os.environ.get("PYTHONPATH", "")])
 MADE = BOOK / "generated"
 SAMPLED = ROOT / "build/book-sample"
 SAMPLE = (
@@ -40,24 +42,28 @@ UNASKED = ("**/*.map", "_static/**/*fontawesome*", "_static/locales")
 def main(arguments: list[str] | None = None) -> int:
     """Run the command line and return the exit code."""
     parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("--fresh", action="store_true", help="delete what was built before")
     parser.add_argument("--sample", action="store_true", help="build a page of each kind alone")
-    parser.add_argument("--zip", action="store_true", help="also make dist/book.zip to hand out")
+    parser.add_argument(
+        "--publish", action="store_true", help="keep the runs in book/runs; also make dist/book.zip"
+    )
     chosen = parser.parse_args(arguments)
     began = time.monotonic()
-    if chosen.fresh:
-        for folder in (BOOK / "_build", CACHE):
-            shutil.rmtree(folder, ignore_errors=True)
     prepare()
-    compare(_progress)
-    if chosen.sample:
-        return build(SAMPLE)
-    if code := build():
+    pages = {k: x for k, x in computed().items() if not chosen.sample or k in SAMPLE}
+    try:
+        keys = fill(pages, _progress, keep=chosen.publish)
+    except CellExecutionError as error:
+        print(f"The book was not built, because a page failed.\n{error}", file=sys.stderr)
+        return 1
+    _hand_over(pages)
+    if code := build(keys, SAMPLE if chosen.sample else ()):
         return code
+    if chosen.sample:
+        return 0
     size = sum(p.stat().st_size for p in HTML.rglob("*") if p.is_file()) / 1e6
     took = time.monotonic() - began
     print(f"book/_build/html/index.html ({size:.1f} MB, {took:.0f} s): double-click to open it")
-    if chosen.zip:
+    if chosen.publish:
         made = pack()
         print(f"{made.relative_to(ROOT)} ({made.stat().st_size / 1e6:.1f} MB): to hand out")
     return 0
@@ -153,18 +159,25 @@ def _title(notebook: dict, stem: str) -> str:
     return next((found[1].strip() for found in headings if found), stem)
 
 
-def build(sample: Sequence[str] = ()) -> int:
-    """Run Jupyter Book; an exception in a cell is an error, and in the whole book a warning.
+def _hand_over(pages: Mapping[str, NotebookNode]) -> None:
+    """Put the pages with their outputs where Jupyter Book looks before it runs a page."""
+    shutil.rmtree(CACHE / "pages", ignore_errors=True)
+    cache = get_cache(str(CACHE / "pages"))
+    for name, page in pages.items():
+        cache.cache_notebook_bundle(CacheBundleIn(page, name), check_validity=False)
+
+
+def build(keys: Mapping[str, str], sample: Sequence[str] = ()) -> int:
+    """Run Jupyter Book; a warning in the whole book is an error.
 
     Args:
+        keys: The hash of what computes each page; if one differs, all pages are written anew.
         sample: The pages to build, in a folder of their own; by default all.
     """
-    keys, html = page_keys(), SAMPLED / "_build/html" if sample else HTML
+    html = SAMPLED / "_build/html" if sample else HTML
     stamp, state = html.parent / "built.json", {"keys": keys, "by": _builder()}
     fresh = not stamp.exists() or json.loads(stamp.read_text()) != state
     stamp.unlink(missing_ok=True)
-    cache = CACHE / "pages"
-    forget_stale(cache, keys)
     run = "from jupyter_book.cli.main import main; main()"
     command = [sys.executable, "-c", run, "build", str(BOOK)]
     if sample:
@@ -176,7 +189,7 @@ def build(sample: Sequence[str] = ()) -> int:
         command += ["-W", "--keep-going"]
     environment = os.environ | {
         "PYTHONPATH": PATHS,
-        "LAB_BOOK_CACHE": str(cache),
+        "LAB_BOOK_CACHE": str(CACHE / "pages"),
         "PYDEVD_DISABLE_FILE_VALIDATION": "1",
     }
     if fresh:

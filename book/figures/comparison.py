@@ -2,10 +2,8 @@
 
 from __future__ import annotations
 
-import json
 import math
 from functools import cache
-from pathlib import Path
 from typing import Any
 
 import matplotlib.pyplot as plt
@@ -14,16 +12,16 @@ from IPython.display import HTML
 from myst_nb import glue
 
 import labkit as lk
+from labkit import recordings
 from labkit.shapes import Array
 from solutions.study import campaign, native, tasks
 from solutions.study.campaign import BASELINE, CONTROLLERS, FEED_FORWARD, FIVE, TABLES
-from solutions.study.claims import IMPEDANCE, THREE, interval
+from solutions.study.claims import IMPEDANCE, THREE, interval, verdicts
 from solutions.study.grid import pick
 
 from .claims import holds, shows
 from .page import figure, number, numbers, replay, shown, table
 
-FOUND = Path(__file__).parents[2] / "build/book/campaign.json"
 ARMS = {"ideal": "ideal", "baxter": "realistic"}
 """The names of the arms in the text."""
 WITH_TORQUES = ("joint torque", "joint impedance")
@@ -33,14 +31,17 @@ SIGNS = {"held": "✓", "did not hold": "✗", "undecided": "?"}
 
 @cache
 def found() -> dict[str, Any]:
-    """The results of the campaign, from the build tool or from an earlier `make campaign`."""
-    told: dict[str, Any] = json.loads(FOUND.read_text())
-    return told
+    """The rows of the recorded campaign, and the verdicts on the report's claims."""
+    rows, *others = (
+        [row | {"failed": None} for row in recordings.campaign(name)]
+        for name in ("rows", "gains", "noise")
+    )
+    return {"rows": rows, "verdicts": [v.as_data() for v in verdicts(rows, *others)]}
 
 
 def _mean(controller: str, task: str, plant: str, name: str) -> float:
     rows = pick(found()["rows"], controller=controller, task=task, plant=plant)
-    return float(np.mean([row[name] for row in rows if not row["failed"]]))
+    return float(np.mean([row[name] for row in rows]))
 
 
 def _of_seeds(controller: str, task: str) -> Array:
@@ -64,7 +65,8 @@ def _tip(task: tasks.Task) -> Array:
 def numbers_told() -> None:
     """Numbers and conclusions of the page."""
     rows = found()["rows"]
-    holds(not [row for row in rows if row["failed"]], "every run was finished")
+    seeds = {row["seed"] for row in rows}
+    holds(len(rows) == len(campaign.grid(len(seeds))), "every run was finished")
     real = {controller: _on_paths(controller, "baxter") for controller in CONTROLLERS}
     ideal = {controller: _on_paths(controller, "ideal") for controller in CONTROLLERS}
     soft, stiff = IMPEDANCE, THREE

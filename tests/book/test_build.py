@@ -2,24 +2,26 @@
 
 import json
 import re
-import subprocess
-import sys
 import zipfile
 from types import SimpleNamespace
 
 import book_pages
+import book_runs
 import lab
 import pytest
-import yaml
-from book_pages import BOOK, ROOT
+from book_pages import ROOT
 from bs4 import BeautifulSoup
 from figures.page import Question, quiz, shown
+from nbclient.exceptions import CellExecutionError
+from nbformat.v4 import new_code_cell, new_notebook
 
 
 def test_a_page_depends_on_what_it_imports_and_on_nothing_else():
     """The chapter on paths depends on its figures, lk.run and its law, not on the grader."""
-    names = {p.relative_to(ROOT).as_posix() for p in book_pages.imports("figures.paths")}
+    found = book_pages.imports("from figures import facts, paths")
+    names = {p.relative_to(ROOT).as_posix() for p in found}
     assert {
+        "book/figures/facts.py",
         "book/figures/paths.py",
         "labkit/run.py",
         "solutions/study/joint_velocity.py",
@@ -29,16 +31,64 @@ def test_a_page_depends_on_what_it_imports_and_on_nothing_else():
     )
 
 
-def test_every_module_that_a_page_imports_counts(monkeypatch):
-    """A page is made again when any of the figures that it imports changes, not the first alone."""
-    monkeypatch.setattr(book_pages, "key_of", lambda module: module)
-    monkeypatch.setattr(book_pages, "CAMPAIGN", BOOK / "index.md")  # made with the book
-    keys = book_pages.page_keys()
-    for name in ("chapters/velocity", "chapters/impedance", "index"):
-        lines = re.findall(r"^from figures import (.+)$", (BOOK / f"{name}.md").read_text(), re.M)
-        used = {f"figures.{module}" for line in lines for module in line.split(", ")}
-        assert len(used) > 1
-        assert set(keys[name].split()) == used
+@pytest.fixture
+def small_book(tmp_path, monkeypatch):
+    """A book of one page, which imports one module."""
+    monkeypatch.setattr(book_pages, "ROOT", tmp_path)
+    monkeypatch.setattr(book_pages, "BOOK", tmp_path)
+    for name, folder in (("KEPT", "runs"), ("NEW", "build")):
+        monkeypatch.setattr(book_runs, name, tmp_path / folder)
+    head = "---\nkernelspec: {name: python3, display_name: Python 3}\n---\n"
+    cell = "```{code-cell}\nfrom figures import a\na.f()\n```\n"
+    for name, text in {
+        "_toc.yml": "{root: page, parts: []}",
+        "page.md": f"{head}# Page\n\n{cell}",
+        "constraints.txt": "numpy==2.4.6\nattrs==1\n",
+        "figures/a.py": "def f():\n    return 1\n",
+    }.items():
+        (tmp_path / name).parent.mkdir(exist_ok=True)
+        (tmp_path / name).write_text(text)
+    return tmp_path
+
+
+@pytest.mark.parametrize(
+    ("name", "old", "new", "runs"),
+    [
+        ("page.md", "# Page", "# A page", 1),
+        ("constraints.txt", "attrs==1", "attrs==2", 1),
+        ("figures/a.py", "1", '1  # one\n\n"""Why."""', 1),
+        ("page.md", "a.f()", "a.f();", 2),
+        ("constraints.txt", "2.4.6", "2.4.7", 2),
+        ("figures/a.py", "1", "2", 2),
+    ],
+)
+def test_a_page_is_run_again_if_what_computes_it_has_changed(
+    small_book, monkeypatch, name, old, new, runs
+):
+    """Its code, a line of an imported module, an engine: not a word, a comment, another package."""
+    ran = []
+
+    def execute(pages, progress, done):
+        for name, page in pages.items():
+            page.cells[0].outputs = [{"output_type": "stream", "name": "stdout", "text": "1"}]
+            ran.append(name)
+            done(name)
+
+    monkeypatch.setattr(book_runs, "execute", execute)
+    book_runs.fill(book_pages.computed(), print, keep=True)
+    path = small_book / name
+    path.write_text(path.read_text().replace(old, new))
+    book_pages.read.cache_clear()
+    pages = book_pages.computed()
+    book_runs.fill(pages, print)
+    assert ran == ["page"] * runs
+    assert pages["page"].cells[0].outputs[0]["text"] == "1"
+
+
+def test_a_page_of_the_book_has_a_hash_of_all_that_computes_it():
+    """Another one for each page."""
+    keys = [book_pages.key_of(page) for page in book_pages.computed().values()]
+    assert len({*keys}) == len(keys) > 10
 
 
 @pytest.mark.slow
@@ -56,18 +106,15 @@ def test_a_quiz_marks_one_answer_right():
 
 
 @pytest.mark.slow
-def test_an_exception_in_a_cell_fails_the_build(tmp_path):
-    """A book whose only cell asserts False ends with an error code and the AssertionError."""
-    config = yaml.safe_load((ROOT / "book/_config.yml").read_text())
-    (tmp_path / "_config.yml").write_text(yaml.safe_dump({"execute": config["execute"]}))
-    (tmp_path / "_toc.yml").write_text("format: jb-book\nroot: index\n")
-    head = "---\nfile_format: mystnb\nkernelspec: {name: python3, display_name: Python 3}\n---\n"
-    (tmp_path / "index.md").write_text(f"{head}# Page\n\n```{{code-cell}}\nassert False\n```\n")
-    run = "from jupyter_book.cli.main import main; main()"
-    done = subprocess.run([sys.executable, "-c", run, "build", str(tmp_path), "-W", "--keep-going"],
-                          capture_output=True, text=True, check=False)  # fmt: skip
-    assert done.returncode != 0
-    assert "AssertionError" in done.stdout + done.stderr
+def test_an_exception_in_a_cell_ends_the_build():
+    """The pages before it are kept; what one page has defined, the next one does not see."""
+    cells = ("x = 1\nx", "assert 'x' not in globals()", "assert False")
+    pages = {str(k): new_notebook(cells=[new_code_cell(x)]) for k, x in enumerate(cells)}
+    done = []
+    with pytest.raises(CellExecutionError, match="AssertionError"):
+        book_runs.execute(pages, print, done.append)
+    assert done == ["0", "1"]
+    assert pages["0"].cells[0].outputs[0].data["text/plain"] == "1"
 
 
 @pytest.mark.slow
@@ -187,11 +234,3 @@ def test_downloads_are_the_released_notebooks(book):
         page = (book / f"generated/notebooks/{path.stem}.html").read_text()
         stub = "NotImplementedError"  # the report has none
         assert (stub in page) == (stub in path.read_text())
-
-
-def test_a_campaign_that_named_its_rows_otherwise_is_run_again():
-    """What an older `make campaign` left in build/ ends no build."""
-    from book_campaign import _differ
-
-    old = [{"way": "joint velocity", "task": "line", "plant": "baxter", "seed": 0}]
-    assert _differ(old) == old
