@@ -40,7 +40,9 @@
       table.classList.add("lab-cards");
     });
   };
-  fold();
+  var stop = function (e) { e.tabIndex = e.scrollWidth > e.clientWidth ? 0 : -1; }; // only what scrolls is reached by Tab
+  var fit = function () { fold(); document.querySelectorAll(".bd-article :is(div.math, pre, .pst-scrollable-table-container)").forEach(stop); };
+  fit(); document.fonts.ready.then(fit);
   var turned;
-  addEventListener("resize", function () { clearTimeout(turned); turned = setTimeout(fold, 200); });
+  addEventListener("resize", function () { clearTimeout(turned); turned = setTimeout(fit, 200); });
 })();

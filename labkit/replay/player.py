@@ -31,6 +31,7 @@ VIEWER = Path(__file__).parents[1] / "data" / "viewer"
 LIFT = 0.6  # exponent of the picture's brightness, below 1 to lighten dark parts
 BACK = 0.005  # by which see-through parts are set back, in [m], so that they hide no coinciding arm
 GHOST, SEEN_THROUGH = (0.12, 0.47, 0.82), 0.38  # colour and opacity of see-through arms
+NEWTON = 0.01  # length of an arrow for 1 N, in [m], as in player.js
 
 
 def figure_html(
@@ -111,8 +112,9 @@ def show(motion: Motion) -> Replay:
 
 
 def still(motion: Motion) -> bytes:
-    """Draw the arm half way and the paths, as the bytes of a PNG file."""
+    """Draw the arm half way, paths, walls and the force on the tip, as the bytes of a PNG file."""
     from PIL import Image, ImageDraw
+    from scipy.spatial.transform import Rotation
 
     from ..tags.camera import looking_at
     from ..tags.drawing import FAR, Intrinsics, RobotVisuals, Window, draw, in_colour
@@ -151,6 +153,15 @@ def still(motion: Motion) -> bytes:
 
     lines = [(tips_of(q), "#57606a") for q in motion.ghosts.values()]
     lines += [(path, "#1f2328"), (tips, "#b3001b")]
+    for face in (thing for thing in motion.things.values() if "size" in thing):
+        corners = 0.5 * np.array([[-1, -1], [1, -1], [1, 1], [-1, 1], [-1, -1]]) * face["size"][:2]
+        turn = Rotation.from_quat(face["quaternion"]).as_matrix()[:, :2]
+        lines.append((face["position"] + corners @ turn.T, "#57606a"))
+    if motion.force is not None:
+        arrow = NEWTON * motion.force[k]
+        side = 0.15 * np.cross(arrow, along)
+        head = np.array([0.0 * side, arrow, 0.7 * arrow + side, arrow, 0.7 * arrow - side])
+        lines.append((tip + head, "#c77700"))
     if robot.name not in SIDES:  # which has no meshes
         joints = model.dynamics.frames(motion.q[k])[:, :3, 3]
         lines.append((np.vstack([joints, tip]), "#57606a"))

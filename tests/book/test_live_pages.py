@@ -165,7 +165,7 @@ def test_a_finger_pulls_the_hand(live):
 
 
 def test_keys_push_the_tip_and_a_screen_reader_is_told(live):
-    """The button, pressed by a key, pushes with 10 N for a second, and that is said."""
+    """The button pushes with 10 N for a second, and that is said; an arrow key moves each dial."""
     page = live("live")
     choose(page, "Arm", "ideal arm")
     choose(page, "Path", "stay")
@@ -173,6 +173,10 @@ def test_keys_push_the_tip_and_a_screen_reader_is_told(live):
     page.wait_for_function(f"{ERROR} > 0.025")
     told = page.locator(".lk-player > [role=status]").inner_text()
     assert "10 N along +y" in told or "mm from its target" in told
+    for dial in page.locator(".lk-live input[type=range]").all():
+        before = dial.input_value()
+        dial.press("ArrowLeft" if before == dial.get_attribute("max") else "ArrowRight")
+        assert dial.input_value() != before
 
 
 def test_a_dial_makes_a_new_curve_and_the_old_one_stays(live):

@@ -46,7 +46,6 @@
   .lk-barrow { grid-template-columns: 1fr 1fr; }
   .lk-barrow > :first-child { grid-column: 1 / -1; }
 }
-@media print { .lk-live .lk-offer { display: none; } }
 .lk-live .lk-check { white-space: normal; }
 .lk-corners { display: block; width: 100%; max-width: 30rem; margin: 0.3rem auto; border: 1px solid var(--lk-edge); border-radius: 4px; user-select: none; }
 .lk-corners text { font-size: 6px; font-weight: 700; }

@@ -1,4 +1,4 @@
-(()=>{var a=`.lk-embed, .lk-player, .lk-demo {
+(()=>{var i=`.lk-embed, .lk-player, .lk-demo {
   --lk-text: #1f2328; --lk-quiet: #57606a; --lk-edge: #b6bec8; --lk-face: #ffffff; --lk-sky: #e9edf2;
   --lk-grid: #7e8a97; --lk-accent: #0a5aa6; --lk-trace: #b3001b; --lk-path: #1f2328;
   --lk-line-0: #b3001b; --lk-line-1: #0a5aa6; --lk-line-2: #a35200; --lk-line-3: #1a7f4b;
@@ -13,8 +13,6 @@ body[data-jp-theme-light="false"] :is(.lk-embed, .lk-player, .lk-demo) {
   --lk-line-4: #cf9df0; --lk-line-5: #a9b4c0; --lk-line-6: #66d0d8;
 }
 .lk-embed { margin: 1rem 0; max-width: 100%; }
-html[data-theme="dark"] .cell_output .text_html:has(.lk-embed) { /* the theme makes outputs white */
-  background: none !important; color: inherit !important; padding: 0 !important; }
 .lk-embed > figcaption { margin-top: 0.4rem; color: var(--lk-text); text-align: left; font-weight: 400; font-family: inherit; }
 .lk-embed details { margin-top: 0.3rem; }
 .lk-embed .lk-poster { max-width: 100%; height: auto; display: block; border-radius: 6px; }
@@ -64,7 +62,7 @@ html[data-theme="dark"] .cell_output .text_html:has(.lk-embed) { /* the theme ma
 .lk-livedials { padding: 0.1rem 0.75rem 0.4rem; }
 .lk-live button[aria-pressed="true"] { background: var(--lk-accent); color: var(--lk-face); }
 .lk-live button:disabled { opacity: 0.55; cursor: default; }
-.lk-check { display: flex; align-items: center; gap: 0.3rem; white-space: nowrap; font-size: 0.9rem; }
+.lk-check { display: flex; align-items: center; gap: 0.3rem; min-height: 1.5rem; white-space: nowrap; font-size: 0.9rem; }
 .lk-unit, .lk-speed, .lk-dial output { color: var(--lk-quiet); }
 .lk-speed { display: flex; align-items: center; gap: 0.4rem; white-space: nowrap; }
 .lk-legend { display: flex; flex-wrap: wrap; gap: 0.1rem 1.2rem; list-style: none; margin: 0; padding: 0.1rem 0.75rem; font-size: 0.85rem; color: var(--lk-text); }
@@ -118,4 +116,4 @@ fieldset .lk-dial label { flex-basis: 2.6rem; }
   .lk-bar, .lk-load, .lk-dial { display: none !important; }
   .lk-player, .lk-demo { break-inside: avoid; }
 }
-`;function i(){if(globalThis.labkitStyled)return;let e=new CSSStyleSheet;e.replaceSync(a),document.adoptedStyleSheets=[...document.adoptedStyleSheets,e],globalThis.labkitStyled=!0}var o=document.currentScript.src.split("?")[0].replace(/[^/]*$/,""),m=matchMedia("(max-width: 500px)"),p={},n=globalThis.labkitScript=e=>p[e]??=new Promise((t,r)=>{let l=Object.assign(document.createElement("script"),{src:e,onload:t});l.onerror=()=>r(new Error(`${e} is missing beside this page`)),document.head.append(l)}),c=globalThis.labkitLoad=async()=>(await Promise.all([n(`${o}viewer.js`),n(`${o}robot.js`)]),globalThis.labkitViewer);async function s(e){if(e.dataset.mounted)return;e.dataset.mounted="1",e.querySelector(".lk-load")?.remove();let t=JSON.parse(e.querySelector('script[type="application/json"]').textContent);try{let{mount:r}=await c(),l=document.createElement("div");e.insertBefore(l,e.querySelector("figcaption")),r(l,t),l.querySelector(".lk-note")&&e.classList.add("lk-flat")}catch(r){delete e.dataset.mounted,console.error(r)}}function b(e){let t=document.createElement("button");t.type="button",t.className="lk-load",t.textContent="Tap to load the interactive view",t.addEventListener("click",()=>s(e).then(()=>e.querySelector("button, input, select")?.focus())),e.insertBefore(t,e.querySelector("figcaption"))}function d(){if(globalThis.labkitStarted)return;globalThis.labkitStarted=!0,i();let e=new IntersectionObserver(t=>{for(let{isIntersecting:r,target:l}of t)r&&(e.unobserve(l),s(l))},{rootMargin:"400px"});for(let t of document.querySelectorAll(".lk-embed"))m.matches?b(t):e.observe(t)}document.readyState==="loading"?document.addEventListener("DOMContentLoaded",d):d();})();
+`;function a(){if(globalThis.labkitStyled)return;let e=new CSSStyleSheet;e.replaceSync(i),document.adoptedStyleSheets=[...document.adoptedStyleSheets,e],globalThis.labkitStyled=!0}var o=document.currentScript.src.split("?")[0].replace(/[^/]*$/,""),m=matchMedia("(max-width: 500px)"),p={},n=globalThis.labkitScript=e=>p[e]??=new Promise((l,r)=>{let t=Object.assign(document.createElement("script"),{src:e,onload:l});t.onerror=()=>r(new Error(`${e} is missing beside this page`)),document.head.append(t)}),c=globalThis.labkitLoad=async()=>(await Promise.all([n(`${o}viewer.js`),n(`${o}robot.js`)]),globalThis.labkitViewer);async function s(e){if(e.dataset.mounted)return;e.dataset.mounted="1",e.querySelector(".lk-load")?.remove();let l=JSON.parse(e.querySelector('script[type="application/json"]').textContent);try{let{mount:r}=await c(),t=document.createElement("div");e.insertBefore(t,e.querySelector("figcaption")),r(t,l),t.querySelector(".lk-note")&&e.classList.add("lk-flat")}catch(r){delete e.dataset.mounted,console.error(r)}}function b(e){let l=document.createElement("button");l.type="button",l.className="lk-load",l.textContent="Tap to load the interactive view",l.addEventListener("click",()=>s(e).then(()=>e.querySelector("button, input, select")?.focus())),e.insertBefore(l,e.querySelector("figcaption"))}function d(){if(globalThis.labkitStarted)return;globalThis.labkitStarted=!0,a();let e=new IntersectionObserver(l=>{for(let{isIntersecting:r,target:t}of l)r&&(e.unobserve(t),s(t))},{rootMargin:"400px"});for(let l of document.querySelectorAll(".lk-embed"))m.matches?b(l):e.observe(l)}document.readyState==="loading"?document.addEventListener("DOMContentLoaded",d):d();})();

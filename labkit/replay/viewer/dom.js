@@ -46,7 +46,7 @@ export const reducedMotion = () => matchMedia("(prefers-reduced-motion: reduce)"
  * within the limits can be typed, or beside it if not `typed`.  `oninput` receives each new value.
  */
 export function dial({ label, unit = "", min, max, value = min, ratio = false, typed = true, digits = 3, oninput }) {
-  const id = unique("dial"), STEPS = 1000;
+  const id = unique("dial"), STEPS = 200; // so few that the rounding to digits never takes a key's step back
   const toShare = (x) => (ratio ? Math.log(x / min) / Math.log(max / min) : (x - min) / (max - min));
   const toValue = (s) => (ratio ? min * (max / min) ** s : min + s * (max - min));
   const round = (x) => +Number(x).toPrecision(digits);
