@@ -53,7 +53,7 @@ MOUNT = """async ([own, wide, sheet, configs]) => {
     for (const config of configs ?? [given]) {
         const host = Object.assign(document.createElement("div"), { className: "lk-live" });
         body.append(host);
-        const panel = await labkitLive.mount(host, config, labkitViewer, labkitRobot, 0);
+        const panel = await labkitLive.mount(host, config, labkitViewer, labkitRobot);
         panel.picture.stage.draw = () => {};
         panel.pause(true), panel.session.restart(), panels.push(panel);
     }

@@ -5,7 +5,6 @@ const base = document.currentScript.src.split("?")[0].replace(/[^/]*$/, "");
 async function open(host, button, status) {
   button.disabled = true;
   status.textContent = "Loading the arm and its physics…";
-  const began = performance.now();
   try {
     const [viewer] = await Promise.all([globalThis.labkitLoad(),
       ...["mujoco.js", "mujoco-wasm.js", "live.js"].map((name) => globalThis.labkitScript(base + name))]);
@@ -13,7 +12,7 @@ async function open(host, button, status) {
     const place = document.createElement("div");
     host.querySelector(".lk-offer").replaceWith(place);
     host.querySelector(".lk-still").remove();
-    host.live = await globalThis.labkitLive.mount(place, config, viewer, globalThis.labkitRobot, began);
+    host.live = await globalThis.labkitLive.mount(place, config, viewer, globalThis.labkitRobot);
     place.querySelector("button, input, select")?.focus({ preventScroll: true });
   } catch (problem) {
     button.disabled = false;

@@ -1,12 +1,12 @@
-// The plots of a panel: a whole run, and a faint line for the run before it, on fixed axes.
+// The plots of a panel: a whole run with a faint line for the run before it, or the last ten seconds.
 import { wholeRun } from "./session.js";
 
-const POINTS = 160;
+const POINTS = 160, KEPT = 10, PAUSE = 0.04; // s that a strip keeps, and between two of its points
 const rest = () => new Promise((go) => setTimeout(go, 0));
 
 /** Quantities of a run's ticks that can be plotted; `top` is the smallest maximum of the axis. */
-export const ERROR = { title: "Tip error, computed again for the whole run [mm]", unit: "mm", top: 10, value: (tick) => 1000 * tick.error };
-export const ASKED = { title: "Largest joint speed that the law asks for [rad/s]", unit: "rad/s", top: 5, most: 20,
+export const ERROR = { title: "Tip error [mm]", top: 10, value: (tick) => 1000 * tick.error };
+export const ASKED = { title: "Largest joint speed that the law asks for [rad/s]", top: 5, most: 20,
   value: (tick) => Math.max(...tick.asked.map(Math.abs)) };
 
 /** Numbers of a run: the root mean square and the largest error in mm, and the highest joint speed in rad/s. */
@@ -17,10 +17,10 @@ export function summary(ticks) {
 }
 
 export class Curves {
-  constructor(viewer, quantities, scrub) {
+  constructor(viewer, quantities) {
     this.element = viewer.h("div", { class: "lk-plots" });
     this.plots = quantities.map((of) => ({ of, top: of.top, plot: new viewer.Plot({
-      title: of.title, series: [], x: [0, 1], zero: true, least: of.top, scrub }) }));
+      title: of.title, series: [], x: [0, 1], zero: true, least: of.top }) }));
     this.element.append(...this.plots.map(({ plot }) => plot.element));
   }
 
@@ -37,8 +37,17 @@ export class Curves {
   /** Draw these ticks as the present run; the previous run stays behind it. */
   show(ticks) {
     const step = Math.max(1, Math.floor(ticks.length / POINTS)), few = ticks.filter((_, k) => k % step === 0);
-    [this.before, this.last] = [this.last, few];
+    [this.before, this.last] = [this.last === this.strip ? null : this.last, few];
     this.draw();
+  }
+
+  /** Draw what has happened up to this tick, with what came shortly before it. */
+  follow(tick) {
+    const kept = this.strip && this.last === this.strip ? this.strip.filter(({ t }) => t < tick.t && t > tick.t - KEPT) : [];
+    if (kept.length && tick.t - kept.at(-1).t < PAUSE) return;
+    [this.before, this.last] = [null, this.strip = [...kept, tick]];
+    this.draw();
+    this.time(tick.t);
   }
 
   draw() {
@@ -58,13 +67,6 @@ export class Curves {
   }
 
   time(t) { this.plots.forEach(({ plot }) => plot.time(t)); }
-
-  /** A description of the values at a time. */
-  at(t) {
-    if (!this.last) return "the curve is not ready yet";
-    const i = Math.max(0, this.last.findIndex((tick) => tick.t >= t));
-    return this.plots.map(({ of }) => `${of.value(this.last[i]).toFixed(1)} ${of.unit}`).join("; ");
-  }
 
   dispose() { this.plots.forEach(({ plot }) => plot.dispose()); }
 }

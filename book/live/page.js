@@ -10,7 +10,7 @@ import text from "./live.css";
 
 const PIECES = { open: (...given) => new Panel(...given), stiffness: stiffnessPiece, age: tagPiece, singular: singularPiece };
 
-async function mount(host, config, viewer, robot, began) {
+async function mount(host, config, viewer, robot) {
   viewer.dress();
   if (!globalThis.labkitLiveStyled) {
     const sheet = new CSSStyleSheet();
@@ -18,7 +18,7 @@ async function mount(host, config, viewer, robot, began) {
     document.adoptedStyleSheets = [...document.adoptedStyleSheets, sheet];
     globalThis.labkitLiveStyled = true;
   }
-  return PIECES[config.piece ?? "open"](host, config, await mujoco(), viewer, robot, began);
+  return PIECES[config.piece ?? "open"](host, config, await mujoco(), viewer, robot);
 }
 
 globalThis.labkitLive = { mount, Session, run };

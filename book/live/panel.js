@@ -25,9 +25,9 @@ export function described({ controller, gains, plant, ...arm }) {
 }
 
 export class Panel extends Drawing {
-  constructor(host, config, mujoco, viewer, robot, began) {
+  constructor(host, config, mujoco, viewer, robot) {
     super();
-    Object.assign(this, { host, config, mujoco, viewer, h: viewer.h, began, playing: true, felt: viewer.steady() });
+    Object.assign(this, { host, config, mujoco, viewer, h: viewer.h, playing: true, felt: viewer.steady() });
     const plant = config.plant ?? "ideal";
     this.armdials = {};
     this.settings = { ...PRESETS[plant], controller: "workspaceImpedance", path: "circle", shape: "quintic",
@@ -47,7 +47,7 @@ export class Panel extends Drawing {
     this.status = h("p", { class: "lk-hidden", role: "status" });
     this.said = h("p", { class: "lk-kept" });
     this.gainbox = h("div", { class: "lk-dials" });
-    this.curves = new Curves(viewer, this.quantities(), (t) => this.say(`At ${t.toFixed(2)} s: ${this.curves.at(t)}`));
+    this.curves = new Curves(viewer, this.quantities());
     this.sight = h("div");
     this.element.append(...this.parts(stagebox), this.status);
     host.append(this.element);
@@ -117,28 +117,26 @@ export class Panel extends Drawing {
     const words = [`t = ${now.t.toFixed(2)} s`, `tip ${(1000 * now.error).toFixed(1)} mm from its target`,
       ...now.forces.map((f) => `${FORCES[f.name] ?? f.name} ${f.size.toFixed(1)} N`), `fastest joint ${now.speed.toFixed(2)} rad/s`];
     this.numbers.textContent = words.join(" · ");
-    this.curves.time(now.t % this.session.lap);
+    if (this.settings.path === "stay") this.curves.follow(now);
+    else this.curves.time(now.t % this.session.lap);
     this.shown?.(now);
     const hand = now.forces.find((f) => f.name === "hand")?.size ?? 0;
     if (this.felt(hand)) this.say(`Pulling with ${hand.toFixed(1)} N: ${this.numbers.textContent}`);
-    if (!this.host.dataset.ready) {
-      this.host.dataset.ready = "1";
-      this.host.dataset.firstMotion = String(Math.round(performance.now() - this.began));
-    }
+    this.host.dataset.ready = "1";
   }
 
-  /** Compute the curve of a whole run with the present settings; the previous curve stays as a faint line. */
+  /** Compute the curve of a whole run with the present settings, unless the target stays. */
   recompute() {
     clearTimeout(this.due);
+    this.asked = {};
+    if (this.settings.path === "stay") { this.said.textContent = `${described(this.settings)}.`; return; }
     this.due = setTimeout(async () => {
-      const began = performance.now(), settings = this.settings, asked = (this.asked = {});
+      const settings = this.settings, asked = (this.asked = {});
       try {
         const told = await this.curves.run(this.mujoco, settings, this.config.seconds ?? 2.5, () => asked !== this.asked);
         if (asked !== this.asked) return;
-        this.host.dataset.rerun = String(Math.round(performance.now() - began));
-        this.said.textContent = `${described(settings)}: ${told}`;
+        this.said.textContent = `A run from the start, ${described(settings)}: ${told}`;
         this.say(told, CALM);
-        this.computed?.();
       } catch (problem) { this.lost(problem); }
     }, this.curves.last ? 60 : 0);
   }

@@ -11,8 +11,8 @@ const MOVES = { conveyor: "a conveyor", circle: "a circle", hand: "a hand with s
 const SECONDS = 8, TICK = 0.005;
 const SETTINGS = { controller: "workspaceVelocity", path: "tag", move: "conveyor", tagSpeed: 0.06,
   camera: { ...CAMERA, age: 0.2, rate: 20, sigma: 0.0005, predict: false }, gains: {} };
-const AIM = { title: "Distance from the aim to the tag [mm]", unit: "mm", top: 20, value: (tick) => tick.miss };
-const AGE = { title: "Speed of the tag times the age of the reading [mm]", unit: "mm", top: 20, value: (tick) => tick.due };
+const AIM = { title: "Distance from the aim to the tag [mm]", top: 20, value: (tick) => tick.miss };
+const AGE = { title: "Speed of the tag times the age of the reading [mm]", top: 20, value: (tick) => tick.due };
 
 /** The camera's readings of the tag for some seconds, without the arm, as ticks 5 ms apart. */
 export function watched(settings, seconds = SECONDS) {
@@ -94,7 +94,7 @@ class Age extends Panel {
 
   /** Draw the curve at once: it depends only on the camera, so no arm has to be simulated. */
   recompute() {
-    const { h } = this, { settings } = this, began = performance.now();
+    const { h, settings } = this;
     this.curves.show(watched(settings));
     const row = (predict) => Object.keys(MOVES).map((move) => miss({ ...settings, move, camera: { ...settings.camera, predict } }).toFixed(1));
     const lines = [["as seen", row(false)], ["predicted", row(true)]];
@@ -105,7 +105,6 @@ class Age extends Panel {
     const turn = settings.move === "circle" ? ` During the age of a picture the circle turns by ω T = ${((settings.tagSpeed / TAG.radius) * age).toFixed(2)}.` : "";
     this.said.textContent = `The hand aims ${rms.toFixed(1)} mm from the tag (root mean square); speed × mean age is ${(1000 * settings.tagSpeed * (age + 0.5 / rate)).toFixed(1)} mm.${turn}`;
     if (this.predicted.said !== null) this.say(`${predict ? "Predicted" : "As seen"}: ${this.said.textContent}`, CALM);
-    this.host.dataset.rerun = String(Math.round(performance.now() - began));
   }
 }
 

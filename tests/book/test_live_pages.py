@@ -110,6 +110,7 @@ def test_a_mouse_pulls_the_hand_and_lets_it_go(live):
         "/your pull \\d/.test(document.querySelector('.lk-readout').textContent)"
     )
     page.wait_for_function(OFF)
+    page.wait_for_function(OFF.replace("now", "curves.last.at(-1)"))
     page.mouse.up()
     page.wait_for_function(BACK)
 
