@@ -9,11 +9,12 @@ import numpy as np
 from IPython.display import HTML
 
 import labkit as lk
+from labkit.replay import Motion
 from labkit.shapes import Array
 
 from .claims import holds, shows
 from .embed import demo_html
-from .page import Question, figure, number, numbers, picture, quiz, shown, table
+from .page import Question, figure, number, numbers, poster, quiz, shown, table
 
 SEED = 2
 STEP = 1e-6
@@ -24,8 +25,9 @@ LIMIT = 1.5
 def jacobian_demo() -> HTML:
     """The live demo of the Jacobian."""
     caption = "The tip Jacobian, live. Turn the joints, and watch a column become two arrows."
-    seen = picture("left", lk.IDEAL, lk.robot("left").ready)
-    return HTML(demo_html("jacobian", caption=caption, poster=seen))
+    left = lk.robot("left")
+    held = Motion(left, np.array((0.0, 1.0)), np.tile(left.ready, (2, 1)))
+    return HTML(demo_html("jacobian", caption=caption, poster=poster(held)))
 
 
 def checks() -> HTML:

@@ -19,18 +19,14 @@ from IPython.display import HTML
 from myst_nb import glue
 from PIL import Image
 
-from labkit import Arm, Log, Plant, Table, World, metrics, plotting
+from labkit import Log, metrics, plotting
 from labkit.replay import Motion, motion_of
 from labkit.replay.player import still as drawn
-from labkit.tags.camera import Camera, looking_at
-from labkit.tags.drawing import Intrinsics
 
 from .claims import holds
 from .embed import motion_html
 from .formulas import in_text
 
-EYE, AT = (1.7, 1.15, 0.7), (0.45, 0.2, 0.2)
-"""Where the camera of `picture` is and what it looks at, world axes, in [m]."""
 INKS = ("#b3001b", "#0a5aa6", "#a35200", "#1a7f4b", "#7b3fa0", "#57606a", "#00737d")
 """Line colours in light mode; `book.css` has those for dark mode, with a contrast above 4.5."""
 TEXT, FRAME, FAINT = "#1f2328", "#57606a", "#999999"
@@ -47,7 +43,7 @@ mpl.use("agg")
 mpl.rcParams.update(
     {
         "svg.fonttype": "none",  # text stays text, for search, screen readers and scaling
-        "font.size": 11.5,
+        "font.size": 10.5,
         "figure.figsize": (6.0, 3.4),
         "figure.constrained_layout.use": True,
         "axes.prop_cycle": mpl.cycler(color=INKS),
@@ -117,7 +113,7 @@ def _drawing(svg: str, caption: str, alt: str) -> str:
     mark = "f" + hashlib.sha256((caption + alt).encode()).hexdigest()[:8] + "-"
     svg = re.sub(r'id="([^"]+)"', rf'id="{mark}\1"', svg)
     svg = re.sub(r'(href="#|url\(#)', rf"\g<1>{mark}", svg)
-    svg = re.sub(r"font: [^;\"]*?([\d.]+px)[^;\"]*", r"font-size: \1", svg)  # use the page's font
+    svg = re.sub(r" font-family: [^;\"]*;?", "", svg)  # use the page's font
     for ink, variable in _VARIABLES.items():
         svg = svg.replace(ink, variable)
     box = re.search(r'viewBox="([^"]+)"', svg)[1]  # type: ignore[index]
@@ -147,20 +143,6 @@ def replay(log: Log, title: str, caption: str = "", **options: Any) -> HTML:
 def poster(motion: Motion) -> str:
     """The first view of a motion, with its paths and the things that it meets, as a data URL."""
     return _encoded(Image.open(io.BytesIO(drawn(motion))))
-
-
-def picture(side: str, plant: Plant, q: np.ndarray) -> str:
-    """The arm at rest at q, shape (7,) in [rad], seen from beside the table, as a data URL.
-
-    White becomes transparent, so that the background of the page, light or dark, is visible.
-    """
-    lens = Intrinsics(width=480, height=360, fx=405.0, fy=405.0)
-    with World(things=(Table(),)) as world:
-        arm = Arm(side, plant, world=world)
-        arm.reset(q)
-        colours = Camera(world, looking_at(EYE, AT), lens, samples=1).image()
-    seen = np.where((colours == 255).all(axis=-1), 0, 255).astype(np.uint8)
-    return _encoded(Image.fromarray(np.dstack([colours, seen])))
 
 
 def still() -> str:

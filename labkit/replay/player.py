@@ -138,7 +138,8 @@ def still(motion: Motion) -> bytes:
     radius = 0.5 * float(np.linalg.norm(np.ptp(points, axis=0))) + 0.12
     along = np.array([0.318, -0.818 if robot.name == "right" else 0.818, 0.479])  # as in `rig.js`
     T_wc = looking_at(at + radius / np.sin(np.radians(17.5)) * along, at)
-    lens = Intrinsics(640, 400, *[200.0 / np.tan(np.radians(17.5))] * 2)
+    width, height = 640, 400  # drawn twice as large, so that its edges are smooth
+    lens = Intrinsics(2 * width, 2 * height, *[height / np.tan(np.radians(17.5))] * 2)
 
     def layer(surface: Any, before: Any, opacity: float) -> tuple[Any, Any]:
         colours, depth = draw(surface, lens, T_wc, Window(0, 0, lens.width, lens.height))
@@ -168,7 +169,7 @@ def still(motion: Motion) -> bytes:
     T_cw = np.linalg.inv(T_wc)
     for points, ink in lines:
         pixels = lens.project(points @ T_cw[:3, :3].T + T_cw[:3, 3])
-        ImageDraw.Draw(whole).line([*map(tuple, pixels.tolist())], ink, 3)
+        ImageDraw.Draw(whole).line([*map(tuple, pixels.tolist())], ink, 6)
     file = BytesIO()
-    whole.save(file, "PNG", optimize=True)
+    whole.resize((width, height)).save(file, "PNG", optimize=True)
     return file.getvalue()

@@ -82,10 +82,11 @@ def test_a_saved_notebook_keeps_picture_and_words():
     assert motion.title in image["alt"]
     assert motion.alt in kept["text/plain"]
     picture = Image.open(BytesIO(base64.b64decode(image["src"].split(",")[1])))
-    pixels = np.array(picture)
+    pixels = np.array(picture).astype(int)
     assert picture.size == (640, 400)
     assert 0.02 < np.mean(pixels[:, :, 3] > 0) < 0.98, "the arm covers a part of it"
-    assert (pixels == [179, 0, 27, 255]).all(axis=2).any(), "the tip's path is drawn"
+    near = np.abs(pixels - [179, 0, 27, 255]).max(axis=2) < 30
+    assert near.any(), "the tip's path is drawn"
 
 
 def test_a_still_shows_what_the_viewer_shows():
@@ -104,4 +105,4 @@ def test_a_still_of_another_arm_is_a_line_from_joint_to_joint():
     """It has no meshes."""
     one = replace(lk.robot("left"), name="one")
     pixels = np.array(Image.open(BytesIO(still(replace(swing(1.0, ghosts=0), robot=one)))))
-    assert (pixels == [87, 96, 106, 255]).all(axis=2).sum() > 50
+    assert (np.abs(pixels - [87.0, 96.0, 106.0, 255.0]).max(axis=2) < 30).sum() > 50
