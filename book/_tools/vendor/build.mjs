@@ -58,6 +58,7 @@ cut(join(stix, "files/stix-two-math-latin-400-normal.woff"), "stix-two-math.woff
   "--unicodes=U+20-7E,U+A0-FF,U+2C6-2DD,U+300-338,U+391-3F5,U+2016,U+2026,U+2032,U+203E,U+20D7,U+2102,U+2110-2131,U+2190-2199," +
   "U+210E,U+21D0-21D4,U+2200-2265,U+226A,U+226B,U+22A4,U+22A5,U+22C5,U+22C6,U+22EE-22F1,U+2308-230B,U+239B-23B4,U+23DC-23E1,U+27E8,U+27E9," +
   "U+1D434-1D467,U+1D6A4-1D6E1,U+1D6FC-1D71B");
+execFileSync(process.env.PYTHON, [join(here, "roots.py"), join(vendor, "stix-two-math.woff")]);
 // The theme's icons, without the thousand that no page shows.
 cut(join(theme, "fa-solid-900.ttf"), "icons.woff", "--no-layout-closure", "--unicodes=U+F002,U+F00C,U+F010,U+F019,U+F03A,U+F042,U+F053,U+F054,U+F057,U+F058,U+F05A," +
   "U+F062,U+F064,U+F06A,U+F071,U+F077,U+F078,U+F0C9,U+F0EB,U+F0F3,U+F104,U+F105,U+F107,U+F185,U+F186,U+F303,U+F35D");
