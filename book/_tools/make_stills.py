@@ -115,11 +115,12 @@ def force(t: float) -> list[float]:
 
 
 def loop(page: Page, address: str) -> Iterator[Image.Image]:
-    """The pictures of the loop; the arms go through it once before, so that it closes."""
+    """The pictures of the loop, from the middle of the pull, which the first one shows."""
     load(page, address, 0, PAIR)
-    for k in range(2 * SECONDS * RATE):
+    before = (SECONDS + 3) * RATE
+    for k in range(before + SECONDS * RATE):
         page.evaluate(PULL, [force(k / RATE % SECONDS), 1 / RATE])
-        if k >= SECONDS * RATE:
+        if k >= before:
             yield taken(page)
 
 
@@ -129,7 +130,7 @@ def main() -> None:
         flags = ["--no-sandbox", "--enable-unsafe-swiftshader"]
         browser = playwright.chromium.launch(executable_path=program(), args=flags)
         for file in sorted((ROOT / "book/_build/html").rglob("*.html")):
-            found = re.findall(r'<img class="dark-light" src="\S+?stills/(\w+)', file.read_text())
+            found = re.findall(r"/stills/(\w+)\.webp", file.read_text())
             for k, name in enumerate(found):
                 page = browser.new_page(viewport=SIZE, device_scale_factor=2 - (name == "index"))
                 page.add_init_script(CARD)
@@ -141,7 +142,7 @@ def photograph(page: Page, address: str, k: int, to: Path) -> None:
     """Take the still of panel k of a page, and on the first page the loop."""
     if to.stem == "index":
         moving = [*loop(page, address)]
-        still = moving[3 * RATE]
+        still = moving[0]
         moving[0].save(to.with_suffix(".avif"), save_all=True, append_images=moving[1:],
                        duration=1000 // RATE, quality=50, speed=3)  # fmt: skip
         shown = Image.alpha_composite(Image.new("RGBA", still.size, "#f8f7f4"), still).reduce(2)
