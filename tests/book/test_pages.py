@@ -132,6 +132,20 @@ def test_every_picture_has_words(pages):
 
 @pytest.mark.soak
 @pytest.mark.xdist_group("read pages")
+def test_every_figure_has_a_number_and_is_cited(pages):
+    """Somewhere the text leads to each figure by its number."""
+    names, cited = set(), set()
+    for path, page in pages.items():
+        here = {figure["id"] for figure in page.select("article figure")}
+        told = page.select(":is(figcaption, .lk-caption) .caption-number")
+        assert len(told) == len(here), path.name
+        names |= here
+        cited |= {link["href"].partition("#")[2] for link in page.select("a:has(.std-numref)")}
+    assert names == cited
+
+
+@pytest.mark.soak
+@pytest.mark.xdist_group("read pages")
 def test_ids_are_unique(pages):
     """On no page of the book do two elements have one id."""
     for path, page in pages.items():
