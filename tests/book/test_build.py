@@ -3,7 +3,6 @@
 import json
 import re
 import zipfile
-from types import SimpleNamespace
 
 import book_pages
 import book_runs
@@ -11,7 +10,7 @@ import lab
 import pytest
 from book_pages import ROOT
 from bs4 import BeautifulSoup
-from figures.page import Question, quiz, shown
+from figures.page import shown
 from nbclient.exceptions import CellExecutionError
 from nbformat.v4 import new_code_cell, new_notebook
 
@@ -98,13 +97,6 @@ def test_pages_of_the_contents_exist(book):
         assert any((ROOT / f"book/{name}{end}").exists() for end in (".md", ".ipynb"))
 
 
-def test_a_quiz_marks_one_answer_right():
-    """A question of two choices has two buttons, and the index of the right one."""
-    html = quiz(Question("Two and two?", [("4", "Yes."), ("5", "No.")], 0)).data
-    assert 'data-right="0"' in html
-    assert html.count('type="radio"') == 2
-
-
 @pytest.mark.slow
 def test_an_exception_in_a_cell_ends_the_build():
     """The pages before it are kept; what one page has defined, the next one does not see."""
@@ -133,17 +125,6 @@ def test_static_files_are_as_they_stand_in_the_sources(book):
     """A changed style reaches the book though no page has changed."""
     for name in ("book.css", "favicon.svg"):
         assert (book / "_static" / name).read_bytes() == (ROOT / "book/static" / name).read_bytes()
-
-
-def test_a_sentence_with_a_colon_stays_one():
-    """Napoleon would take its first half for a type; a description of parameters is left alone."""
-    lines, whole = ["A number: the share.", "More: this."], ["A number: the share.", "More: this."]
-    lab.hide_colon(None, "attribute", "x", None, None, lines)
-    assert ": " not in lines[0]
-    lab.show_colon(None, "attribute", "x", None, None, lines)
-    assert lines == whole
-    lab.hide_colon(None, "class", "x", None, None, lines)
-    assert lines == whole
 
 
 def test_a_line_never_begins_with_the_sign_after_a_formula():
@@ -190,27 +171,6 @@ def test_the_reference_says_what_a_class_is_made_with(book):
     page = BeautifulSoup((book / "reference.html").read_text(), "html.parser")
     assert "seed – The seed of the measurement noise" in page.get_text()
     assert page.find(id="labkit.paths.Quintic.within")
-
-
-@pytest.mark.parametrize(
-    ("name", "entry"),
-    [
-        ("Push", "labkit.scene.Push"),
-        ("Robot.neutral", "labkit.robot.Robot"),
-        ("labkit.course.Question", "labkit.course.question.Question"),
-        ("log", None),
-        ("Twice", None),
-    ],
-)
-def test_a_class_is_found_by_its_name_alone(monkeypatch, name, entry):
-    """A name that two entries have leads nowhere, and so does that of a function."""
-    full = ["labkit.scene.Push", "labkit.robot.Robot", "labkit.course", "labkit.se3.log",
-            "labkit.course.question.Question", "labkit.a.Twice", "labkit.b.Twice"]  # fmt: skip
-    entries = {x: SimpleNamespace(docname="page", node_id=x) for x in full}
-    env = SimpleNamespace(get_domain=lambda domain: SimpleNamespace(objects=entries))
-    monkeypatch.setattr(lab, "make_refnode", lambda builder, here, page, at, shown: at)
-    node = {"reftype": "obj", "reftarget": name, "refdoc": "here"}
-    assert lab.entry_elsewhere(SimpleNamespace(builder=None), env, node, None) == entry
 
 
 @pytest.mark.slow
