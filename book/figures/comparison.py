@@ -74,16 +74,10 @@ def numbers_told() -> None:
         0.0 < max([real[w] for w in stiff]) < 0.6 * real[FEED_FORWARD],
         "it keeps the error that it starts with",
     )
-    holds(
-        min([real[w] for w in soft]) > real[FEED_FORWARD] > max([real[w] for w in stiff]) > 0.0,
-        "more than feed-forward alone, which never looks",
-    )
+    holds(min([real[w] for w in soft]) > 2.0 * max([real[w] for w in stiff]), "softer and worse")
     paths = [task for task in campaign.TASKS if task != "tag"]
-    apart = [_of_seeds(w, task) - _of_seeds(FEED_FORWARD, task) for w in soft for task in paths]
-    ten, five = ([interval("seeds", d[:n], claims=1) for d in apart] for n in (10, 5))
-    holds(all(x.mean > x.half_width for x in ten), "The ten starts decide this on each path")
-    holds(all(abs(x.mean) < x.half_width for x in five), "the first five would not have done so")
     plain = np.concatenate([_of_seeds(FEED_FORWARD, task) for task in paths])
+    holds(plain.max() > 4.0 * plain.min(), "it has no feedback, so the initial error remains")
     numbers({"plain_least": plain.min(), "plain_most": plain.max()}, ".0f")
     holds(
         all(0.0 < ideal[w] < min(1.0, 0.1 * real[w]) for w in FIVE),
@@ -97,7 +91,6 @@ def numbers_told() -> None:
     first = min(FIVE, key=lambda w: real[w])
     numbers(
         {
-            "plain": real[FEED_FORWARD],
             "best": real[first],
             "stiff_worst": max(real[w] for w in stiff),
             "soft": np.mean([real[w] for w in soft]),
@@ -119,11 +112,8 @@ def checked() -> HTML:
     late = [1e3 * lk.metrics.rms(lk.metrics.tip_error(log)[log.t >= 1.0, :3])
             for log in own["joint velocity"]]  # fmt: skip
     moved = abs(late[1] - late[0])
-    holds(0.0 < max(apart.values()) < 0.5, "MuJoCo's own friction moves the arm alike")
-    holds(0.002 < moved / late[0] < 0.012, "half the step moves an error by about a hundredth")
-    number("native_apart", apart["joint torque"], ".2f")
-    number("step_mm", moved, ".2g")
-    number("step_share", 100.0 * moved / late[0], ".1g")
+    holds(0.0 < max(apart.values()) < 1.0, "MuJoCo's own friction moves the arm alike")
+    holds(0.002 < moved / late[0] < 0.022, "half the step moves it by one or two hundredths")
     rows = [
         (f"{name}, step of {1e3 * dt:g} ms", *(
             f"{native.rms(logs[w][k]):.3f}" if w in logs else "–" for w in own))
@@ -228,7 +218,7 @@ def verdicts_told() -> None:
     holds(all(a < 0.0 for a in pairs), "on each of the three paths the claim did not hold")
     holds(
         0.7 * -x["mean"] < x["half_width"] < 1.2 * -x["mean"],
-        "the interval is nearly as wide as the difference",
+        "the half width of the interval is about the difference itself",
     )
     torque = judged["the built-in method tracks better than joint torque"]
     d = [t["mean"] for t in torque["tasks"]]

@@ -150,7 +150,7 @@ def luck() -> None:
         pooled > 20.0 > 7.0 > by_task > 3.0,
         "Pooled, the intervals are wrong far more often than they say",
     )
-    numbers({"wrong_pooled": pooled, "wrong_tasks": by_task}, ".2g")
+    numbers({"wrong_pooled": pooled, "wrong_tasks": by_task}, ".1g")
 
 
 def two_units() -> HTML:

@@ -135,7 +135,7 @@ def _ahead(log: lk.Log) -> None:
         "At 0.2 m/s, 9 ms are 1.8 mm",
         (0.2, 9.0, 1.8),
         (fastest, 1e3 * age, 1e3 * fastest * age),
-        0.05,
+        0.1,
     )
 
 

@@ -128,7 +128,7 @@ def lifted() -> None:
     by_hand = 1e3 * float(J[2] @ (g / K))
     number("lift_hand", by_hand, ".3g")
     rest = fsolve(lambda q: K * (q0 - q) + model.gravity(q), q0)
-    number("lift_exact", 1e3 * float(model.pose(rest)[2, 3] - model.pose(q0)[2, 3]), ".3g")
+    number("lift_exact", 1e3 * float(model.pose(rest)[2, 3] - model.pose(q0)[2, 3]), ".2g")
 
 
 def cut() -> None:

@@ -153,10 +153,11 @@ def gains() -> HTML:
     right.set(xlabel="Kp [1/s]", ylabel="phase margin [degrees]", ylim=(0, 95))
     first = float(kps[np.argmax(over > 0.05)])
     holds(
-        0.0 <= over[kps < first].max() < 0.05 < over[kps == first][0] < 0.1 and over[-1] > 0.15,
+        0.0 <= over[kps < first].max() < 0.05 < over[kps == first][0] < 0.1
+        and 0.2 < over[-1] < 0.3,
         "first exceeds 5 % there",
     )
-    numbers({"over_last": 100.0 * over[-1], "margin_5": phase_margin(5.0)})
+    number("margin_5", phase_margin(5.0))
     return figure(
         "Overshoot of a 0.1 rad step, measured on the realistic arm, and phase margin, computed "
         "from lag and delay. The overshoot grows as the margin falls.",
@@ -193,8 +194,7 @@ def unstable() -> None:
         0.0 <= max(swings[0], 0.01) < 0.5 and swings[1] > 50.0,
         "In a run that starts 5 mrad beside the target, the arm settles at 80 1/s and",
     )
-    holds(swings[2] > 20.0, "from 0.1 rad away the arm already swings for ever at 70 1/s")
-    number("ring_mrad", swings[2], ".2g")
+    shows("at 70 1/s, by about 75 mrad from peak to peak", 75.0, swings[2], 0.05)
     robot = lk.robot("left")
     inertia = float(lk.Model("left", lk.BAXTER).mass_matrix(robot.ready)[0, 0])
     holds(
