@@ -9,7 +9,6 @@ from typing import Any
 import matplotlib.pyplot as plt
 import numpy as np
 from IPython.display import HTML
-from myst_nb import glue
 
 import labkit as lk
 from labkit import recordings
@@ -99,8 +98,9 @@ def numbers_told() -> None:
         },
         ".2g",
     )
-    glue("runs", f"{len(rows)}", display=False)
-    glue("seeds", _seeds(), display=False)
+    shows(
+        "With ten seeds that makes 640 runs", (10, 640), (len({r["seed"] for r in rows}), len(rows))
+    )
 
 
 def checked() -> HTML:
@@ -125,14 +125,6 @@ def checked() -> HTML:
         "RMS error of the tip on the line in mm, the start included; realistic arm without noise "
         "and delay, seed 0",
     )  # fmt: skip
-
-
-def _seeds() -> str:
-    """The number of seeds, and the tasks that have fewer."""
-    counts = {x: len({r["seed"] for r in pick(found()["rows"], task=x)}) for x in campaign.TASKS}
-    most = max(counts.values())
-    fewer = [f"{n} on the {task}" for task, n in counts.items() if n < most]
-    return f"{most} seeds" + (f" ({', '.join(fewer)})" if fewer else "")
 
 
 def one_table(name: str, plant: str) -> HTML:

@@ -1,4 +1,4 @@
-"""Run the campaign: every controller on every task, with its tables and figures."""
+"""Run the campaign: every controller on every task, and make its tables."""
 
 from __future__ import annotations
 
@@ -11,7 +11,6 @@ from pathlib import Path
 from labkit import Model
 from labkit.errors import LabkitError
 
-from . import pictures
 from .campaign import (
     BASELINE,
     FEED_FORWARD,
@@ -30,17 +29,12 @@ from .grid import Job, Meter, Row, work_through
 from .recording import save_campaign
 
 
-def _without(row: Row, key: str) -> Row:
-    return {name: value for name, value in row.items() if name != key}
-
-
 def main() -> None:
     """Run the campaign and write build/campaign.json and build/campaign/."""
     parser = argparse.ArgumentParser(prog="python -m solutions.study", description=__doc__)
     parser.add_argument("--seeds", type=int, default=10, help="how many seeds (10)")
     parser.add_argument("--jobs", type=int, default=None, help="processes (one for each core)")
     parser.add_argument("--out", type=Path, default=Path("build"), help="folder (build)")
-    parser.add_argument("--no-pictures", action="store_true", help="numbers alone")
     parser.add_argument("--keep", action="store_true", help="keep the rows for notebook 07")
     controllers = [*all_controllers(Model("left")), FEED_FORWARD, BASELINE]
     only = "run only this and print it; more than once for more: " + ", ".join(controllers)
@@ -65,9 +59,6 @@ def main() -> None:
     folder.mkdir(parents=True, exist_ok=True)
     text = tables(rows) + claims(judged)
     (folder / "tables.md").write_text(text)
-    drawn = []
-    if not options.no_pictures:
-        drawn = done(pictures.draw, pictures.grid(folder), "figures")
     found = {
         "seeds": options.seeds,
         "seconds": round(seconds, 1),
@@ -75,15 +66,13 @@ def main() -> None:
         "gains": gains,
         "noise": noise,
         "verdicts": [v.as_data() for v in judged],
-        "figures": [_without(row, "folder") for row in drawn],
     }
     path = options.out / "campaign.json"
     path.write_text(json.dumps(found, indent=1, allow_nan=False) + "\n")
     if options.keep:
         save_campaign(found)
     print(text)
-    made = f"{path}, {folder}/tables.md, {len(drawn)} figures"
-    print(f"{len(rows)} runs in {seconds:.0f} s; {made}")
+    print(f"{len(rows)} runs in {seconds:.0f} s; {path}, {folder}/tables.md")
 
 
 if __name__ == "__main__":

@@ -27,7 +27,7 @@ VERDICTS = Path(__file__).with_name("verdicts.json")
 MAKERS = (
     ("solutions.study.baseline",),
     ("solutions.study.trials",),
-    ("solutions.study", "--no-pictures", "--keep"),
+    ("solutions.study", "--keep"),
     ("solutions.study.assumptions",),
 )
 """Modules that record runs; ``labkit release`` comes after them."""

@@ -6,7 +6,7 @@ import sys
 
 import numpy as np
 import pytest
-from book_pages import BOOK, FIGURES, in_order
+from book_pages import BOOK, computed
 from figures.claims import ConclusionFails, holds, shows
 
 
@@ -41,12 +41,7 @@ def test_the_numbers_that_the_code_confirms_stand_on_a_page():
     assert [x for x in confirmed if not any(x <= page for page in pages)] == []
 
 
-CELL = re.compile(r"^```\{code-cell\}\n((?::[^\n]*\n)*)(.*?)^```", re.M | re.S)
-PAGES = [
-    name
-    for name in in_order()
-    if (BOOK / f"{name}.md").exists() and FIGURES.search((BOOK / f"{name}.md").read_text())
-]
+PAGES = computed()
 
 
 @pytest.mark.soak
@@ -63,5 +58,5 @@ def test_the_claims_of_a_page_hold_with_other_seeds(page, shift, monkeypatch):
 
     monkeypatch.setattr(np.random, "default_rng", other)
     names = {}
-    for _, code in CELL.findall((BOOK / f"{page}.md").read_text()):
-        exec(code, names)
+    for cell in PAGES[page].cells:
+        exec(cell.source, names)

@@ -8,7 +8,6 @@ import labkit as lk
 from labkit import recordings
 from solutions.study import __main__ as command_line
 from solutions.study import campaign as report
-from solutions.study import pictures
 from solutions.study.claims import Outcome, interval, judge, verdicts
 from solutions.study.gains import course_controllers
 from solutions.study.grid import Meter, cells, pick, row_of, spread, table, work_through
@@ -78,22 +77,6 @@ def test_a_table_shows_the_mean_and_the_spread_over_seeds():
     ]
     assert spread([1.0, 2.0, 6.0]) == (3.0, 1.0, 6.0)
     assert pick(rows, controller="b") == rows[3:]
-
-
-def test_a_figure_of_the_report_is_numbered_drawn_and_put_into_words(tmp_path):
-    """Figure 5: joint space velocity controller on the circle; every axis has its unit."""
-    made = pictures.draw("joint velocity", "circle", str(tmp_path))
-    assert made["figure"] == 5 and (tmp_path / made["file"]).stat().st_size > 50_000
-    assert "circle: Tracking by joint velocity on the baxter left arm" in made["alt"]
-    log = report.perform("workspace velocity", "circle", "ideal", 0)
-    figure = pictures.overview(log, joints=report.joints("workspace velocity", "circle", 0))
-    labels = {ax.get_ylabel() for ax in figure.axes}
-    assert {"tip position [m]", "tip velocity [m/s]", "orientation error [deg]"} < labels
-    assert {"s0", "s1", "e0", "e1", "w0", "w1", "w2"} < labels
-    velocity = next(ax for ax in figure.axes if ax.get_ylabel() == "tip velocity [m/s]")
-    drawn = velocity.get_lines()[1].get_ydata()  # x, after the target's x
-    path = np.gradient(lk.metrics.tip_poses(log)[:, 0, 3], log.t)
-    np.testing.assert_allclose(drawn[5:-5], path[5:-5], rtol=0, atol=5e-3)
 
 
 # Verdicts
@@ -186,14 +169,12 @@ def noisy(cell):
 
 
 def test_the_campaign_writes_its_numbers_and_tables(tmp_path, monkeypatch, capsys):
-    """One seed of the line alone, without pictures."""
+    """One seed of the line alone."""
     monkeypatch.setattr(command_line, "grid", lambda seeds: SMALL[::2])
     monkeypatch.setattr(command_line, "gain_grid", lambda seeds: [])
     monkeypatch.setattr(command_line, "noise_grid", lambda seeds: [])
     monkeypatch.setattr(command_line, "verdicts", lambda *rows: [])
-    monkeypatch.setattr(
-        "sys.argv", ["campaign", "--jobs", "1", "--out", str(tmp_path), "--no-pictures"]
-    )
+    monkeypatch.setattr("sys.argv", ["campaign", "--jobs", "1", "--out", str(tmp_path)])
     command_line.main()
     assert (tmp_path / "campaign.json").exists()
     assert "| joint velocity |" in (tmp_path / "campaign/tables.md").read_text()
