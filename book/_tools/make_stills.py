@@ -38,9 +38,9 @@ SHEET = f"""body {{ display: flex; flex-direction: row !important; margin: 0; ov
     .lk-player > :not(.lk-beside), .lk-beside > :not(:first-child), .lk-bar, .lk-ring {{ display: none !important }}
     .lk-live .lk-stage .lk-canvas {{ height: {2 * HIGH}px !important; width: var(--wide) !important;
         max-height: none !important; aspect-ratio: auto !important }}
-    .lk-tag {{ font-size: 34px !important; font-weight: 600; padding: 0 14px; color: #1f2328; background: #fff;
+    .lk-tag {{ font-size: 44px !important; font-weight: 600; padding: 0 14px; color: #1f2328; background: #fff;
         border: 3px solid #57606a; border-radius: 10px }}
-    .lk-tag.title {{ transform: translate(24px, {2 * HIGH - 76}px) !important }}"""  # noqa: E501
+    .lk-tag.title {{ transform: translate(24px, {2 * HIGH - 90}px) !important }}"""  # noqa: E501
 """The style sheet of the pictures: nothing but the arms and their labels, large."""
 READY = "e => e.querySelector('[data-ready]') || e.querySelector('.lk-load')?.click()"
 MOUNT = """async ([own, wide, sheet, configs]) => {
