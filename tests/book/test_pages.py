@@ -71,7 +71,8 @@ def test_a_drawing_is_enlarged_on_a_phone(visit, open_chromium, scheme):
     figure.get_by_role("button", name="Enlarge").click()
     dialog = page.get_by_role("dialog")
     assert abs(figure.bounding_box()["height"] - before) < 1, "the text behind does not move"
-    size = "svg => svg.getBoundingClientRect().width / svg.viewBox.baseVal.width * 11.5"
+    size = """svg => svg.getBoundingClientRect().width / svg.viewBox.baseVal.width
+        * parseFloat(getComputedStyle(svg.querySelector('text')).fontSize)"""
     assert dialog.locator("svg").evaluate(size) >= 14
     assert violations(page) == []
     assert page.evaluate("document.documentElement.scrollWidth") == 390
