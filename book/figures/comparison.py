@@ -137,9 +137,10 @@ def one_table(name: str, plant: str) -> HTML:
                 row[name]
                 for row in pick(found()["rows"], controller=controller, task=task, plant=plant)
             ]
-            span = f'<span class="lab-range">[{min(x):.3g}, {max(x):.3g}]</span>'
+            least, most = f"{min(x):.2g}", f"{max(x):.2g}"
+            span = f' <span class="lab-range">[{least}, {most}]</span>' * (least != most)
             star = "*" * ((controller, task) == (BASELINE, "tag"))
-            cells.append(f"{np.mean(x):.3g}{star} {span}")
+            cells.append(f"{np.mean(x):.2g}{star}{span}")
         body.append((controller, *cells))
     caption = (
         f"{TABLES[name]}, {ARMS[plant]} arm. * Measured from the place where the tag was last "

@@ -20,10 +20,10 @@
     closed.forEach(function (d) { d.open = false; });
   });
 
-  // On a phone, a table that is too wide becomes a card for each row; for screen readers its roles keep it a table.
+  // On a phone, a table that is too wide becomes a card for each row, one of numbers scrolls; for screen readers its roles keep it a table.
   var heads = function (table) { return Array.prototype.map.call(table.querySelectorAll("thead th, thead td"), function (h) { return h.textContent; }); };
   var fold = function () {
-    document.querySelectorAll(".bd-article table").forEach(function (table) {
+    document.querySelectorAll(".bd-article table:not(.lab-table), .lab-table:has(td.lab-words)").forEach(function (table) {
       table.classList.remove("lab-cards");
       var names = heads(table), box = table.parentElement;
       if (innerWidth > 700 || !names.length || box.scrollWidth <= box.clientWidth + 1) return;

@@ -150,7 +150,7 @@ export class Stage {
     return caster;
   }
 
-  /** Put the labels over their points, and move labels apart that would overlap. */
+  /** Put the labels beside their points, where they hide no hand, and move labels apart that would overlap. */
   settle(width, height) {
     const spots = this.labels.map(({ element, place }) => {
       const at = place();
@@ -163,8 +163,8 @@ export class Stage {
       element.hidden = behind;
       if (behind) continue;
       const { offsetWidth: wide, offsetHeight: high } = element;
-      last = Math.max(y - high - 8, last + high);
-      const left = Math.max(4, Math.min(x - wide / 2, width - wide - 4));
+      last = Math.max(y - high / 2, last + high);
+      const left = Math.max(4, Math.min(x + 14, width - wide - 4));
       element.style.transform = `translate(${Math.round(left)}px, ${Math.round(last)}px)`;
     }
   }
