@@ -54,7 +54,7 @@ def test_springs_sag_further_under_the_load_than_computed_torque_of_the_same_num
 def test_only_at_a_torque_limit_does_velocity_mode_give_way():
     """The push that notebook 03 names brings a motor to its limit; a third of it moves nothing."""
     text = VELOCITY.read_text(encoding="utf-8").replace("\n# ", " ")
-    (said,) = re.findall(r"push at the tip with (\d+) N along \+y", text)
+    (said,) = re.findall(r"push the tip with (\d+) N along \+y", text)
     assert float(said) == STRONGEST
     model = lk.Model("left")
     T = model.pose(model.robot.ready)
